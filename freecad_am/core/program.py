@@ -174,9 +174,10 @@ class Program:
     origin on the table's face: the work offset with the rotary axes at zero.
     axis_names: how the controller writes each axis, such as X Y Z A C; axis_kinds: 'linear' or 'rotary', one each. Both are
     empty for robots, whose axes go by number. nc: for five-axis machines alone.
-    external_kinds: 'linear' or 'rotary' of each axis beside the robot, which are the last ones of all; the part is then on
-    the last mechanism, and station is the program's origin on its face. unit: what the controller calls that mechanism;
-    first_external: the number there of the first of these axes, from 1.
+    external_kinds: 'linear' or 'rotary' of each axis beside the robot, which are the last ones of all. With rotary ones the
+    part is on the last mechanism, and station is the program's origin on its face; a linear one is a track that carries the
+    robot. unit: what the controller calls that mechanism; first_external: the number there of the first of these axes,
+    from 1.
     """
 
     name: str
@@ -208,6 +209,16 @@ class Program:
     def own_axes(self) -> int:
         """How many axes the machine has without those beside it."""
         return len(self.endless) - len(self.external_kinds)
+
+    @property
+    def on_track(self) -> bool:
+        """Whether the axes beside the robot carry it, and not the part."""
+        return LINEAR in self.external_kinds
+
+    @property
+    def on_positioner(self) -> bool:
+        """Whether axes beside the robot carry the part, which its positions then are seen from."""
+        return bool(self.external_kinds) and not self.on_track
 
     @property
     def moves(self) -> tuple[Moves, ...]:
@@ -284,8 +295,8 @@ class ReadMoves:
     events: what happens between the moves, in order. configuration: of positions of robots.
     user_frame, tool_frame: (n,) numbers of the frame and the tool that a text selects, NaN where it selects none; the frame
     of moves of bare axes, which count on none, is left out.
-    unit: what a text calls the mechanism that carries the part, and that its positions are seen from; first_external: the
-    number of the first axis beside the robot. Both as in `Program`.
+    unit: what a text calls the mechanism that carries the part, and that its positions are seen from, or the track;
+    first_external: the number of the first axis beside the robot. Both as in `Program`.
     """
 
     joints: Array | None

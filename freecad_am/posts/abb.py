@@ -130,7 +130,9 @@ def _refuse(program: Program) -> None:
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
-    if program.external_kinds:
+    if program.on_track:
+        yield f"eax_{'abcdef'[program.first_external - 1]} is the track in mm, which moves the base frame of the robot"
+    elif program.external_kinds:
         yield f"{text.WORK_OBJECT} is on the face of {program.unit}, and seen from its user frame"
     if program.setup == "part-on-robot":
         yield f"{text.TOOL} is the nozzle, which stands; {text.WORK_OBJECT} is what the robot holds"
@@ -167,22 +169,23 @@ def _module(
     used: set[str] = set()
     for piece in pieces:
         if isinstance(piece, Run):
-            lines += _motion(piece, program.first_external)
+            lines += _motion(piece, program.first_external, program.on_track)
             used.update(word.rpartition(",")[2] for word in piece.words[piece.start : piece.stop])
         else:
             lines += piece
     zones = [(zone, size_mm) for size_mm, zone in words.zones.items() if zone in used]
     tool, work_object = (station, carried) if held else (carried, station)
-    return text.module(name, routine, remarks, text.data(tool, work_object, held, zones, program.unit), lines)
+    moved_by = program.unit if program.on_positioner else ""
+    return text.module(name, routine, remarks, text.data(tool, work_object, held, zones, moved_by), lines)
 
 
-def _motion(run: Run, first: int) -> list[str]:
-    """Lines through all points of a run. first: the number of the first axis beside the robot."""
+def _motion(run: Run, first: int, on_track: bool) -> list[str]:
+    """Lines through all points of a run. first: the number of the first axis beside the robot, which is a track or not."""
     moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation != LINEAR_MOVE:
-        return text.joint_moves(numbers.degrees(moves.joints[rows]), run.words[rows], first)
+        return text.joint_moves(numbers.shown(moves.joints[rows], on_track), run.words[rows], first)
     assert moves.position is not None and moves.rotation is not None
     return text.linear_moves(
         numbers.positions(moves.position[rows]), numbers.quaternions(moves.rotation[rows]),
-        numbers.degrees(moves.joints[rows, AXES:]), run.words[rows], first,
+        numbers.shown(moves.joints[rows, AXES:], on_track), run.words[rows], first,
     )

@@ -37,9 +37,12 @@ class Pose(NamedTuple):
     quaternion: tuple[float, ...]
 
 
-def degrees(joints: Array) -> Array:
-    """Joint values (n, axes) in degrees as the text has them."""
-    rounded: Array = np.asarray(np.round(np.degrees(joints), ANGLE_DECIMALS) + 0.0, dtype=np.float64)
+def shown(joints: Array, on_track: bool) -> Array:
+    """Joint values (n, axes) in degrees as the text has them, the last one in mm where it is a track."""
+    values = np.degrees(joints)
+    if on_track:
+        values[:, -1] = joints[:, -1]
+    rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
     return rounded
 
 

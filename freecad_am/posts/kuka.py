@@ -123,6 +123,9 @@ def _refuse(program: Program) -> None:
     axes = AXES + len(program.external_kinds)
     refuse_incomplete(program, "kuka", axes)
     refuse_external(program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16")
+    if program.on_track and program.unit:
+        raise InputError("UNSUPPORTED_AXES", "program.axes.unit", "a track has no MACHINE_DEF to be named: the robot's own "
+                         "base is on it; leave unit out")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     for what, number, last in (("tool_frame", program.tool_frame, LAST_TOOL), ("user_frame", program.user_frame, LAST_BASE)):
@@ -142,13 +145,15 @@ def _refuse(program: Program) -> None:
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
-    seen = f", seen from the face of MACHINE_DEF[{program.unit}]" if program.external_kinds else ""
+    seen = f", seen from the face of MACHINE_DEF[{program.unit}]" if program.on_positioner else ""
     yield (f"BASE_DATA[{program.user_frame}] is the program origin{seen}, TOOL_DATA[{program.tool_frame}] the tip of the"
            " nozzle:")
     for what, six in (("BASE", program.station), ("TOOL", program.carried)):
         if six is not None:
             values = text.frames(np.array([six[:3]]), text.turned(six[3:])[None])[0]
             yield what + "".join(f" {axis} {value:.3f}" for axis, value in zip("XYZABC", values.tolist(), strict=True))
+    if program.on_track:
+        yield f"E{program.first_external} is the track in mm, which carries $ROBROOT; BASE_DATA stands in the world"
     if program.dry_run:
         yield "dry run: no deposit"
 
@@ -176,7 +181,7 @@ _STAND = "WAIT SEC 0"
 
 def _body(program: Program, pieces: Sequence[Piece]) -> list[str]:
     unit, base = f"MACHINE_DEF[{program.unit}]", f"BASE_DATA[{program.user_frame}]"
-    coupled = [f"$BASE=EK({unit}.ROOT,{unit}.MECH_TYPE,{base})"] if program.external_kinds else []
+    coupled = [f"$BASE=EK({unit}.ROOT,{unit}.MECH_TYPE,{base})"] if program.on_positioner else []
     lines = [
         "BAS(#INITMOV,0)", f"BAS(#BASE,{program.user_frame})", *coupled, f"BAS(#TOOL,{program.tool_frame})",
         "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR",

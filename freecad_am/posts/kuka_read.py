@@ -191,7 +191,7 @@ def _moved(line: str, run: _Run, where: str) -> None:
     _beside(tuple(int(number) for number, _ in beside), 100.0 if straight else state["percent"], run, where)
     run.beside.append(np.array([value for _, value in beside], dtype=np.float64))
     if beside:
-        run.counted("joints", tuple(value for _, value in beside))
+        run.counted("joints" if run.unit else "slides", tuple(value for _, value in beside))
     if straight:
         run.counted("places", texts[:3])
         run.counted("turns", texts[3:])
@@ -211,7 +211,9 @@ def _beside(numbers: tuple[int, ...], share: float, run: _Run, where: str) -> No
     """Look at the axes beside the robot of a move: the same ones in all of them, coupled, and as fast as the move needs, in
     percent: a linear one goes at its own speed only where they may be as fast as they can."""
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
-    if numbers != tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ()) or bool(numbers) != bool(unit):
+    on_track = len(numbers) == 1 and not unit
+    in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
+    if not in_order or (bool(numbers) != bool(unit) and not on_track):
         raise _not_read(where, "the axes beside the robot are not told in order, or BASE is not coupled to what they move")
     if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):
         raise _not_read(where, "moves with other axes beside the robot are mixed")
@@ -228,6 +230,8 @@ def _told(run: _Run) -> ReadMoves:
     any_line = bool(linear.any())
     beside = np.array(run.beside)
     joints = np.radians(np.hstack((np.where(seen, np.nan, values), beside)))
+    if run.numbers and not run.unit:
+        joints[:, 6:] = beside
     return ReadMoves(
         None if np.isnan(joints).all() else joints, float(np.radians(half.get("joints", 0.0))),
         np.full(len(linear), np.nan), deposit, linear, np.isnan(rounding), tuple(run.events),
@@ -235,7 +239,8 @@ def _told(run: _Run) -> ReadMoves:
         rotation=_about(2, a) @ _about(1, b) @ _about(0, c) if any_line else None,
         position_digits=half.get("places", 0.0), rotation_digits=float(np.radians(half.get("turns", 0.0))),
         speed=np.array(run.speed), speed_digits=half.get("speed", 0.0), share=np.array(run.share), share_digits=0.005,
-        rounding=rounding, user_frame=np.array(run.base), tool_frame=np.array(run.tool),
+        linear_digits=half.get("slides", 0.0), rounding=rounding,
+        user_frame=np.array(run.base), tool_frame=np.array(run.tool),
         unit=run.unit or "", first_external=run.numbers[0] if run.numbers else 1,
     )
 

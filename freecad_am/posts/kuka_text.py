@@ -47,9 +47,12 @@ def wait(seconds: float) -> list[str]:
     return [f"WAIT SEC {max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
 
 
-def degrees(joints: Array) -> Array:
-    """Axis values (n, 6) in degrees as the text has them."""
-    rounded: Array = np.asarray(np.round(np.degrees(joints), ANGLE_DECIMALS) + 0.0, dtype=np.float64)
+def shown(joints: Array, on_track: bool) -> Array:
+    """Axis values (n, axes) in degrees as the text has them, the last one in mm where it is a track."""
+    values = np.degrees(joints)
+    if on_track:
+        values[..., -1] = joints[..., -1]
+    rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
     return rounded
 
 
@@ -83,7 +86,10 @@ class Lines:
 
     def __init__(self, program: Program) -> None:
         self._blend = program.blend
+        self._on_track = program.on_track
         self._nominal = np.degrees(np.array(program.max_speed))
+        if self._on_track:
+            self._nominal[-1] = program.max_speed[-1]
         self._before: Array | None = None
         self._own = program.own_axes
         numbers = [program.first_external + k for k in range(len(program.external_kinds))]
@@ -96,22 +102,22 @@ class Lines:
 
     def __call__(self, moves: Moves) -> Sequence[str]:
         """`settings|move` of each move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
-        shown = degrees(moves.joints)
+        values = shown(moves.joints, self._on_track)
         if moves.interpolation == LINEAR_MOVE:
             assert moves.position is not None and moves.rotation is not None
             size = self._rounding(moves)
             corners = [_STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()]
             speeds = [f"$VEL.CP={0.001 * speed:.6f}" for speed in speeds_within(moves, *SPEEDS).tolist()]
-            rows = np.hstack((frames(moves.position, moves.rotation), shown[:, self._own :])).tolist()
+            rows = np.hstack((frames(moves.position, moves.rotation), values[:, self._own :])).tolist()
             lines = [f"{self._unhindered}{speed}|{self._lin % tuple(row)}{corner}"
                      for speed, row, corner in zip(speeds, rows, corners, strict=True)]
             told = [f"$APO.CDIS={size:.3f}|{line}" if corner else line for line, corner in zip(lines, corners, strict=True)]
         else:
-            percent = self._percent(moves, shown)
-            rows = shown.tolist()
+            percent = self._percent(moves, values)
+            rows = values.tolist()
             told = [f"BAS(#VEL_PTP,{share:d})|{self._beside(share)}{self._ptp % tuple(row)}"
                     for share, row in zip(percent, rows, strict=True)]
-        self._before = shown[-1]
+        self._before = values[-1]
         return told
 
     def _beside(self, share: int) -> str:

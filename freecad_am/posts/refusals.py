@@ -67,7 +67,7 @@ def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
             "UNSUPPORTED_AXES", "program.axes.first",
             f"the axes beside the robot would end with number {end}, and the controller has {last}; use a smaller first one",
         )
-    if not re.fullmatch(unit, program.unit):
+    if not re.fullmatch(unit, program.unit) and not (program.on_track and not program.unit):
         raise InputError(
             "UNSUPPORTED_AXES", "program.axes.unit", f"{program.unit!r} is no positioner of this controller; give {form}"
         )

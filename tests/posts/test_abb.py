@@ -89,8 +89,10 @@ def assert_modules(files):
             if line.startswith("Move"):
                 target = values(line)
                 joint = line.startswith("MoveAbsJ ")
-                assert [len(part) for part in target] == ([6, 6] if joint else [3, 4, 4, 6]) and (
-                    target[-1] if fixed else [NO_AXES[0], *target[-1][3:], *NO_AXES[:2]]) == NO_AXES
+                on_track = fixed and file == "rail.mod"
+                beside_it = [*target[-1][:2], *target[-1][3:], NO_AXES[0]] if on_track else (
+                    target[-1] if fixed else [NO_AXES[0], *target[-1][3:], *NO_AXES[:2]])
+                assert [len(part) for part in target] == ([6, 6] if joint else [3, 4, 4, 6]) and beside_it == NO_AXES
                 assert joint or abs(np.linalg.norm(target[1]) - 1.0) < 1e-6
                 speed, zone, tool, work_object = re.fullmatch(
                     r".*\],?(?:\\NoEOffs,)?(\w+)\\[TV]:=[\d.]+,(\w+),(\w+)\\WObj:=(\w+);", line).groups()
@@ -149,7 +151,24 @@ def beside(of, **more):
         "name": "dome", "endless": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
         "unit": "STN1", "first_external": 2, "station": (0, 0, 20, 0, 0, 0), **more})
 
-GOLDENS = {"joint": JOINT, "held": HELD, "positioner": beside(HELD)}
+
+def along(of, **more):
+    """The same with the tool on a robot on a track, told as eax_c, which goes on by 12.5 mm with every move."""
+    count, blocks = 0, []
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            slid = 12.5 * (count + np.arange(len(block)))[:, None] - 900.125
+            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, slid]))
+        blocks.append(block)
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "rail", "endless": (False,) * 7, "setup": "tool-on-robot", "external_kinds": ("linear",),
+        "unit": "", "first_external": 3, "station": (1200, 0, 20, 0, 0, 0), **more})
+
+
+GOLDENS = {
+    "joint": JOINT, "held": HELD, "positioner": beside(HELD), "track": along(HELD, max_points=2000),
+    "track-joint": along(JOINT),
+}
 
 
 @pytest.mark.parametrize("name", GOLDENS)
@@ -176,6 +195,25 @@ def test_a_part_on_a_positioner_is_a_work_object_that_its_unit_moves():
     refusal(beside(JOINT, first_external=6), code="UNSUPPORTED_AXES", where="program.axes.first")
     for unit in ("", "1", "my unit"):
         refusal(beside(JOINT, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
+
+
+def test_a_track_carries_the_robot_and_the_work_object_stands():
+    for of in (along(HELD), along(JOINT), along(HELD, unit="TRACK_1")):
+        files, run = abb.write(of), of.moves
+        read, joints = abb.read(files), np.concatenate([moves.joints for moves in run])
+        assert np.array_equal(read.joints[:, 6], joints[:, 6])  # mm as they are
+        np.testing.assert_allclose(read.joints[~read.linear, :6], joints[~read.linear, :6], rtol=0.0, atol=1e-6)
+        assert (read.unit, read.first_external, read.linear_digits) == (of.unit, 3, 0.00005)
+        for file in files:
+            if "Move" in files[file].decode():
+                (held, fixed, unit, user, _), = declared(files, file, "wobjdata").values()
+                assert (held, fixed, unit, user[0]) == (False, True, "", [1200, 0, 20])
+                assert ("ActUnit TRACK_1;" in lines(files, file)) is bool(of.unit)
+                slid = [values(line)[-1] for line in lines(files, file) if line.startswith("Move")]
+                assert all(row[:2] == [9e9] * 2 and row[3:] == [9e9] * 3 for row in slid)
+                assert np.allclose(np.diff([row[2] for row in slid]), 12.5)
+    refusal(along(JOINT, first_external=7), code="UNSUPPORTED_AXES", where="program.axes.first")
+    refusal(along(JOINT, unit="my unit"), code="UNSUPPORTED_AXES", where="program.axes.unit")
 
 
 def test_a_part_that_is_held_is_a_work_object_and_the_nozzle_a_tool_that_stands():

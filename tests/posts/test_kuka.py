@@ -16,11 +16,11 @@ from freecad_am.posts import catalogue, kuka
 
 NOMINAL = tuple(math.radians(value) for value in (156.0, 156.0, 156.0, 330.0, 330.0, 615.0))
 NUMBER = r"-?\d+\.\d{%d}"
-BESIDE = rf"(?:,E2 {NUMBER % 4},E3 {NUMBER % 4})?"
+BESIDE = rf"(?:,E2 {NUMBER % 4},E3 {NUMBER % 4}|,E1 {NUMBER % 4})?"
 INSTRUCTIONS = [
     "PTP {" + ",".join(f"A{axis} {NUMBER % 4}" for axis in range(1, 7)) + BESIDE + "}",
     "LIN {" + ",".join(f"{axis} {NUMBER % (3 if axis in 'XYZ' else 4)}" for axis in "XYZABC") + BESIDE + "}(?: C_DIS)?",
-    r"\$BASE=EK\(MACHINE_DEF\[3\]\.ROOT,MACHINE_DEF\[3\]\.MECH_TYPE,BASE_DATA\[\d+\]\)", r"\$VEL_EXTAX\[[23]\]=\d+",
+    r"\$BASE=EK\(MACHINE_DEF\[3\]\.ROOT,MACHINE_DEF\[3\]\.MECH_TYPE,BASE_DATA\[\d+\]\)", r"\$VEL_EXTAX\[[123]\]=\d+",
     r"BAS\(#(?:INITMOV,0|BASE,\d+|TOOL,\d+|VEL_PTP,(?:[1-9]\d?|100))\)", r"\$IPO_MODE=#BASE", r"\$ORI_TYPE=#VAR",
     r"\$VEL\.CP=[0-2]\.\d{6}", r"\$APO\.CDIS=\d+\.\d{3}", r"\$OUT\[\d+\]=(?:TRUE|FALSE)", r"WAIT SEC (?:0|\d+\.\d{3})",
     r"WAIT FOR \$IN\[\d+\]==TRUE", r"[A-Za-z]\w{0,19}\(\)", r"; [ -~]{1,80}",
@@ -111,8 +111,22 @@ def beside(of, **more):
         "external_kinds": ("rotary", "rotary"), "unit": "3", "first_external": 2, "station": (0, 0, 20, 0, 0, 0), **more})
 
 
+def along(of, **more):
+    """The same on a track, told as E1, which goes on by 12.5 mm with every move."""
+    count, blocks = 0, []
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            slid = 12.5 * (count + np.arange(len(block)))[:, None] - 900.125
+            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, slid]))
+        blocks.append(block)
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "rail", "endless": (False,) * 7, "max_speed": (*NOMINAL, 2500.0), "external_kinds": ("linear",), "unit": "",
+        "first_external": 1, "station": (1200, 0, 20, 0, 0, 0), **more})
+
+
 GOLDENS = {
     "whole": JOB, "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup"), "positioner": beside(JOB),
+    "track": along(JOB),
 }
 
 
@@ -122,6 +136,20 @@ def test_golden_modules_to_the_byte(root, name):
     folder = root / "tests/golden/kuka" / name
     assert files == {path.name: path.read_bytes() for path in folder.iterdir()}
     assert_modules(files)
+
+
+def test_a_track_carries_the_robot_and_the_base_stands():
+    of = along(JOB)
+    read, joints = kuka.read(kuka.write(of)), np.concatenate([moves.joints for moves in of.moves])
+    assert np.array_equal(read.joints[:, 6], joints[:, 6]) and np.isnan(read.joints[read.linear, :6]).all()
+    np.testing.assert_allclose(read.joints[~read.linear, :6], joints[~read.linear, :6], rtol=0.0, atol=1e-6)
+    assert (read.unit, read.first_external, read.linear_digits) == ("", 1, 0.00005)
+    text = kuka.write(of)["rail.src"].decode()
+    assert "EK(" not in text and "E1 is the track in mm" in text and "$VEL_EXTAX[1]=100" in text
+    slid = [float(value) for value in re.findall(r"(?:PTP|LIN) \{.*?E1 (-?[\d.]+)", text)]
+    assert np.allclose(np.diff(slid), 12.5) and slid[0] == -900.125
+    refusal(along(JOB, unit="2"), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(along(JOB, first_external=7), code="UNSUPPORTED_AXES", where="program.axes.first")
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -293,7 +321,7 @@ def test_a_module_by_hand():
     ("WAIT FOR $IN[4]==TRUE\n", "", "ahead of the motion"), ("WAIT SEC 0.5\n", "", "ahead of the motion"),
     ("C 179.5}", "C 179.5} C_DIS", "approximated"), ("$OUT[7]=FALSE", "$OUT[8]=FALSE", "second output"),
     ("gripper_open()", "hand()", "called by none"), ("gripper_open()", "GOTO x", "not understood"),
-    (",A6 200.25", "", "not understood"), ("C 10.0}", "C 10.0,E1 5.0}", "not coupled"),
+    (",A6 200.25", "", "not understood"), ("C 10.0}", "C 10.0,E1 5.0}", "are mixed"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(old, new, why):
     with pytest.raises(InputError) as raised:

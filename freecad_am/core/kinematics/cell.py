@@ -47,7 +47,7 @@ class Cell:
     mount: in part coordinates, the frame that sits on the platform.
     branch: index of the branch (opw.branch_index), or None when all are to be searched.
     external: axes beside the robot; the machine then is the robot together with them, and what stands for base_link in its
-    chain is the face that carries the part.
+    chain is the face that carries the part, or the world where only the robot is carried.
     """
 
     machine: Machine
@@ -255,11 +255,11 @@ def resolve(
     station = np.eye(4) if machine.is_table else frames.bryant(parameters.deposition_point)
     beside = externals(parameters.external)
     if beside and parameters.setup != TOOL_ON_ROBOT:
-        raise InputError("WRONG_SETUP", "cell.external", f"{parameters.setup}: what carries the part beside the robot needs "
+        raise InputError("WRONG_SETUP", "cell.external", f"{parameters.setup}: axes beside the robot need "
                          f"the tool on the robot; use setup: {TOOL_ON_ROBOT}, or leave external out")
     if beside:
         machine, limits, external = coupled(machine, limits, beside, parameters.upward(), folders)
-        station = frames.bryant(platform_pose)
+        station = station if not external.turning else frames.bryant(platform_pose)
     return Cell(
         machine=machine,
         limits=limits,

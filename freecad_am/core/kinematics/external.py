@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """External axes: a robot and the mechanisms beside it as one machine.
 
-Seen from what the last mechanism that carries the part has on its face, robot and mechanisms are one chain: backwards
-through the positioner to the floor, and on through the robot to its flange. So everything that drives a chain - limits,
+Seen from where the part stands, robot and mechanisms are one chain: from what the last mechanism that carries it has on its
+face backwards through the positioner to the floor, or from the floor itself, and on through the track that carries the
+robot, and the robot, to its flange. So everything that drives a chain - limits,
 speeds, rapids, collisions, read-back - knows of external axes without being told; the robot's own inverse alone has to
 be told where its base then is.
 """
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..issues import InputError
-from ..parameters.external import PART, WHERE, External
+from ..parameters.external import PART, ROBOT, WHERE, External
 from . import machine as machines
 from .chain import Chain, Piece, joined
 from .limits import Limits
@@ -28,29 +29,40 @@ from .machine import MAKER, Machine
 
 Array = NDArray[np.float64]
 
-POSTS = ("abb", "fanuc", "kuka")  # that write axes beside a robot
+POSTS = ("abb", "fanuc", "kuka")  # that write a positioner
+ON_TRACK = ("abb", "kuka")  # that write a track
 
 
 @dataclass(frozen=True, eq=False)
 class ExternalAxes:
-    """The axes beside a robot, k in all. robot: the machine without them. to_robot: the chain from the platform's face to
-    the robot's base_link. up: (3,) against gravity, in the world. turning: the unit axes (3,) of the positioner in the
-    world with all axes at zero, from the floor on. at_zero: (3, 3) turns directions on the face into the world, at zero."""
+    """The axes beside a robot, k in all. robot: the machine without them. to_robot: the chain from where the part stands,
+    the platform's face or the world, to the robot's base_link. up: (3,) against gravity, in the world. turning: the unit
+    axes (3,) of the positioner in the world with all axes at zero, from the floor on, and `turned` which of the values these
+    are. at_zero: (3, 3) turns directions on the face into the world, at zero. along: (3,) the unit way of the track in the
+    world and `slides` its value's place, None where the robot stands."""
 
     robot: Machine
     to_robot: Chain
     up: Array
     turning: tuple[Array, ...]
+    turned: NDArray[np.intp]
     at_zero: Array
+    along: Array | None = None
+    slides: int | None = None
+
+    @property
+    def axes(self) -> int:
+        """How many there are, k."""
+        return self.to_robot.axes
 
     def base(self, values: Array) -> Array:
-        """(n, 4, 4) the robot's base_link seen from the face that carries the part, mm, for values (n, k) rad."""
+        """(n, 4, 4) the robot's base_link seen from where the part stands, mm, for values (n, k) rad and mm."""
         return self.to_robot.forward(values)
 
     def upright(self, directions: Array, values: Array) -> Array:
-        """(n, 3) unit vectors of the face (n, 3) in the world, for values (n, k) rad."""
+        """(n, 3) unit vectors seen from where the part stands (n, 3) in the world, for values (n, k) rad and mm."""
         turned = directions @ self.at_zero.T
-        for axis, angle in list(zip(self.turning, values.T, strict=True))[::-1]:
+        for axis, angle in list(zip(self.turning, values.T[self.turned], strict=True))[::-1]:
             turned = np.einsum("nij,nj->ni", frames.rotation_about(axis, angle), turned)
         return turned
 
@@ -64,29 +76,56 @@ def coupled(
     Raises InputError NOT_YET for what cannot be planned, UNKNOWN_MACHINE, BAD_MACHINE.
     """
     found = [(one, load(one.machine, folders)) for one in named]
-    for one, machine in found:
-        if one.carries != PART:
-            raise InputError("NOT_YET", WHERE, f"{machine.title} carries the robot, which cannot be planned yet; only "
-                             "mechanisms that carry the part can")
-        if machine.chain.sliding.any():
-            raise InputError("NOT_YET", WHERE, f"{machine.title} has an axis that slides and carries the part, which cannot "
-                             "be planned yet; use turning axes")
-    count = sum(machine.chain.axes for _, machine in found)
-    if count > 2:
-        raise InputError("NOT_YET", WHERE, f"{count} axes carry the part; one or two turning axes can be planned")
+    _check(found)
     if robot.is_table:
         raise InputError("WRONG_SETUP", WHERE, f"{robot.title} is no robot and takes no external axes; leave them out")
-    axes = robot.chain.axes
-    to_face, face = _chain(found)
-    back = to_face.reversed()
+    axes, count = robot.chain.axes, sum(machine.chain.axes for _, machine in found)
+    ends = np.cumsum([0, *(machine.chain.axes for _, machine in found)])
+    values = [np.arange(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)]
+    carriers = [k for k, (one, _) in enumerate(found) if one.carries == PART]
     in_world = frames.inverse(robot.base)
-    to_robot = joined([Piece(np.eye(4), back, np.arange(count))], in_world)
+    pieces, face, turned = [], np.eye(4), np.zeros(0, dtype=np.intp)
+    turning: tuple[Array, ...] = ()
+    if carriers:
+        to_face, face = _chain([found[k] for k in carriers])
+        turned = np.concatenate([values[k] for k in carriers])
+        pieces = [Piece(np.eye(4), to_face.reversed(), turned)]
+        turning = tuple(to_face.frames(np.zeros(len(turned))).directions)
+    along, slides = None, None
+    for k, (one, machine) in enumerate(found):
+        if one.carries == ROBOT:
+            start = frames.bryant(one.pose) @ frames.inverse(machine.base)
+            # at zero the robot's base is that of the world
+            in_world = frames.inverse(start @ machine.chain.forward(np.zeros(1))) @ in_world
+            pieces.append(Piece(start, machine.chain, values[k]))
+            along, slides = start[:3, :3] @ machine.chain.frames(np.zeros(1)).directions[0], int(values[k][0])
+    to_robot = joined(pieces, in_world)
     whole = joined([
         Piece(np.eye(4), to_robot, axes + np.arange(count)), Piece(np.eye(4), robot.chain, np.arange(axes)),
     ], np.eye(4))
-    at_zero = to_face.frames(np.zeros(count))
-    external = ExternalAxes(robot, to_robot, _unit(up), tuple(at_zero.directions), face[:3, :3])
-    return _together(robot, [machine for _, machine in found], whole), _limits(limits, [one for _, one in found]), external
+    external = ExternalAxes(robot, to_robot, _unit(up), turning, turned, face[:3, :3], along, slides)
+    machines_ = [machine for _, machine in found]
+    posts = POSTS if slides is None else ON_TRACK if not carriers else ()
+    return _together(robot, machines_, whole, posts), _limits(limits, machines_), external
+
+
+def _check(found: Sequence[tuple[External, Machine]]) -> None:
+    """Refuse what cannot be planned."""
+    tracks = [machine for one, machine in found if one.carries == ROBOT]
+    for machine in tracks:
+        if machine.chain.axes != 1 or not machine.chain.sliding.all():
+            raise InputError("NOT_YET", WHERE, f"{machine.title} carries the robot and is no track, which is one axis that "
+                             "slides; nothing else can be planned")
+    if len(tracks) > 1:
+        raise InputError("NOT_YET", WHERE, f"{len(tracks)} mechanisms carry the robot; one track can be planned")
+    others = [machine for one, machine in found if one.carries == PART]
+    for machine in others:
+        if machine.chain.sliding.any():
+            raise InputError("NOT_YET", WHERE, f"{machine.title} has an axis that slides and carries the part, which cannot "
+                             "be planned yet; use turning axes")
+    count = sum(machine.chain.axes for machine in others)
+    if count > 2:
+        raise InputError("NOT_YET", WHERE, f"{count} axes carry the part; one or two turning axes can be planned")
 
 
 def load(name: str, folders: Sequence[str] = ()) -> Machine:
@@ -122,8 +161,8 @@ def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
     return joined(pieces, np.eye(4)), before
 
 
-def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machine:
-    """The robot with further axes e1, e2 ...: of its posts those write for it that know them."""
+def _together(robot: Machine, others: Sequence[Machine], chain: Chain, posts: Sequence[str]) -> Machine:
+    """The robot with further axes e1, e2 ...: of its posts those write for it that know them, `posts`."""
     count, axes = sum(other.chain.axes for other in others), robot.chain.axes
     matrix = np.eye(axes + count)
     matrix[:axes, :axes] = robot.controller_matrix
@@ -142,7 +181,7 @@ def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machin
         robot, title=" + ".join(one.title for one in (robot, *others)), chain=chain, base=np.eye(4), external=count,
         axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))), controller_matrix=matrix,
         controller_offset=np.concatenate(offset), pulses_per_degree=(), **alike,
-        posts=tuple(post for post in POSTS if robot.posts is None or post in robot.posts),
+        posts=tuple(post for post in posts if robot.posts is None or post in robot.posts),
     )
 
 

@@ -24,13 +24,13 @@ Values = Callable[[Task, Points, Array], Array]
 
 def displacement(task: Task, points: Points, joints: Array) -> Array:
     """Eq. 17: sum over points and axes of alpha (q_i - q_i-1)^2; (..., B), rad."""
-    step = steps(joints, points.starts)
+    step = steps(joints, points)
     return points.total((step * step) @ task.weights)
 
 
 def displacement_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
     """(T,) derivative of eq. 17 by the phi of each point; rates (T, axes) are d q / d phi."""
-    step = steps(joints, points.starts) * task.weights
+    step = steps(joints, points) * task.weights
     ahead = np.zeros_like(step)
     ahead[:-1] = step[1:]
     result: Array = 2.0 * np.einsum("ij,ij->i", step - ahead, rates)

@@ -41,9 +41,10 @@ def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
         point = int(over[:, row].argmax())
         value = values[point, row]
         limit = rows.lower[row] if value < rows.lower[row] else rows.upper[row]
+        unit, of = ("mm", 1.0) if (rows.matrix[row] @ task.cell.machine.chain.sliding).any() else ("deg", math.radians(1.0))
         found.append(Issue(
             ERROR, "LIMIT",
-            f"{rows.labels[row]} would be at {math.degrees(value):.2f} deg, its limit is {math.degrees(limit):g} deg",
+            f"{rows.labels[row]} would be at {value / of:.2f} {unit}, its limit is {limit / of:g} {unit}",
             point=point, **place,
         ))
     return found

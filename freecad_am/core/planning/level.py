@@ -45,31 +45,40 @@ def levelled(cell: Cell, toolpath: Toolpath) -> tuple[list[Bead], list[Issue]]:
     one = _middle(np.concatenate(seen))
     laid: list[Bead] = []
     issues: list[Issue] = []
-    before = np.zeros(len(external.turning))
-    hold = one is not None and float(tilt_from(np.concatenate(seen), one).max()) <= min(allowed)
-    if hold and one is not None:
+    before = np.zeros(external.axes)
+    hold = not external.turning or (one is not None and float(tilt_from(np.concatenate(seen), one).max()) <= min(allowed))
+    if external.turning and hold and one is not None:
         before = _standing(external, cell, one, before)
     for bead, directions, most, place in zip(beads, seen, allowed, places, strict=True):
         values = np.tile(before, (len(bead), 1)) if hold else _followed(external, cell, directions, most, before)
         tilt = tilt_from(external.upright(directions, values), external.up)
         worst = int(tilt.argmax())
         if tilt[worst] > most + ROUNDING:
-            issues.append(Issue(
-                ERROR, "NOT_LEVEL", f"the tool axis would be {math.degrees(tilt[worst]):.3g} deg from the vertical, "
-                f"build_direction.max_from_vertical allows {math.degrees(most):.3g} deg; the positioner cannot turn the "
-                "part so far: mount the part otherwise, or allow more", *place, worst,
-            ))
+            issues.append(_not_level(external, float(tilt[worst]), most, *place, worst))
         before = values[-1]
         laid.append(dataclasses.replace(bead, external=values))
     return laid, issues
 
 
+def _not_level(external: ExternalAxes, tilt: float, most: float, *place: int) -> Issue:
+    leans, allowed = math.degrees(tilt), math.degrees(most)
+    if not external.turning:
+        return Issue(ERROR, "NOT_LEVEL", f"the tool axis would be {leans:.3g} deg from the vertical, "
+                     f"build_direction.max_from_vertical allows {allowed:.3g} deg, and nothing turns the part; put it on a "
+                     "positioner, or allow more", *place)
+    return Issue(
+        ERROR, "NOT_LEVEL", f"the tool axis would be {leans:.3g} deg from the vertical, "
+        f"build_direction.max_from_vertical allows {allowed:.3g} deg; the positioner cannot turn the "
+        "part so far: mount the part otherwise, or allow more", *place,
+    )
+
+
 def figures(cell: Cell, path: JointPath) -> dict[str, object]:
-    """What the external axes do along the deposit, in degrees: how far the tool axis is from the vertical at most, and how
-    far each of them turns in all."""
+    """What the external axes do along the deposit: how far the tool axis is from the vertical at most, in degrees, and how
+    far each of them turns in all, and slides in all, in mm."""
     external = cell.external
     assert external is not None
-    turned = np.zeros(len(external.turning))
+    turned = np.zeros(external.axes)
     farthest = 0.0
     for one in path.beads:
         values = cell.external_of(one.joints)
@@ -78,10 +87,11 @@ def figures(cell: Cell, path: JointPath) -> dict[str, object]:
         turned += np.abs(np.diff(values, axis=0)).sum(axis=0)
         upright = external.upright(_on_face(cell, one.bead.tool), values)
         farthest = max(farthest, float(tilt_from(upright, external.up).max()))
-    names = cell.machine.axes[-len(turned) :]
+    names, slides = cell.machine.axes[-len(turned) :], external.slides
     return {
         "from_vertical_max_deg": math.degrees(farthest),
-        "turned_deg": dict(zip(names, np.degrees(turned).tolist(), strict=True)),
+        "turned_deg": {names[k]: math.degrees(way) for k, way in enumerate(turned.tolist()) if k != slides},
+        **({} if slides is None else {"moved_mm": {names[slides]: float(turned[slides])}}),
     }
 
 
@@ -155,8 +165,11 @@ def _chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
     """Of all courses and whole turns the one within the limits that moves least, then the one that starts nearest to the
     values before (k,)."""
     own = cell.robot.chain.axes
-    lower, upper = cell.limits.lower[own:] + RESERVE, cell.limits.upper[own:] - RESERVE
-    speed = cell.machine.max_speed[own:]
+    assert cell.external is not None
+    turned = own + cell.external.turned
+    lower, upper = cell.limits.lower[turned] + RESERVE, cell.limits.upper[turned] - RESERVE
+    speed, start = cell.machine.max_speed[turned], before
+    before = start[cell.external.turned]
     ranked = []
     for course in courses:
         low, high = course.min(axis=0), course.max(axis=0)
@@ -168,4 +181,6 @@ def _chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
         motion = float(np.abs(np.diff(moved, axis=0)).sum())
         ranked.append((max(over, 0.0), round(motion, 6), float((np.abs(moved[0] - before) / speed).max()), moved))
     best = min(range(len(ranked)), key=lambda k: ranked[k][:3])
-    return ranked[best][3]
+    values = np.tile(start, (len(ranked[best][3]), 1))
+    values[:, cell.external.turned] = ranked[best][3]
+    return values

@@ -33,7 +33,7 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
     phi = again(path.phi) + float(path.phi[-1] - path.phi[0])
     near = np.stack([again(column) for column in path.joints.T], axis=1)
     flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi, near)
-    joints = _counted_from(path.joints[-1], task.inverse(flange, near))
+    joints = _counted_from(task, path.joints[-1], task.inverse(flange, near))
     return dataclasses.replace(
         path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
         condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
@@ -41,8 +41,8 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
     )
 
 
-def _counted_from(start: Array, joints: Array) -> Array:
+def _counted_from(task: Task, start: Array, joints: Array) -> Array:
     """Joints (n, axes) in the turns that go on from the joints before them (axes,)."""
     step = np.diff(joints, axis=0, prepend=start[None])
-    step -= TURN * np.round(step / TURN)
+    step -= np.where(task.cell.machine.chain.sliding, 0.0, TURN * np.round(step / TURN))
     return np.asarray(start + np.cumsum(step, axis=0))

@@ -15,7 +15,7 @@ from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
-from . import comparison, constant, given, layer_by_layer, point_by_point, search, table, turns
+from . import comparison, constant, given, layer_by_layer, point_by_point, search, table, track, turns
 from .certificate import bound
 from .findings import findings
 from .joint_path import BeadPath, JointPath
@@ -54,7 +54,6 @@ def plan_joints(
     path is there all the same, to be looked at. progress(fraction, text) may raise to cancel. Raises InputError
     NOT_FOR_SETUP for what only rotary axes can do.
     """
-    places = [(layer, index) for layer, index, _ in toolpath]
     if cell.machine.is_table:
         return _on_table(toolpath, cell, parameters, progress)
     beads, tilted = levelled(cell, toolpath) if cell.external else ([bead for _, _, bead in toolpath], [])
@@ -63,7 +62,29 @@ def plan_joints(
                          "with four; use none")
     joined = all(part.family != REVOLUTION for part, _ in toolpath.parts)
     wanted = cell.branch if parameters.own_branch == OF_CELL else opw.branch_index(parameters.own_branch.split("-"))
-    branches = [wanted] if wanted is not None else best_branches(beads, cell, parameters, joined)
+    among = range(BRANCHES) if wanted is None else (wanted,)
+
+    def served(some: Sequence[Bead]) -> float:
+        return -_ranked(some, cell, parameters, joined, among)[0][0] / min(len(some), SCREENED)
+
+    planned: JointPath | None = None
+    for moved in track.placed(beads, cell, served):
+        branches = [wanted] if wanted is not None else best_branches(moved, cell, parameters, joined)
+        found = _of_robot(toolpath, moved, tilted, cell, parameters, joined, branches, progress)
+        if planned is None or found.feasible:
+            planned = found
+        if planned.feasible:
+            break
+    assert planned is not None  # there is one way at least
+    return planned
+
+
+def _of_robot(
+    toolpath: Toolpath, beads: list[Bead], tilted: list[Issue], cell: Cell, parameters: JointParameters, joined: bool,
+    branches: Sequence[int], progress: Progress,
+) -> JointPath:
+    """The joint path of a robot, external axes as the beads have them, in the first of the branches that serves."""
+    places = [(layer, index) for layer, index, _ in toolpath]
     task = Task(cell, branches[0], parameters, joined)
     paths, issues = _planned(task, toolpath, beads, places, progress)
     failed = _failed(paths, issues, places)
@@ -131,10 +152,19 @@ def best_branches(beads: Sequence[Bead], cell: Cell, parameters: JointParameters
 
     A few beads from the first to the last are looked at; what they promise, the planning has to keep.
     """
+    ranks = _ranked(beads, cell, parameters, joined, range(BRANCHES))
+    return [rank[-1] for rank in ranks if rank[0] == ranks[0][0]][:TRIED]
+
+
+def _ranked(
+    beads: Sequence[Bead], cell: Cell, parameters: JointParameters, joined: bool, among: Sequence[int]
+) -> list[tuple[int, float, float, int]]:
+    """Of each branch what ranks it, the best first: beads looked at that it serves (less than 0), objective, margin (less
+    than 0), and itself."""
     some = np.unique(np.round(np.linspace(0, len(beads) - 1, SCREENED)).astype(int))
     points = gather([beads[k] for k in some], cell, search.POINTS_PER_BEAD)
     ranks = []
-    for branch in range(BRANCHES):
+    for branch in among:
         task = Task(cell, branch, parameters, joined)
         found = search.everywhere(task, points, task.thresholds(points))
         best, each = found.best(), np.arange(len(some))
@@ -143,8 +173,7 @@ def best_branches(beads: Sequence[Bead], cell: Cell, parameters: JointParameters
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
         # rounded, so that of branches that are mirror images the same comes first everywhere
         ranks.append((-int(feasible.sum()), float(f"{worth:.8e}"), round(-float(margin.min()), 9), branch))
-    ranks.sort()
-    return [rank[-1] for rank in ranks if rank[0] == ranks[0][0]][:TRIED]
+    return sorted(ranks)
 
 
 def _compare_order(parameters: JointParameters) -> list[str]:

@@ -22,7 +22,8 @@ UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
 class Points:
     """T points of B beads. position, tool: (T, 3) part frame. parameter: (T,). first: (B,) index of each bead's
     first point. bead: (T,) the bead a point belongs to. closed: (B,) bool, whether the bead ends where it starts.
-    external: (T, k) values of the axes beside the robot, None where there are none."""
+    external: (T, k) values of the axes beside the robot, None where there are none. sliding: (axes,) those that slide, None
+    where none does."""
 
     position: Array
     tool: Array
@@ -32,6 +33,7 @@ class Points:
     closed: NDArray[np.bool_]
     frames: PoseFrames
     external: Array | None = None
+    sliding: NDArray[np.bool_] | None = None
 
     def __len__(self) -> int:
         return len(self.position)
@@ -59,7 +61,7 @@ class Points:
         return Points(
             self.position[index], self.tool[index], self.parameter[index], alone, alone,
             np.zeros(len(index), dtype=bool), self.frames.of(index),
-            None if self.external is None else self.external[index],
+            None if self.external is None else self.external[index], self.sliding,
         )
 
     def only(self, bead: int) -> tuple[Points, slice]:
@@ -70,7 +72,7 @@ class Points:
         part = Points(
             self.position[chosen], self.tool[chosen], self.parameter[chosen], none[:1], none,
             self.closed[bead : bead + 1], self.frames.of(chosen),
-            None if self.external is None else self.external[chosen],
+            None if self.external is None else self.external[chosen], self.sliding,
         )
         return part, chosen
 
@@ -115,6 +117,7 @@ def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None, posed: bo
         closed=np.array([bead.closed for bead in beads], dtype=bool),
         frames=cell.pose_frames(position, tool, external) if posed else UNPOSED,
         external=external,
+        sliding=cell.machine.chain.sliding if cell.machine.chain.sliding.any() else None,
     )
 
 
@@ -128,20 +131,23 @@ def _thinned(bead: Bead, most: int | None) -> NDArray[np.int64]:
     return np.unique(np.round(np.linspace(0, len(bead) - 1, most)).astype(np.int64))
 
 
-def steps(joints: Array, starts: NDArray[np.bool_]) -> Array:
-    """(..., T, axes) motion from the point before, each axis the short way round; 0 at the first point of a bead."""
+def steps(joints: Array, points: Points) -> Array:
+    """(..., T, axes) motion from the point before, each axis that turns the short way round; 0 at the first point of a
+    bead."""
     step = np.zeros_like(joints)
     np.subtract(joints[..., 1:, :], joints[..., :-1, :], out=step[..., 1:, :])
     long = np.abs(step) > 0.25 * TURN  # others are the short way, and most are
+    if points.sliding is not None:
+        long &= ~points.sliding
     if long.any():
         step[long] -= TURN * np.round(step[long] / TURN)
-    step[..., starts, :] = 0.0
+    step[..., points.starts, :] = 0.0
     return step
 
 
 def unwrapped(joints: Array, points: Points) -> Array:
     """(..., T, axes) joint values counted on from the first point of each bead."""
-    rising = np.cumsum(steps(joints, points.starts), axis=-2)
+    rising = np.cumsum(steps(joints, points), axis=-2)
     offset = joints[..., points.first, :] - rising[..., points.first, :]
     result: Array = rising + offset[..., points.bead, :]
     return result

@@ -107,9 +107,16 @@ def without_moves(cell: Cell, parameters: ProgramParameters, name: str) -> Progr
         ),
         external_kinds=tuple(
             LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding[cell.robot.chain.axes :]),
-        unit=(parameters.axes.unit or UNITS.get(parameters.post, "")) if cell.external is not None else "",
+        unit=_unit(cell, parameters),
         first_external=parameters.axes.first,
     )
+
+
+def _unit(cell: Cell, parameters: ProgramParameters) -> str:
+    """What the controller calls the mechanism beside the robot. A track has no name unless one is given: it is always on."""
+    if cell.external is None:
+        return ""
+    return parameters.axes.unit or (UNITS.get(parameters.post, "") if cell.external.turning else "")
 
 
 def returning(toolpath: Toolpath, paths: Sequence[BeadPath]) -> frozenset[tuple[int, int]]:
@@ -326,7 +333,7 @@ def _remarks(cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]) 
         where, frame = "Work offset" if parameters.motion == "cartesian" else "Platform on the table", carried
     else:
         where = "Deposition point" if cell.setup == PART_ON_ROBOT else "User frame" if moved else "Platform"
-        where += " on the face" if cell.external is not None else ""
+        where += " on the face" if cell.external is not None and cell.external.turning else ""
         frame = frames.inverse(cell.machine.base) @ station
     return (
         cell.machine.title,

@@ -144,7 +144,7 @@ def _objective(task: Task, points: Points, phi: Array, joints: Array) -> Array:
 
 def _turned(points: Points, joints: Array) -> Array:
     """(..., B) sum of the squared steps of all axes alike, rad^2."""
-    step = steps(joints, points.starts)
+    step = steps(joints, points)
     return points.total((step * step).sum(axis=-1))
 
 

@@ -74,7 +74,7 @@ def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Arr
     """What the rotations phi (T,), rad, ask of the machine; lasts (T,) s as of `durations`."""
     joints = task.joints(points, phi)
     condition, margin = task.condition(points, phi, joints), task.given_rows.margin(joints)
-    speed = np.abs(steps(joints, points.starts)) / np.where(lasts > 0.0, lasts, np.inf)[:, None]
+    speed = np.abs(steps(joints, points)) / np.where(lasts > 0.0, lasts, np.inf)[:, None]
     ratio = (speed / task.cell.machine.max_speed).max(axis=1)
     low, high = task.parameters.rotation_range
     good = (margin >= -ROUNDING) & (thresholds - condition <= ROUNDING)

@@ -109,6 +109,11 @@ class Task:
         """(axes,) bool, axes without limits."""
         return ~(np.isfinite(self.cell.limits.lower) & np.isfinite(self.cell.limits.upper))
 
+    @cached_property
+    def unturned(self) -> NDArray[np.bool_]:
+        """(axes,) bool, axes whose whole turns count for nothing: those without limits, and those that slide."""
+        return np.asarray(self.endless | self.cell.machine.chain.sliding, dtype=np.bool_)
+
     def rows_of_axis(self, axis: int) -> tuple[float, float]:
         """Lower and upper limit of one axis with the reserve taken off, rad."""
         return float(self.cell.limits.lower[axis] + RESERVE), float(self.cell.limits.upper[axis] - RESERVE)
@@ -122,9 +127,10 @@ class Task:
 
     @cached_property
     def weights(self) -> Array:
-        """(axes,) weights of eq. 17, one over the stroke in rad."""
+        """(axes,) weights of eq. 17, one over the stroke in rad; the characteristic length is one rad of axes that slide."""
         stroke = np.where(self.endless, ENDLESS_STROKE, self.cell.limits.upper - self.cell.limits.lower)
-        return np.asarray(1.0 / stroke)
+        sliding = self.cell.machine.chain.sliding
+        return np.asarray(np.where(sliding, 1.0 / (stroke * self.parameters.characteristic_length), 1.0 / stroke))
 
     def rotation(self, points: Points, value: Array) -> tuple[Array, Array]:
         """phi (T,) and d phi / d value (T,) for the variable of the job: the rotation itself, or RZ of the paper."""
@@ -190,7 +196,7 @@ class Task:
         """The same joints, each limited axis of each bead moved by the whole turns that centre its range."""
         low = np.minimum.reduceat(joints, points.first, axis=-2)
         high = np.maximum.reduceat(joints, points.first, axis=-2)
-        turns = np.where(self.endless, 0.0, np.round((self.middle - 0.5 * (low + high)) / TURN)) * TURN
+        turns = np.where(self.unturned, 0.0, np.round((self.middle - 0.5 * (low + high)) / TURN)) * TURN
         if not np.nan_to_num(turns).any():
             return joints
         moved: Array = joints + turns[..., points.bead, :]

@@ -39,7 +39,7 @@ def counted_on(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[
     for path, following in zip(paths, [*paths[1:], None]):
         if before is not None and path.reachable:
             path = replace(path, joints=path.joints + _turns(task, path, before) * TURN)
-            for axis in np.flatnonzero(np.abs(path.joints[0] - before) > TURNS_BACK):
+            for axis in np.flatnonzero((np.abs(path.joints[0] - before) > TURNS_BACK) & ~task.cell.machine.chain.sliding):
                 back.setdefault(int(axis), []).append(path.layer)
         elif path.reachable and following is not None and following.reachable:
             # nothing comes before the first bead: it is turned towards the second
@@ -66,7 +66,7 @@ def _turns(task: Task, path: BeadPath, before: Array) -> Array:
     lowest = np.ceil((limits.lower + kept - by_axis.min(axis=1)) / TURN - 1e-12)
     highest = np.floor((limits.upper - kept - by_axis.max(axis=1)) / TURN + 1e-12)
     wanted = np.round((before - path.joints[0]) / TURN)
-    return np.where(lowest <= highest, np.clip(wanted, lowest, highest), 0.0)
+    return np.where((lowest <= highest) & ~task.cell.machine.chain.sliding, np.clip(wanted, lowest, highest), 0.0)
 
 
 def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
@@ -90,7 +90,7 @@ def turning_axis(task: Task, joints: Array) -> int | None:
     """The limited axis that ends a whole turn or more away from where it started, None when there is none."""
     if not np.isfinite(joints).all():
         return None
-    turns = np.where(task.endless, 0.0, np.abs(np.round((joints[-1] - joints[0]) / TURN)))
+    turns = np.where(task.unturned, 0.0, np.abs(np.round((joints[-1] - joints[0]) / TURN)))
     return int(turns.argmax()) if turns.max() >= 1.0 else None
 
 
@@ -101,7 +101,7 @@ def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
     without the stroke for a full turn gets pieces of equal length, `more` than the fewest, which then need
     rotations of their own.
     """
-    axis = int(np.argmax(np.ptp(joints, axis=0) * ~task.endless))
+    axis = int(np.argmax(np.ptp(joints, axis=0) * ~task.unturned))
     low, high = task.rows_of_axis(axis)
     along = joints[:, axis]
     if high - low < TURN:

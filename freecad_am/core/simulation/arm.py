@@ -17,9 +17,9 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-# joints are looked at whenever the fastest of them has turned by so many rad (or moved by so many mm), at so many places at
+# joints are looked at whenever the fastest of them has turned by so many rad, or moved by so many mm, at so many places at
 # most: of longer motions at fewer places of each turn
-STEP, MOST = float(np.radians(1.0)), 40_000
+STEP, SLIDE, MOST = float(np.radians(1.0)), 10.0, 40_000
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,9 @@ def arm_touches(motion: Motion, arm: ArmContact, most: int | None = None) -> Arm
     """What the arm touches on the way, at so many places at most. Rows without joint values touch nothing."""
     n = len(motion)
     link, what = np.full(n, NONE, dtype=np.int64), np.full(n, NONE, dtype=np.int64)
-    joints, row, step = places(motion.joints, most)
+    tracks = arm.cell.machine.chain.sliding.copy()
+    tracks[: arm.cell.robot.chain.axes] = False
+    joints, row, step = places(motion.joints, most, tracks)
     before: Index = np.cumsum(motion.deposit) - motion.deposit
     found = arm.touches(joints, before[row])
     # rows that lie closer than the places looked at are as the next of these is: every run of rows ends with one
@@ -62,16 +64,20 @@ def arm_touches(motion: Motion, arm: ArmContact, most: int | None = None) -> Arm
     return ArmTouches(link, what, arm.names, step)
 
 
-def places(joints: Array, most: int | None = None) -> tuple[Array, Index, float]:
+def places(joints: Array, most: int | None = None, sliding: Mask | None = None) -> tuple[Array, Index, float]:
     """Joints (k, axes) along a motion (n, axes), the rows (k,) whose segments they are on, rising, and the step, rad.
 
-    They are at even steps of the joint that moves most, and at both ends of every run of rows with joint values, be it of
-    one row alone; on the way between two runs, which nobody knows, there are none.
+    They are at even steps of the joint that moves most, SLIDE of those that are `sliding` counting as STEP, and at both ends
+    of every run of rows with joint values, be it of one row alone; on the way between two runs, which nobody knows, there
+    are none.
     """
     n = len(joints)
     known: Mask = np.asarray(np.isfinite(joints).all(axis=1))
     goes_on = known & np.append(False, known[:-1])[:n]  # from the row before
-    moved = np.where(goes_on, np.abs(np.diff(joints, axis=0, prepend=joints[:1])).max(axis=1, initial=0.0), 0.0)
+    far = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
+    if sliding is not None and sliding.any():
+        far[:, sliding] *= STEP / SLIDE
+    moved = np.where(goes_on, far.max(axis=1, initial=0.0), 0.0)
     way = np.cumsum(moved)
     whole = float(way[-1]) if n else 0.0
     step = max(STEP, whole / (MOST if most is None else most))

@@ -89,7 +89,7 @@ def certified(
             objective[number] = path.objective
             bound[number] = min(path.objective, point_bound(task, points, path.threshold))
             continue
-        step = steps(path.joints, points.starts)
+        step = steps(path.joints, points)
         objective[number] = float(((step * step) @ task.weights).sum())
         bound[number] = _displacement_bound(task, points, path, objective[number])
     return Optimality(objective, bound)
@@ -97,7 +97,7 @@ def certified(
 
 def _displacement_bound(task: Task, points: Points, path: BeadPath, objective: float) -> float:
     """What eq. 17 of one bead cannot go below; `objective` is what its path takes."""
-    at = _grouped(steps(path.joints, points.starts), task.weights)
+    at = _grouped(steps(path.joints, points), task.weights)
     chain = _Chain(task, points, at, path.threshold, objective * (1.0 - CLOSE))
     return min(objective, chain.bound(path.phi[at]))
 
