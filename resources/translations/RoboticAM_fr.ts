@@ -625,8 +625,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: axes beside them that carry the part, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
-        <translation>Robots : axes à côté d&apos;eux qui portent la pièce, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
+        <source>Robots: axes beside them that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
+        <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -3988,8 +3988,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: axes beside them that carry the part, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
-        <translation>Robots : axes à côté d&apos;eux qui portent la pièce, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
+        <source>Robots: axes beside them that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
+        <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -5872,6 +5872,11 @@
         <translation>une trajectoire d&apos;outil n&apos;a pas encore d&apos;articulations ; choisissez une trajectoire articulaire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>a track has no MACHINE_DEF to be named: the robot&apos;s own base is on it; leave unit out</source>
+        <translation>un rail n&apos;a pas de MACHINE_DEF à nommer : la base même du robot est dessus ; omettez unit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
         <source>a triangle in it has a point with a number of more than 64 bits</source>
         <translation>un triangle y a un point dont le numéro dépasse 64 bits</translation>
@@ -6095,6 +6100,11 @@
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
         <source>another program is called within a bead</source>
         <translation>un autre programme est appelé au sein d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>another unit is active than in moves before</source>
+        <translation>une autre unité est active que dans les mouvements d&apos;avant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -10028,6 +10038,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/level.py"/>
+        <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg, and nothing turns the part; put it on a positioner, or allow more</source>
+        <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg, et rien ne tourne la pièce ; mettez-la sur un positionneur, ou permettez plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/level.py"/>
         <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg; the positioner cannot turn the part so far: mount the part otherwise, or allow more</source>
         <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg ; le positionneur ne peut pas tourner la pièce autant : montez la pièce autrement, ou permettez plus</translation>
     </message>
@@ -10913,8 +10928,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} carries the robot, which cannot be planned yet; only mechanisms that carry the part can</source>
-        <translation>{0} porte le robot, ce qui ne peut pas encore être planifié ; seuls les mécanismes qui portent la pièce peuvent l&apos;être</translation>
+        <source>{0} carries the robot and is no track, which is one axis that slides; nothing else can be planned</source>
+        <translation>{0} porte le robot et n&apos;est pas un rail, c&apos;est-à-dire un axe qui coulisse ; rien d&apos;autre ne peut être planifié</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -11687,6 +11702,11 @@
         <translation>{0} veut dire autre chose pour la commande ; utilisez un autre mot</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} mechanisms carry the robot; one track can be planned</source>
+        <translation>{0} mécanismes portent le robot ; un seul rail peut être planifié</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/first_layer.py"/>
         <source>{0} meets {1} in {2} loops; layers start at the uppermost</source>
         <translation>{0} rencontre {1} en {2} boucles ; les couches commencent à la plus haute</translation>
@@ -12027,14 +12047,14 @@
         <translation>{0} avec un mouvement n&apos;est pas compris</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>{0} would be at {1} deg, its limit is {2} deg</source>
-        <translation>{0} serait à {1} deg, sa limite est {2} deg</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
         <source>{0} would be at {1} {2} on the retract before or after the bead, its limit is {3} {4}, and no other height, direction or rotation keeps within limits; lower process.between_layers.lift or move the part in the cell</source>
         <translation>{0} serait à {1} {2} au retrait avant ou après le cordon, sa limite est {3} {4}, et aucune autre hauteur, direction ou rotation ne reste dans les limites ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>{0} would be at {1} {2}, its limit is {3} {4}</source>
+        <translation>{0} serait à {1} {2}, sa limite est {3} {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/table.py"/>
@@ -12132,6 +12152,11 @@
         <translation>{0} : une paroi d’un seul cordon, de {1} mm de large, est prévue</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>{0}: axes beside the robot need the tool on the robot; use setup: {1}, or leave external out</source>
+        <translation>{0} : des axes à côté du robot demandent l&apos;outil sur le robot ; utilisez setup : {1}, ou omettez external</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
         <source>{0}: beads of {1} mm do not reach into what is narrower, and layers not above the last cut; use narrower beads, or lower layers</source>
         <translation>{0} : des cordons de {1} mm n&apos;entrent pas dans ce qui est plus étroit, et il n&apos;y a pas de couche au-dessus de la dernière coupe ; prenez des cordons plus étroits ou des couches plus basses</translation>
@@ -12160,11 +12185,6 @@
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
         <source>{0}: solids are built up on the hub, which is there before</source>
         <translation>{0} : les solides sont construits sur le moyeu, qui est là avant</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>{0}: what carries the part beside the robot needs the tool on the robot; use setup: {1}, or leave external out</source>
-        <translation>{0} : ce qui porte la pièce à côté du robot demande l&apos;outil sur le robot ; utilisez setup : {1}, ou omettez external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
