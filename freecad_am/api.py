@@ -260,7 +260,8 @@ def make_all(
     usual one. The program is for the machine's controller, in the words of `post` where
     it reads them; there is none when no post is known that writes joint motion of this set-up for it, or the joint path is
     infeasible. process: parameters of the toolpath by key. A robot other than the default one gets a deposition point and a
-    branch that suit it. `am.make_all(doc, doc.Pot)`
+    branch that suit it; what reaches below the platform is put on it, where mounting it by the feature does that.
+    `am.make_all(doc, doc.Pot)`
 
     then: features that are deposited after it, in this order and one program, each by its `source`, `kind`, `layers`,
     `faces`, `substrate`, `further`, `base_faces` and `mend`; they come after the feature in what is returned.
@@ -274,7 +275,13 @@ def make_all(
             "base_faces": base_faces, "mend": mend,
         }
         features = [_feature_of_job(doc, one) for one in (first, *then)]
-        toolpath = make_toolpath(doc, features, made[0], **(process or {}))
+        try:
+            toolpath = make_toolpath(doc, features, made[0], **(process or {}))
+        except InputError as error:
+            if error.code != "OFF_PLATFORM" or "mount: feature" not in error.message:
+                raise
+            change(made[0], mount="feature")  # what it says would help
+            toolpath = make_toolpath(doc, features, made[0], **(process or {}))
         path = make_joint_path(doc, toolpath, made[0])
         made += [*features, toolpath, path]
         posts = written_by(machines.load(chosen.machine, user_machines.folders()))

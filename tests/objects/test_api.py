@@ -16,6 +16,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.objects import progress
+from freecad_am.objects.program import files_of
 
 LABEL = "Hémisphère n° 1"
 
@@ -298,3 +299,16 @@ def test_a_new_job_of_another_robot_can_be_carried_out(doc, monkeypatch, machine
     assert (joint_path.Status, cell.Machine, feature.LayerHeight.Value) == ("up to date", machine, 5.0)
     like_default = api.make_cell(doc, machine=machine)
     assert api.make_joint_path(doc, toolpath, like_default).Status == "infeasible"
+
+
+def test_a_new_job_puts_a_part_that_lies_about_its_origin_on_the_platform(doc):
+    """It was refused, and the panel has no field for what it said would help. Programs are those of the part moved up."""
+    lying, up = doc.addObject("Part::Box", "Block"), doc.addObject("Part::Box", "Block")
+    for part, base in ((lying, App.Vector(5, 8, -1.5)), (up, App.Vector(5, 8, 0))):
+        part.Length, part.Width, part.Height, part.Placement.Base = 12, 12, 3, base
+    doc.recompute()
+    cell, *_, program = api.make_all(doc, lying, kind="solid", name="BLOCK")
+    other, *_, above = api.make_all(doc, up, kind="solid", name="BLOCK")
+    assert (cell.Mount, other.Mount, program.Status) == ("feature", "auto", "up to date")
+    api.change(other, mount="feature")
+    assert files_of(program) == files_of(above)
