@@ -44,8 +44,16 @@ def places(curves):
 
 
 def swept(curves, grid):
-    """Which places of a grid lie within half of a bead's width there."""
-    points, width = places(curves)
+    """Which places of a grid lie within half of a bead's width there, of any bead: the nearest may be a narrow one that does
+    not reach a place which a wider one does."""
+    covered = np.zeros(len(grid), dtype=bool)
+    for curve in curves:
+        covered |= swept_by(curve, grid)
+    return covered
+
+
+def swept_by(curve, grid):
+    points, width = places([curve])
     covered = np.zeros(len(grid), dtype=bool)
     for low in np.arange(0.0, width.max() + 0.25, 0.25):
         some = (width >= low) & (width < low + 0.25)
@@ -70,9 +78,11 @@ def test_bars_of_any_thickness_are_filled_evenly(thick, pattern):
     grid = shapes.raster(loops, 0.25)[0] + np.array([0.1, 0.07])  # none of it on the border
     within = shapes.inside(loops, grid)
     covered = swept(curves, grid)
-    corner = np.min([np.hypot(*(grid - point).T) for point in loops[0]], axis=0) < 0.75 * share * S
+    half = 0.5 * share * S  # what a round bead that runs into a corner of the bar can reach of it
+    away = np.maximum(np.abs(grid - (45.0, 0.5 * thick)) - (45.0 - half, 0.5 * thick - half), 0.0)
+    reach = within & (np.hypot(*away.T) <= half)
     # the corners of contours inside stay open, and those beside the ends of a bead in the middle: none is as wide as the gap
-    assert (covered & within & ~corner).sum() >= 0.975 * (within & ~corner).sum()
+    assert (covered & reach).sum() >= 0.99 * reach.sum()
     assert (covered & ~within).sum() <= 0.01 * within.sum()
     if pattern == "contours":
         area = sum(
