@@ -33,6 +33,7 @@ OVER = 0.1  # of the surface; parts of which more hangs over get layers that nee
 STEEP = float(np.radians(45.0))
 FLAT = 0.01  # of the height, above the lowest point; what lies there stands on something
 OPEN = 0.1  # of its size; a mesh with a wider hole is a wall
+LYING = 0.95  # of its area; an open mesh of which more is less than STEEP from level is no wall that stands
 WIDEST = 10000.0  # mm; the bound of `strategy.mend`
 ROUND = ("Part::GeomCylinder", "Part::GeomCone")
 UP = (0.0, 0.0, 1.0)
@@ -141,6 +142,14 @@ def _of_mesh(
             f"so it is no wall of one bead: it is filled, with its {len(open_)} holes of up to {size:.4g} mm closed"
         )
         return replace(_solid(part, why, tilts, direction), mend=min(size, WIDEST))
+    normals = np.cross(*np.diff(found.vertices[found.triangles], axis=1).swapaxes(0, 1))
+    areas = np.linalg.norm(normals, axis=1)
+    lies = float(areas[np.abs(normals[:, 2]) > np.cos(STEEP) * areas].sum()) / max(float(areas.sum()), 1e-300)
+    if substrate is None and not edges and lies >= LYING:
+        return Proposal(
+            "cladding", "", f"{part.label} is an open mesh that lies rather than stands, {lies:.0%} of it at less than 45 deg "
+            "to the platform, so it is a face that is covered",
+        )
     where = "starts on the platform" if substrate is None else f"grows on {substrate.label}"
     return Proposal("surface", "", f"{part.label} is an open mesh, so it is a thin wall that {where}")
 

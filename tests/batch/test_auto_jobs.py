@@ -128,6 +128,19 @@ def test_an_open_mesh_is_a_wall_and_one_with_a_small_hole_is_filled(turned):
     assert "open mesh" in of_mesh(points[vase]).reason and "starts on the platform" in of_mesh(points[vase]).reason
 
 
+def test_an_open_mesh_that_lies_is_covered_and_one_that_stands_is_a_wall():
+    """A shallow cap, and a cup of 30 deg from upright, both without a bottom."""
+    cap, cup = Part.makeSphere(60, Vector(), UP, 60, 90, 360).Faces[0], Part.makeCone(20, 40, 35).Faces[0]
+    kinds = []
+    for face in (cap, cup):
+        mesh = Mesh.Mesh(face.tessellate(0.2))
+        kinds.append([
+            proposed(Taken("scan", None, mesh, np.eye(4)), (), under, edges, 8.0, True).kind
+            for under, edges in ((None, False), (None, True), (Taken("ground", Part.makeBox(9, 9, 9)), False))
+        ])
+    assert kinds == [["cladding", "surface", "surface"], ["surface", "surface", "surface"]]
+
+
 def open_tube(radius, first, last, sides=24):
     """Corners (m, 3, 3) of a tube between two points, open at both ends."""
     way = (last - first) / np.linalg.norm(last - first)
