@@ -147,8 +147,8 @@ def _of_mesh(
     lies = float(areas[np.abs(normals[:, 2]) > np.cos(STEEP) * areas].sum()) / max(float(areas.sum()), 1e-300)
     if substrate is None and not edges and lies >= LYING:
         return Proposal(
-            "cladding", "", f"{part.label} is an open mesh that lies rather than stands, {lies:.0%} of it at less than 45 deg "
-            "to the platform, so it is a face that is covered",
+            "cladding", "", f"{part.label} is an open mesh that lies rather than stands, {lies:.0%} of it at less than 45 "
+            "deg to the platform, so it is a face that is covered",
         )
     where = "starts on the platform" if substrate is None else f"grows on {substrate.label}"
     return Proposal("surface", "", f"{part.label} is an open mesh, so it is a thin wall that {where}")

@@ -11158,6 +11158,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is an open mesh that lies rather than stands, {1} of it at less than 45 deg to the platform, so it is a face that is covered</source>
+        <translation>{0} est un maillage ouvert qui est couché plutôt que debout, dont {1} à moins de 45 deg du plateau, c&apos;est donc une face qui est recouverte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0} is an open mesh, so it is a thin wall that grows on {1}</source>
         <translation>{0} est un maillage ouvert, donc une paroi mince qui croît sur {1}</translation>
     </message>
