@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..geometry.columns import columns
 from .frustum import Array, Frustum, Index, Mask
 from .obstacles import Obstacles
 
@@ -129,8 +130,8 @@ class InParts:
         high."""
         low, high = self.points[part].min(axis=0), self.points[part].max(axis=0)
         size = float(self.width[part].max() + self.height[part].max())
-        half = np.broadcast_to(0.5 * (high - low), tip.shape)
-        return solid.near_box(0.5 * (low + high) - tip, axis, half, np.full(len(tip), size))
+        half, centre = 0.5 * (high - low)[:, None], 0.5 * (low + high)
+        return solid.near_box(columns(centre - tip), columns(axis), half, np.full(len(tip), size))
 
 
 def _unit(vectors: Array) -> Array:

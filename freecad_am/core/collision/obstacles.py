@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.columns import columns, dots
 from . import separation, tree
 from .frustum import Array, Frustum, Index, Mask
 from .tolerances import CONVERGED
@@ -16,12 +17,13 @@ ALWAYS, NEVER = -1, np.iinfo(np.intp).max
 
 
 class _Level(NamedTuple):
-    """Nodes (n,) of the tree: boxes by their centres and half sizes (n, 3) with a rounding about them, balls about the same
-    centres by their radii, and the earliest moments."""
+    """Nodes (n,) of the tree: boxes by their centres and half sizes (n, 3), both also by columns (3, n), with a rounding
+    about them, balls about the same centres by their radii, and the earliest moments."""
 
     centre: Array
     radius: Array
     half: Array
+    columns: tuple[Array, Array]
     rounding: Array
     since: Index
 
@@ -60,7 +62,8 @@ class Obstacles:
         """What bounds so many obstacles each, of which low and high (m, 3) are the boxes."""
         starts = np.arange(0, len(self.corners), size)
         if not len(starts):
-            return _Level(np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp))
+            none = np.zeros((0, 3))
+            return _Level(none, np.zeros(0), none, (none.T, none.T), np.zeros(0), np.zeros(0, dtype=np.intp))
         low, high = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
         centre = 0.5 * (low + high)
         apart = self.corners - np.repeat(centre, size, axis=0)[: len(self.corners), None]
@@ -71,7 +74,8 @@ class Obstacles:
             away = away + self.radius
             round_ = np.maximum.reduceat(self.radius, starts)
         radius, since = np.maximum.reduceat(away, starts), np.minimum.reduceat(self.since, starts)
-        return _Level(centre, radius, 0.5 * (high - low), round_, since)
+        half = 0.5 * (high - low)
+        return _Level(centre, radius, half, (columns(centre), columns(half)), round_, since)
 
     def touched(
         self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
@@ -95,6 +99,7 @@ class Obstacles:
         top = len(self._levels[-1].radius)
         waiting = [(len(self._levels) - 1, np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip)))]
         ready: list[tuple[Index, Index]] = []
+        tips, axes = columns(tip), columns(axis)
         while waiting:
             depth, query, node = waiting.pop()
             left = np.flatnonzero(~found.take(query))
@@ -102,10 +107,12 @@ class Obstacles:
             level = self._levels[depth]
             there = np.flatnonzero(level.since.take(node) < moment.take(query))
             query, node = query.take(there), node.take(there)
-            offset, along = level.centre.take(node, axis=0) - tip.take(query, axis=0), axis.take(query, axis=0)
-            half, round_ = level.half.take(node, axis=0), level.rounding.take(node)
-            close = np.flatnonzero(solid.rows(query).near_box(offset, along, half, round_))
-            query, node, along = query.take(close), node.take(close), along.take(close, axis=0)
+            centre, half = (each.take(node, axis=1) for each in level.columns)
+            centre -= tips.take(query, axis=1)
+            round_ = level.rounding.take(node)
+            close = np.flatnonzero(solid.rows(query).near_box(centre, axes.take(query, axis=1), half, round_))
+            query, node = query.take(close), node.take(close)
+            along = axis.take(query, axis=0)
             # one corner inside settles the matter without looking at all the rest
             sample = node * self._sizes[depth]
             inside = solid.rows(query).holds(self._sample.take(sample, axis=0) - tip.take(query, axis=0), along)
@@ -147,7 +154,7 @@ class Obstacles:
         meets = np.zeros(len(node), dtype=bool)
         if kind == 3:
             normal = self._normal[node]
-            cut = np.flatnonzero(solid.crossed(normal, np.einsum("ij,ij->i", normal, offset[:, 0]), axis))
+            cut = np.flatnonzero(solid.crossed(normal, dots(normal, offset[:, 0]), axis))
             meets[cut] = solid.rows(cut).meets_triangles(offset[cut], axis[cut])
             return meets
         assert self.radius is not None and self.line is not None and self.beside is not None
@@ -189,8 +196,8 @@ class Obstacles:
                 q, n = q[there], n[there]
                 offset = level.centre[n] - tip[q]
                 apart = offset - solid.rows(q).nearest(offset, axis[q])
-                gap = np.sqrt(np.einsum("ij,ij->i", apart, apart))
-                wide = np.einsum("ij,ij->i", np.abs(apart), level.half[n]) / np.where(gap > 0.0, gap, 1.0)
+                gap = np.sqrt(dots(apart, apart))
+                wide = dots(np.abs(apart), level.half[n]) / np.where(gap > 0.0, gap, 1.0)
                 least = gap - np.minimum(wide + level.rounding[n], level.radius[n])
                 near = least < best[q]
                 q, n, least = q[near], n[near], least[near]
@@ -234,7 +241,7 @@ class Obstacles:
 def _from_origin(segment: Array) -> Array:
     """Distances (k,) mm of segments (k, 2, 3) from the origin."""
     start, along = segment[:, 0], segment[:, 1] - segment[:, 0]
-    square = np.einsum("ij,ij->i", along, along)
-    share = np.clip(-np.einsum("ij,ij->i", start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    square = dots(along, along)
+    share = np.clip(-dots(start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
     away: Array = np.linalg.norm(start + share[:, None] * along, axis=1)
     return away

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..geometry.columns import dots
 from .frustum import Array, Frustum, Index, Mask
 from .tolerances import CONVERGED, ROUNDING
 
@@ -37,7 +38,7 @@ def bounds(
     nearer, farther = np.broadcast_to(nearer, count), np.broadcast_to(farther, count)
     middle = middles(points)
     place = solid.nearest(middle, axis) - middle
-    high[:] = np.sqrt(_dot(place, place))
+    high[:] = np.sqrt(dots(place, place))
     rows = np.flatnonzero(high > np.maximum(nearer, CONVERGED))
     place = place[rows]
     simplex: Array | None = None
@@ -48,7 +49,7 @@ def bounds(
         own = np.einsum("kcj,kj->kc", points, place).argmax(axis=1)
         newest = solid.farthest(-place, axis) - points[np.arange(len(rows)), own]
         size = high[rows]
-        low[rows] = np.maximum(low[rows], _dot(place, newest) / size)
+        low[rows] = np.maximum(low[rows], dots(place, newest) / size)
         going = np.flatnonzero(low[rows] < np.minimum(farther[rows], size - CONVERGED))
         if len(going) < len(rows):
             if not len(going):
@@ -57,7 +58,7 @@ def bounds(
             solid, axis, points = solid.rows(going), axis[going], points[going]
             simplex = None if simplex is None else simplex[going]
         place, simplex = _of_two(place, newest) if simplex is None else _nearest(simplex, newest)
-        now = np.sqrt(_dot(place, place))
+        now = np.sqrt(dots(place, place))
         # no nearer than before: rounding has the last word
         high[rows] = np.minimum(now, size)
         going = np.flatnonzero((now > np.maximum(nearer[rows], CONVERGED)) & (now < size))
@@ -83,7 +84,7 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
     deep = np.maximum(radius - CONVERGED, 0.0)
     middle = middles(points)
     place = solid.nearest(middle, axis) - middle
-    gap = np.sqrt(_dot(place, place))
+    gap = np.sqrt(dots(place, place))
     found: Mask = (gap < deep) | (gap == 0.0)
     met = np.zeros(query.max(initial=-1) + 1, dtype=bool)
     met[query[found]] = True
@@ -115,11 +116,6 @@ def largest(values: Array) -> Array:
     return found
 
 
-def _dot(one: Array, other: Array) -> Array:
-    product: Array = np.einsum("ij,ij->i", one, other)
-    return product
-
-
 def _cross(one: Array, other: Array) -> Array:
     """As np.cross of rows (k, 3), which takes four times as long for a few."""
     product = np.empty_like(one)
@@ -132,7 +128,7 @@ def _cross(one: Array, other: Array) -> Array:
 def _of_two(one: Array, newest: Array) -> tuple[Array, Array]:
     """As `_nearest`, of the segments from points (k, 3) to the newest ones."""
     edge = one - newest
-    square, pull, own = _dot(edge, edge), -_dot(newest, edge), _dot(newest, newest)
+    square, pull, own = dots(edge, edge), -dots(newest, edge), dots(newest, newest)
     part = np.clip(pull / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
     share = np.where(own - 2.0 * part * pull + part * part * square < own, part, 0.0)[:, None]
     return newest + share * edge, np.stack([
@@ -145,7 +141,7 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     (k, 3) that has a share in it; and the up to three points (k, 3, 3) that have."""
     edge = simplex - newest[:, None]
     square, pull = np.einsum("kim,kim->ik", edge, edge), -np.einsum("km,kim->ik", newest, edge)
-    own = _dot(newest, newest)
+    own = dots(newest, newest)
     # of all corners, sides and faces that hold the newest point at once: most calls are about a handful of simplices
     shares, value = np.zeros((7, 3, len(newest))), np.empty((7, len(newest)))
     value[0] = own
@@ -154,17 +150,17 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
         shares[_SIDE, _EACH] = part
         value[_SIDE] = own - 2.0 * part * pull + part * part * square
         a, c = square[_FIRST], square[_SECOND]
-        b = np.stack([_dot(edge[:, i], edge[:, j]) for i, j in zip(_FIRST, _SECOND)])
+        b = np.stack([dots(edge[:, i], edge[:, j]) for i, j in zip(_FIRST, _SECOND)])
         wide = a * c - b * b
         one, two = (pull[_FIRST] * c - pull[_SECOND] * b) / wide, (pull[_SECOND] * a - pull[_FIRST] * b) / wide
         holds = (wide > 1e-12 * a * c) & (one > 0.0) & (two > 0.0) & (one + two < 1.0)
         shares[_FACE, _FIRST], shares[_FACE, _SECOND] = one, two
         value[_FACE] = np.where(holds, own - one * pull[_FIRST] - two * pull[_SECOND], np.inf)
         normal = _cross(edge[:, 1], edge[:, 2])
-        volume = _dot(edge[:, 0], normal)
+        volume = dots(edge[:, 0], normal)
         parts = [
-            -_dot(newest, normal) / volume, -_dot(newest, _cross(edge[:, 2], edge[:, 0])) / volume,
-            -_dot(newest, _cross(edge[:, 0], edge[:, 1])) / volume,
+            -dots(newest, normal) / volume, -dots(newest, _cross(edge[:, 2], edge[:, 0])) / volume,
+            -dots(newest, _cross(edge[:, 0], edge[:, 1])) / volume,
         ]
         inside = (np.abs(volume) > 1e-12 * np.sqrt(square[0] * square[1] * square[2])) & (sum(parts) < 1.0)
         for each in parts:

@@ -13,7 +13,21 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+MANY = 1000  # rows from which on columns are sooner done
+
 
 def columns(vectors: Array) -> Array:
     """(k, ...) the components of vectors (..., k), each in one piece."""
     return np.ascontiguousarray(np.moveaxis(vectors, -1, 0))
+
+
+def dots(one: Array, other: Array) -> Array:
+    """(k,) scalar products of vectors (k, 3), row by row, in half of einsum's time where they are many, and added up in its
+    order."""
+    if len(one) < MANY:
+        few: Array = np.einsum("ij,ij->i", one, other)
+        return few
+    product = one[:, 0] * other[:, 0]
+    product += one[:, 2] * other[:, 2]
+    product += one[:, 1] * other[:, 1]
+    return product
