@@ -80,7 +80,7 @@ def run(words):
 def main():
     """Run and end the process with the status; FreeCAD's own clean-up at exit is not waited for."""
     status = 1
-    gc.set_threshold(100_000, 50, 50)
+    gc.set_threshold(300_000, 50, 50)
     try:
         status = run(arguments())
     except SystemExit as end:

@@ -46,7 +46,7 @@ SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to
 # layer, and layers of cladding are laid flat to be filled
 _SECONDS_A_POINT: dict[type, float] = {
-    RevolutionParameters: 7e-5, SurfaceParameters: 2e-3, CladdingParameters: 1.5e-3, FilledParameters: 2.5e-4,
+    RevolutionParameters: 5.5e-5, SurfaceParameters: 2e-3, CladdingParameters: 1.5e-3, FilledParameters: 2.5e-4,
 }
 
 

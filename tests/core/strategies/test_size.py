@@ -161,7 +161,7 @@ def test_large_jobs_are_not_refused():
 
 
 @pytest.mark.parametrize(("family", "points", "told"), [
-    (RevolutionParameters, 200_000, None), (RevolutionParameters, 1_000_000, "1.2 min of the processor and 1.5 GB"),
+    (RevolutionParameters, 200_000, None), (RevolutionParameters, 1_000_000, "0.92 min of the processor and 1.5 GB"),
     (SurfaceParameters, 10_000, None), (SurfaceParameters, 60_000, "2 min of the processor and 0.09 GB"),
     (CladdingParameters, 19_000, None), (CladdingParameters, 76_000, "1.9 min of the processor and 0.12 GB"),
     (DevelopableParameters, 100_000, None), (DevelopableParameters, 370_000, "1.6 min of the processor and 0.56 GB"),
