@@ -11,6 +11,7 @@ import numpy as np
 
 from ..core.kinematics import cell as cells
 from ..core.parameters.cell import CellParameters
+from ..core.parameters.external import externals
 from . import user_machines
 from .stage import Outcome, Section, Stage, Work
 
@@ -32,4 +33,7 @@ class Cell(Stage):
         return work
 
     def further_inputs(self, obj: Any) -> list[str]:
-        return [hashlib.sha256(Path(path).read_bytes()).hexdigest() for path in user_machines.files_of(obj.Machine)]
+        named = [obj.Machine, *(one.machine for one in externals(obj.External))]
+        return [
+            hashlib.sha256(Path(path).read_bytes()).hexdigest() for name in named for path in user_machines.files_of(name)
+        ]

@@ -112,7 +112,7 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     programs.check_wrist(cell.machine, parameters.motion, parameters.post)
     programs.check_pulses(cell.machine, parameters.motion, parameters.post)
     post.refuse_setup(parameters.motion, cell.setup)
-    if parameters.post == "fanuc" and cell.external is not None:
+    if parameters.post in ("fanuc", "yaskawa") and cell.external is not None:
         post.refuse_coordinated(parameters.motion)
     carried = programs.on_table(cell, parameters)
     if parameters.post == "linuxcnc" and parameters.motion == "cartesian" and carried is not None:

@@ -38,6 +38,7 @@ from .refusals import (
     refuse_calls_of_own,
     refuse_cooling,
     refuse_endless,
+    refuse_external,
     refuse_incomplete,
     refuse_wire,
     refuse_without_speeds,
@@ -57,7 +58,7 @@ ON_CONTROLLER = on_controller(
     "The tool file of the number in the job is the nozzle's tip, and speeds have the unit of the remarks",
     "The deposit output switches the process",
 )
-AXES = "SLURBT"
+AXES, MOST_EXTERNAL = "SLURBT", 6
 MOST_LINES = 9999
 OUTPUTS = 4096
 LONGEST_WAIT = 600.0  # s of one TIMER
@@ -122,17 +123,34 @@ def refuse_setup(motion: str, setup: str) -> None:
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post yaskawa cannot write {setup}")
 
 
+def refuse_coordinated(motion: str) -> None:
+    """Raises InputError COORDINATED_MOTION for what cannot be said of a part on a positioner."""
+    if motion == "cartesian":
+        raise InputError(
+            "COORDINATED_MOTION", "program.motion",
+            "linear moves over a part on a positioner are coordinated motion (SMOVL), and what their speed is of was not"
+            " confirmed; use `motion: joint`, whose shares of the joint speeds hold it",
+        )
+
+
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    refuse_incomplete(program, "yaskawa", len(AXES))
+    axes = len(AXES) + len(program.external_kinds)
+    refuse_incomplete(program, "yaskawa", axes)
+    if program.external_kinds:
+        refuse_coordinated(program.motion)
+        refuse_external(program, MOST_EXTERNAL, r"ST[1-9]\d?", "the name of its station, such as ST1")
+        if program.first_external != 1:
+            raise InputError("UNSUPPORTED_AXES", "program.axes.first", "a position of a station has a value for each of its "
+                             f"axes from the first one on; use 1, not {program.first_external}")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     refuse_endless(program)
-    if len(program.pulses_per_degree) != len(AXES):
+    if len(program.pulses_per_degree) != axes:
         raise InputError("NO_PULSES", "cell.machine", "the machine file has no controller.pulses_per_degree; add them")
     if program.motion == "cartesian" and program.speed_unit not in UNITS:
         raise InputError("NO_SPEED_UNIT", "cell.machine", "the machine file has no controller.speed_unit; add it")
-    refuse_without_speeds(program, len(AXES))
+    refuse_without_speeds(program, axes)
     if not program.dry_run and program.deposit_output > OUTPUTS:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
@@ -149,7 +167,8 @@ def _own_remarks(program: Program, off: float) -> Iterator[str]:
 
 def _meaning(program: Program) -> Iterator[str]:
     """What the numbers of a job mean, which its own words do not tell."""
-    for axis, pulses in zip(AXES, program.pulses_per_degree, strict=True):
+    beside = [f"E{number + 1}" for number in range(len(program.external_kinds))]
+    for axis, pulses in zip([*AXES, *beside], program.pulses_per_degree, strict=True):
         yield f"pulses/deg {axis} {pulses!r}"
     if program.motion == "cartesian":
         yield f"V in {program.speed_unit}"
@@ -161,7 +180,7 @@ def _remark(text: str) -> list[str]:
 
 
 def pulses(program: Program, joints: Array) -> NDArray[np.int64]:
-    """(n, 6) whole pulses of controller joint values (n, 6), rad."""
+    """(n, axes) whole pulses of controller joint values (n, axes), rad."""
     counts: NDArray[np.int64] = np.rint(np.degrees(joints) * np.array(program.pulses_per_degree)).astype(np.int64)
     return counts
 
@@ -256,18 +275,23 @@ def _job(program: Program, name: str, head: Sequence[str], pieces: Sequence[Piec
     runs = [piece for piece in pieces if isinstance(piece, Run)]
     rows = [row for run in runs for row in pulses(program, run.moves.joints[run.start : run.stop]).tolist()]
     positions = [f"///TOOL {program.tool_frame}", "///POSTYPE PULSE", "///PULSE"] if rows else []
-    positions += [f"C{number:05d}={','.join(map(str, row))}" for number, row in enumerate(rows)]
+    positions += [f"C{number:05d}={','.join(map(str, row[: len(AXES)]))}" for number, row in enumerate(rows)]
+    stations = len(rows) if program.external_kinds else 0
+    positions += [f"EC{number:05d}={','.join(map(str, row[len(AXES) :]))}" for number, row in enumerate(rows[:stations])]
     lines, point = ["NOP", *head], 0
     for piece in pieces:
         if isinstance(piece, Run):
             letter = "L" if piece.moves.interpolation == LINEAR_MOVE else "J"
             words = piece.words[piece.start : piece.stop]
-            lines += [f"MOV{letter} C{point + k:05d} {word}" for k, word in enumerate(words)]
+            numbers = [f"{point + k:05d}" for k in range(len(words))]
+            named = [f"C{one} EC{one}" if stations else f"C{one}" for one in numbers]
+            lines += [f"MOV{letter} {one} {word}" for one, word in zip(named, words, strict=True)]
             point += len(piece)
         else:
             lines += piece
+    group = f"///GROUP1 RB1,{program.unit}" if program.unit else "///GROUP1 RB1"
     text = [
-        "/JOB", f"//NAME {name}", "//POS", f"///NPOS {len(rows)},0,0,0,0,0", *positions, "//INST",
-        "///DATE 2000/01/01 00:00", "///COMM Robotic AM", "///ATTR SC,RW", "///GROUP1 RB1", *lines, "END",
+        "/JOB", f"//NAME {name}", "//POS", f"///NPOS {len(rows)},0,{stations},0,0,0", *positions, "//INST",
+        "///DATE 2000/01/01 00:00", "///COMM Robotic AM", "///ATTR SC,RW", group, *lines, "END",
     ]  # fmt: skip
     return (_END_OF_LINE.join(text) + _END_OF_LINE).encode("ascii")

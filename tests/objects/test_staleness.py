@@ -191,6 +191,24 @@ def test_what_failed_is_tried_again_at_the_next_recompute(job, root, tmp_path):
     assert statuses(job) == [OK] * 5
 
 
+def test_a_changed_mechanism_file_is_noticed_by_a_recompute(root, tmp_path):
+    table = tmp_path / "table.json"
+    text = (root / "freecad_am/machines/mechanisms/motoman-motopos-d500.json").read_text(encoding="utf-8")
+    table.write_text(text, encoding="utf-8")
+    doc = App.newDocument("Mechanism")
+    cell = api.make_cell(doc, setup="tool-on-robot", branch="auto", external=f"{table} at 1400 0 0 0 0 0 carries part")
+    key = cell.Key
+    api.recompute(doc)
+    assert cell.Key == key and cell.Status == OK
+    table.write_text(text.replace("[0, 0, 380]", "[0, 0, 390]"), encoding="utf-8")
+    with pytest.raises(InputError, match="give a flange"):  # the poses of the file are those of 380 mm
+        api.recompute(doc)
+    table.write_text(text + "\n", encoding="utf-8")
+    api.recompute(doc)
+    assert cell.Key != key and cell.Status == OK
+    App.closeDocument(doc.Name)
+
+
 def test_a_changed_machine_file_is_noticed_by_a_recompute(job, root, tmp_path):
     machine = tmp_path / "robot.json"
     text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")

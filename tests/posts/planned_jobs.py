@@ -86,6 +86,11 @@ SETUPS = {
         deposition_point=(1000.0, 0.0, -300.0, 0.0, 0.0, 0.0),
         nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
     ), FLAT, 50.0),
+    "yaskawa positioner": Setup(CellParameters(
+        machine="motoman-ma2010", setup="tool-on-robot", mount="part", platform=10.0, platform_diameter=100.0,
+        external="motoman-motopos-d500 at 1100 60 -700 0 0 20 carries part", branch="auto",
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.15, 0.2, 0.0)),
+    ), FLAT, 50.0, math.radians(3.0)),
     "kuka tool-on-robot": Setup(CellParameters(
         machine="kuka-kr16-2", setup="tool-on-robot", mount="part", platform_diameter=100.0,
         deposition_point=(1050.0, 0.0, 200.0, 0.0, 0.0, 0.0), nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
@@ -108,6 +113,7 @@ SETUPS = {
     ), STEEP, 90.0),
 }  # fmt: skip
 
+PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75, 1019.6875, -568.5)
 # post, motion, feed, set-up
 WAYS = (
     ("fanuc", "joint", "time", "fanuc part-on-robot"), ("fanuc", "joint", "time", "fanuc tool-on-robot"),
@@ -119,7 +125,7 @@ WAYS = (
     *(("abb", motion, "time", f"abb {setup}") for motion in ("joint", "cartesian")
       for setup in ("part-on-robot", "tool-on-robot", "positioner")),
     ("yaskawa", "joint", "time", "yaskawa part-on-robot"), ("yaskawa", "joint", "time", "yaskawa tool-on-robot"),
-    ("yaskawa", "cartesian", "time", "yaskawa tool-on-robot"),
+    ("yaskawa", "cartesian", "time", "yaskawa tool-on-robot"), ("yaskawa", "joint", "time", "yaskawa positioner"),
     ("kuka", "cartesian", "time", "kuka tool-on-robot"), ("kuka", "cartesian", "time", "kuka positioner"),
     *(("siemens", motion, feed, setup) for setup in ("table", "head")
       for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
@@ -161,7 +167,7 @@ def planned(name, lift=LIFT):
     cell = cells.resolve(setup.cell, np.eye(4), "developable")
     if name.startswith("yaskawa"):  # what only a user's machine file tells; of no robot that there is
         cell = dataclasses.replace(cell, machine=dataclasses.replace(
-            cell.machine, pulses_per_degree=(1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75), speed_unit="mm/s"))
+            cell.machine, pulses_per_degree=PULSES[: cell.machine.chain.axes], speed_unit="mm/s"))
     sides = range(SIDES if lift else 1)
     layers = tuple(Layer(tuple(_bead(setup.hub, side, k) for side in sides)) for k in range(2))
     toolpath = Toolpath(layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable", max_from_vertical=setup.most)

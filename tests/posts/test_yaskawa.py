@@ -16,6 +16,7 @@ from freecad_am.posts import earlier, ur, yaskawa
 from tests.posts.fanuc_programs import GOLDEN_JOINT, beads, moves, program
 
 PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75)
+STATION = (*PULSES, 1019.6875, -568.5)
 FAST = tuple(np.radians([197.0, 190.0, 210.0, 410.0, 410.0, 610.0]).tolist())
 
 
@@ -32,8 +33,21 @@ def linear(of, unit="mm/s"):
     return known(dataclasses.replace(of, blocks=blocks), motion="cartesian", setup="tool-on-robot", speed_unit=unit)
 
 
+def beside(of, **more):
+    """The same with a station of two axes: they tilt by 30 deg, and turn on with every move."""
+    count, blocks = 0, []
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            turned = np.radians(np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25])
+            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
+        blocks.append(block)
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "station", "endless": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
+        "unit": "ST1", "pulses_per_degree": STATION, "max_speed": (*FAST, *np.radians([80.0, 160.0])), **more})
+
+
 GOLDENS = {
-    "joint": known(GOLDEN_JOINT),
+    "joint": known(GOLDEN_JOINT), "station": beside(known(GOLDEN_JOINT)),
     "linear": linear(dataclasses.replace(GOLDEN_JOINT, name="linear", tool_frame=3, deposit_output=7, blend=50)),
     "parts": linear(beads(1, 12, layers=2, name="parts", max_points=10)),
 }
@@ -48,7 +62,7 @@ def test_golden_programs_to_the_byte(root, name):
 
 
 INSTRUCTIONS = [
-    r"MOVJ C\d{5} VJ=(?:100\.00|\d\d?\.\d\d) PL=[0-8]", r"MOVL C\d{5} V=\d{1,5}(?:\.\d)? PL=[0-8]",
+    r"MOVJ C(\d{5})(?: EC\1)? VJ=(?:100\.00|\d\d?\.\d\d) PL=[0-8]", r"MOVL C\d{5} V=\d{1,5}(?:\.\d)? PL=[0-8]",
     r"DOUT OT#\(\d+\) (?:ON|OFF)",
     r"TIMER T=\d{1,3}\.\d\d", r"WAIT IN#\(\d+\)=ON", r"CALL JOB:[A-Z][A-Z0-9_]{0,31}", r"'[ -~]{1,32}",
 ]  # fmt: skip
@@ -61,22 +75,50 @@ def faults(file, content):
         yield "line ends"
     lines = text.split("\r\n")
     start = lines.index("//INST")
-    count = re.fullmatch(r"///NPOS (\d+),0,0,0,0,0", lines[3])
+    count = re.fullmatch(r"///NPOS (\d+),0,(\d+),0,0,0", lines[3])
     if [lines[0], lines[1], lines[2]] != ["/JOB", f"//NAME {file.removesuffix('.JBI')}", "//POS"] or count is None:
         yield "header"
     points = lines[7:start] if int(count[1]) else []
     if int(count[1]) and (not re.fullmatch(r"///TOOL \d+", lines[4]) or lines[5:7] != ["///POSTYPE PULSE", "///PULSE"]):
         yield "kind of positions"
+    beside_it, points = points[int(count[1]) :], points[: int(count[1])]
+    if int(count[2]) not in (0, len(points)) or len(beside_it) != int(count[2]) or any(
+            not re.fullmatch(rf"EC{k:05d}=-?\d+,-?\d+", line) for k, line in enumerate(beside_it)):
+        yield "positions of the station"
     if len(points) != int(count[1]) or any(
             not re.fullmatch(rf"C{k:05d}=-?\d+(?:,-?\d+){{5}}", line) for k, line in enumerate(points)):
         yield "positions"
-    if lines[start + 3 : start + 6] != ["///ATTR SC,RW", "///GROUP1 RB1", "NOP"] or lines[-2:] != ["END", ""]:
+    group = "///GROUP1 RB1,ST1" if file.startswith("STATION") else "///GROUP1 RB1"
+    if lines[start + 3 : start + 6] != ["///ATTR SC,RW", group, "NOP"] or lines[-2:] != ["END", ""]:
         yield "frame of the instructions"
     body = lines[start + 6 : -2]
     if len(body) + 2 > 9999 or any(not any(re.fullmatch(one, line) for one in INSTRUCTIONS) for line in body):
         yield "instructions"
     if [int(number) for number in re.findall(r"MOV[JL] C(\d+)", text)] != list(range(len(points))):
         yield "positions out of order"
+
+
+def test_a_positioner_is_a_station_of_the_group():
+    for of in (beside(known(GOLDEN_JOINT)), beside(known(beads(2, 9, layers=2)), max_points=8)):
+        read = yaskawa.read(yaskawa.write(of))
+        half = np.radians(0.5 / np.abs(STATION))
+        assert (np.abs(read.joints - np.concatenate([run.joints for run in of.moves])) <= half + 1e-12).all()
+        assert read.unit == "ST1" and read.digits == pytest.approx(half)
+    told = yaskawa.write(beside(known(GOLDEN_JOINT)))["STATION.JBI"].decode()
+    assert "'pulses/deg E1 1019.6875" in told and "'pulses/deg E2 -568.5" in told
+    first = re.search(r"^EC00000=(-?\d+),(-?\d+)", told, re.MULTILINE)
+    assert (int(first[1]), int(first[2])) == (round(30.0 * 1019.6875), round(0.25 * 568.5))
+    refusal(beside(known(GOLDEN_JOINT), motion="cartesian"), code="COORDINATED_MOTION", where="program.motion")
+    refusal(beside(known(GOLDEN_JOINT), unit="STN1"), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(beside(known(GOLDEN_JOINT), first_external=2), code="UNSUPPORTED_AXES", where="program.axes.first")
+    refusal(beside(known(GOLDEN_JOINT), pulses_per_degree=PULSES), code="NO_PULSES", where="cell.machine")
+    for old, new in (
+        ("C00001 EC00001", "C00001"), ("C00001 EC00001", "C00001 EC00002"), ("RB1,ST1", "RB1"), ("EC00001=", "EC00009="),
+        ("'pulses/deg E2 -568.5\r\n", ""),
+    ):
+        assert old in told
+        with pytest.raises(InputError):
+            yaskawa.read({"STATION.JBI": told.replace(old, new, 1).encode()})
 
 
 def seeded(random_program, seed, cartesian):

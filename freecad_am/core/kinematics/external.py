@@ -29,7 +29,7 @@ from .machine import MAKER, Machine
 
 Array = NDArray[np.float64]
 
-POSTS = ("abb", "fanuc", "kuka")  # that write a positioner
+POSTS = ("abb", "fanuc", "kuka", "yaskawa")  # that write a positioner
 ON_TRACK = ("abb", "kuka")  # that write a track
 
 
@@ -173,14 +173,17 @@ def _together(robot: Machine, others: Sequence[Machine], chain: Chain, posts: Se
         matrix[at : at + more, at : at + more] = other.controller_matrix
         offset.append(other.controller_offset)
         at += more
+    all_ = (robot, *others)
+    told = all(one.pulses_per_degree for one in all_)
     alike = {
-        name: np.concatenate([getattr(one, name) for one in (robot, *others)])
+        name: np.concatenate([getattr(one, name) for one in all_])
         for name in ("max_speed", "max_acceleration", "max_jerk")
     }
     return dataclasses.replace(
         robot, title=" + ".join(one.title for one in (robot, *others)), chain=chain, base=np.eye(4), external=count,
         axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))), controller_matrix=matrix,
-        controller_offset=np.concatenate(offset), pulses_per_degree=(), **alike,
+        controller_offset=np.concatenate(offset),
+        pulses_per_degree=sum((one.pulses_per_degree for one in all_), ()) if told else (), **alike,
         posts=tuple(post for post in posts if robot.posts is None or post in robot.posts),
     )
 

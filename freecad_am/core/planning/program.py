@@ -52,7 +52,7 @@ FLANGE_TOLD, WITHOUT_CONFIGURATIONS = frozenset({"ur"}), frozenset({"ur"})
 # posts that write positions in pulses of the axes, and Cartesian speeds in the unit of the controller
 IN_PULSES = frozenset({"yaskawa"})
 # what controllers call the first positioner of a cell: mechanical unit, motion group, number of MACHINE_DEF
-UNITS = {"abb": "STN1", "fanuc": "2", "kuka": "2"}
+UNITS = {"abb": "STN1", "fanuc": "2", "kuka": "2", "yaskawa": "ST1"}
 # what the rows of a motion are for, by its numbers
 ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
