@@ -5787,6 +5787,11 @@
         <translation>une position demande X Y Z, et un mouvement des axes avant elle</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>a position of a station has a value for each of its axes from the first one on; use 1, not {0}</source>
+        <translation>une position d&apos;une station a une valeur pour chacun de ses axes à partir du premier ; utilisez 1, pas {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
         <source>a position on the part needs G94 and a work offset of its own</source>
         <translation>une position sur la pièce demande G94 et un décalage d&apos;origine à elle</translation>
@@ -7878,6 +7883,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>its group is not that of its positions</source>
+        <translation>son groupe n&apos;est pas celui de ses positions</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
         <source>its job is called {0}</source>
         <translation>son job s&apos;appelle {0}</translation>
     </message>
@@ -8197,6 +8207,11 @@
         <translation>les mouvements linéaires sur une pièce portée par un positionneur sont du mouvement coordonné (COORD), et le repère utilisateur d&apos;où leurs positions sont alors vues n&apos;a pas été confirmé ; utilisez `motion: joint`, dont les durées tiennent la vitesse</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>linear moves over a part on a positioner are coordinated motion (SMOVL), and what their speed is of was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it</source>
+        <translation>les mouvements linéaires sur une pièce portée par un positionneur sont des mouvements coordonnés (SMOVL), et de quoi leur vitesse est celle n&apos;est pas confirmé ; utilisez `motion: joint`, dont les parts des vitesses articulaires la tiennent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
         <source>lines</source>
         <translation>lignes</translation>
@@ -8345,6 +8360,11 @@
         <location filename="../../freecad_am/posts/abb_read.py"/>
         <source>moves of more than one tool or work object are mixed</source>
         <translation>des mouvements de plus d&apos;un outil ou d&apos;un objet de travail sont mêlés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>moves with another station than before are mixed</source>
+        <translation>des mouvements d&apos;une autre station qu&apos;avant sont mélangés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka_read.py"/>
@@ -8610,6 +8630,11 @@
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch {0} with {1}, looked at every {2} deg</source>
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>not every position has one of the station</source>
+        <translation>toutes les positions n&apos;en ont pas une de la station</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
@@ -9717,6 +9742,11 @@
         <translation>le nom de son unité mécanique, comme STN1</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>the name of its station, such as ST1</source>
+        <translation>le nom de sa station, par exemple ST1</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the nozzle</source>
         <translation>la buse</translation>
@@ -10205,6 +10235,11 @@
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>there are no points in it; give rows of x y z</source>
         <translation>il n&apos;y a pas de points dedans ; donnez des lignes de x y z</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>there are positions of a station alone</source>
+        <translation>il y a des positions d&apos;une station seule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
@@ -11535,6 +11570,11 @@
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
         <source>{0} is not position {1}</source>
         <translation>{0} n&apos;est pas la position {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>{0} is not position {1} of the station</source>
+        <translation>{0} n&apos;est pas la position {1} de la station</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
