@@ -71,8 +71,9 @@ def plan(
             "use a smaller bead spacing, or thin = single",
         )
     layers = waited(ordered(laid, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
+    told = notes(made, layers, mended, strategy, process, model)
     issues = (
-        *given.issues, *_stretched(stretch), *notes(made, layers, mended, strategy, process, model),
+        *given.issues, *_stretched(stretch), *(one for one in told if one.code != "SINGLE_LAYER"),  # as many as asked for
         *lean_notes(made, layers, build),
     )
     return Toolpath(
