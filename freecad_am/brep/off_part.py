@@ -25,6 +25,7 @@ from .tessellate import triangles_of
 Array = NDArray[np.float64]
 
 DEFLECTION, FINE = 0.05, 0.005  # mm
+LARGE = 1e-4  # and this share of the size of what is larger than half a metre: the kernel's time grows faster than its area
 ASKED = 200  # places that triangles are not sure of and the kernel is asked about, the farthest ones first
 FAILURES = 3  # of the kernel; it is not asked on then
 ALWAYS = 5  # and as many in any case
@@ -43,8 +44,8 @@ def off_faces(shape: Any, names: Sequence[str], points: Array, allowed: float) -
     if not chosen:
         return np.full(len(points), np.nan)
     faces = Part.makeCompound([face.copy(False) for face in chosen])
-    found = np.abs(_Triangles(faces).signed(points))
-    return _exact(faces, points, found, allowed + DEFLECTION, False)
+    triangles = _Triangles(faces)
+    return _exact(faces, points, np.abs(triangles.signed(points)), allowed, triangles.deflection, False)
 
 
 def off_solids(shape: Any, points: Array, allowed: float) -> Array:
@@ -65,7 +66,7 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
         found[mine[closer]], nearest[mine[closer]] = away[closer], number
     for number, solid in enumerate(solids):
         mine = np.flatnonzero(nearest == number)
-        found[mine] = _exact(solid.copy(False), points[mine], found[mine], allowed + DEFLECTION, True)
+        found[mine] = _exact(solid.copy(False), points[mine], found[mine], allowed, _deflection(solid), True)
     return found
 
 
@@ -104,11 +105,17 @@ def _seen_from(first: Any, solid: Any, points: Array) -> Array:
     return moved
 
 
-class _Triangles:
-    """A shape as triangles, within DEFLECTION; distances are NaN where the kernel makes none of it."""
+def _deflection(shape: Any) -> float:
+    """How far triangles may be off a shape, mm."""
+    return max(DEFLECTION, LARGE * float(shape.BoundBox.DiagonalLength))
 
-    def __init__(self, shape: Any, deflection: float = DEFLECTION) -> None:
-        vertices, triangles = beside(triangles_of, shape, deflection)
+
+class _Triangles:
+    """A shape as triangles, within `deflection` mm; distances are NaN where the kernel makes none of it."""
+
+    def __init__(self, shape: Any, fine: bool = False) -> None:
+        self.deflection = _deflection(shape) * (FINE / DEFLECTION if fine else 1.0)
+        vertices, triangles = beside(triangles_of, shape, self.deflection)
         self.search = _searched(vertices, triangles) if len(triangles) else None
         self.box = (vertices.min(axis=0), vertices.max(axis=0)) if len(triangles) else None
 
@@ -134,13 +141,13 @@ def _signed(search: Search, points: Array) -> Array:
     return np.concatenate([search.signed(some)[0] for some in pieces])
 
 
-def _exact(shape: Any, points: Array, found: Array, allowed: float, solid: bool) -> Array:
-    """The distances with those of the farthest places, and of what is over what is allowed, as the kernel gives them; by
-    finer triangles where it fails, as it does beside a surface of revolution. No other place is told to be farther than the
-    farthest one asked about."""
-    exact = np.maximum(found - DEFLECTION, 0.0)
+def _exact(shape: Any, points: Array, found: Array, allowed: float, deflection: float, solid: bool) -> Array:
+    """The distances, found by triangles within `deflection` mm, with those of the farthest places, and of what is over what
+    is allowed, as the kernel gives them; by finer triangles where it fails, as it does beside a surface of revolution. No
+    other place is told to be farther than the farthest one asked about."""
+    exact = np.maximum(found - deflection, 0.0)
     order = np.argsort(-found, kind="stable")
-    asked = order[: max(ALWAYS, min(ASKED, int((found > allowed).sum())))]
+    asked = order[: max(ALWAYS, min(ASKED, int((found > allowed + deflection).sum())))]
     unsure = []
     for k in asked.tolist():
         if len(unsure) > FAILURES:
@@ -151,8 +158,9 @@ def _exact(shape: Any, points: Array, found: Array, allowed: float, solid: bool)
         except (RuntimeError, Part.OCCError):
             unsure.append(k)
     if unsure:
-        finer = _Triangles(shape, FINE).signed(points[unsure])
-        exact[unsure] = np.maximum((finer if solid else np.abs(finer)) - 2.0 * FINE, 0.0)
+        finer = _Triangles(shape, fine=True)
+        signed = finer.signed(points[unsure])
+        exact[unsure] = np.maximum((signed if solid else np.abs(signed)) - 2.0 * finer.deflection, 0.0)
     return np.minimum(exact, np.fmax.reduce(exact[asked], initial=0.0))
 
 

@@ -231,6 +231,7 @@ class Simulation:
     def _fit(self) -> None:
         if self.scene is not None:
             with contextlib.suppress(RuntimeError, ReferenceError):  # the view was closed
+                self._make_room()  # the fields are wider with what is told by now
                 self.scene.view.fitAll()
 
     # ---- what is shown
