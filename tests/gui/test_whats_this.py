@@ -4,6 +4,7 @@
 import pytest
 
 from freecad_am.gui.tools import commands, whats_this
+from freecad_am.gui.widgets import wheel
 
 
 @pytest.fixture
@@ -71,6 +72,12 @@ def test_what_is_not_ours_is_left_to_freecad(person):
     docks = person.window.findChildren(person.widgets.QDockWidget)
     combo = next(dock for dock in docks if not dock.objectName().startswith("RoboticAM"))
     assert whats_this._ours(combo) == ("", "")
+
+
+def test_what_pyside_mistakes_for_an_event_is_let_pass(person):
+    """It hands over, now and then, what lay where the event is before."""
+    for one in (whats_this._watches[0], wheel._guard):
+        assert one.eventFilter(person.window, person.window) is False
 
 
 def test_tables_of_the_help_begin_with_what_they_say(person, shown):

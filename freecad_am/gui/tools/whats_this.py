@@ -111,6 +111,8 @@ class Watch(QtCore.QObject):
 
     def eventFilter(self, watched: Any, event: Any) -> bool:
         """Called by Qt; True for what is dealt with."""
+        if not isinstance(event, QtCore.QEvent):  # PySide may take it for what lay at its address before
+            return False
         kind = event.type()
         if kind == QtCore.QEvent.EnterWhatsThisMode and watched is self.window:
             QtCore.QTimer.singleShot(0, self._take)  # after FreeCAD has begun to: who comes last is asked first

@@ -14,7 +14,8 @@ class _Guard(QtCore.QObject):
 
     def eventFilter(self, widget: Any, event: Any) -> bool:
         """Called by Qt."""
-        if event.type() == QtCore.QEvent.Wheel and not widget.hasFocus():
+        # PySide may take an event for what lay at its address before
+        if isinstance(event, QtCore.QEvent) and event.type() == QtCore.QEvent.Wheel and not widget.hasFocus():
             event.ignore()
             return True
         return False
