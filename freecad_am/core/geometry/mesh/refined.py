@@ -30,18 +30,23 @@ class Edges:
 
     def __init__(self, triangles: Index) -> None:
         half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-        pairs = np.sort(half, axis=1)
-        base = int(triangles.max(initial=0)) + 1
-        _, first, index = np.unique(pairs[:, 0] * base + pairs[:, 1], return_index=True, return_inverse=True)
-        self.ends: Index = pairs[first]
-        self.of: Index = np.ravel(index).reshape(-1, 3)
-        self.count: Index = np.bincount(self.of.ravel(), minlength=len(first))
-        order = np.argsort(self.of.ravel(), kind="stable")
-        begin = np.r_[0, np.cumsum(self.count)]
+        lower, upper = np.minimum(half[:, 0], half[:, 1]), np.maximum(half[:, 0], half[:, 1])
+        key = lower * (int(triangles.max(initial=0)) + 1) + upper
+        # one sort for all: sides of the same edge come next to each other, in the order of their triangles
+        order = np.argsort(key, kind="stable")
+        new = np.ones(len(key), dtype=bool)
+        new[1:] = np.diff(key[order]) != 0
+        begin = np.flatnonzero(new)
+        first = order[begin]
+        self.ends: Index = np.stack([lower[first], upper[first]], axis=1)
+        of = np.empty(len(key), dtype=np.intp)
+        of[order] = np.cumsum(new) - 1
+        self.of: Index = of.reshape(-1, 3)
+        self.count: Index = np.diff(np.append(begin, len(key)))
         self.faces: Index = np.full((len(first), 2), -1, dtype=np.intp)
-        self.faces[:, 0] = order[begin[:-1]] // 3
+        self.faces[:, 0] = first // 3
         two = self.count > 1
-        self.faces[two, 1] = order[begin[:-1][two] + 1] // 3
+        self.faces[two, 1] = order[begin[two] + 1] // 3
 
 
 def refined(
@@ -178,16 +183,17 @@ def flipped(vertices: Array, triangles: Index, owner: Index) -> Index:
         at, back = np.argmax(edges.of[one] == pair[:, None], axis=1), np.argmax(edges.of[other] == pair[:, None], axis=1)
         a, b = triangles[one, at], triangles[one, (at + 1) % 3]
         c, d = triangles[one, (at + 2) % 3], triangles[other, (back + 2) % 3]
-        sound = (triangles[other, back] == b) & (c != d)
         excess = _angle(vertices, c, a, b) + _angle(vertices, d, a, b) - np.pi
+        asked = (triangles[other, back] == b) & (c != d) & (excess > 1e-6)
+        a, b, c, d, one, other, excess = (column[asked] for column in (a, b, c, d, one, other, excess))
         # never fold: the new triangles look the same way as the old ones, and hardly less alike: no edge across a tube
         old = _normal(vertices, a, b, c), _normal(vertices, b, a, d)
         new = _normal(vertices, a, d, c), _normal(vertices, d, b, c)
         normal = old[0] + old[1]
-        sound &= (dot(new[0], normal) > 0.0) & (dot(new[1], normal) > 0.0)
+        sound = (dot(new[0], normal) > 0.0) & (dot(new[1], normal) > 0.0)
         level = _cosine(*new)
         sound &= (level > LEVEL) | (level >= _cosine(*old))
-        wish = np.flatnonzero(sound & (excess > 1e-6))
+        wish = np.flatnonzero(sound)
         if not len(wish):
             break
         wish = wish[np.argsort(-excess[wish], kind="stable")]
