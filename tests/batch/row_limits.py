@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 MACHINES = Path(__file__).parents[2] / "freecad_am" / "machines"
-# what tells an axis in a text: FANUC's J1= .. deg, VAL 3's j1="..", words of G-code
+# what tells an axis in a text: FANUC's J1= .. deg, KRL's A1 .., VAL 3's j1="..", words of G-code
+KRL = r"PTP \{{[^}}]*\bA{} (-?\d+\.\d+)"
 FANUC, VAL3 = r"J{}= *(-?\d*\.\d+) deg", r"<Value [^>]*\bj{}=\"(-?\d+\.\d+)\""
 
 
@@ -42,7 +43,8 @@ def told_joints(files, machine):
     told = json.loads((MACHINES / f"{machine}.json").read_text(encoding="utf-8"))
     axes, text = len(told["joints"]), "\n".join(files.values())
     if axes == 6:
-        pattern = FANUC if any(name.endswith(".LS") for name in files) else VAL3
+        ends = {Path(name).suffix for name in files}
+        pattern = FANUC if ".LS" in ends else KRL if ".src" in ends else VAL3
         shown = np.array([re.findall(pattern.format(axis), text) for axis in range(1, 7)], dtype=float).T
     else:  # the last word of each axis holds; where positions are told these are the tip's, and rotary words alone count
         bare = not re.search(r"TRAORI|M428|[ABC]3=", text)
