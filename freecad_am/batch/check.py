@@ -6,6 +6,7 @@ Nothing of a plan is asked: the moves are those of the text, read by the post of
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from freecad_am.core.geometry.file_content import content
+from freecad_am.core.geometry.file_content import MB, content
 from freecad_am.core.issues import ERROR, NOTE, InputError, Issue
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import jacobian
@@ -36,7 +37,7 @@ from . import job, job_cell, outputs, paths, report, tree
 # of the promises about joints and rapids, in their order, where one is not kept
 CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")
 LEAST_CONDITION = 0.02  # where a job leaves it to the planner, the least that this ever allows
-LARGEST_MB = 200
+LARGEST_MB, MOST_FILES = 200, 2_000
 RAPID_PLACES = 20_000
 
 
@@ -96,17 +97,27 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
     found: dict[str, str] = {}
     for one in programs:
         if os.path.isdir(one):
-            inside = [os.path.join(top, name) for top, _, names in os.walk(one) for name in names]
-            found |= {os.path.relpath(path, one).replace(os.sep, "/"): path for path in inside}
+            inside = (os.path.join(top, name) for top, _, names in os.walk(one) for name in names)
+            for path in itertools.islice(inside, MOST_FILES + 1):
+                found[os.path.relpath(path, one).replace(os.sep, "/")] = path
         else:
             found[os.path.basename(one)] = one
+    where = os.path.basename(os.path.abspath(programs[0]))
     if not found:
-        raise InputError("NO_FILE", programs[0], "the folder holds no program; name its files, or the folder they are in")
-    try:
-        return {name: content(path, LARGEST_MB, "BAD_FILE", name) for name, path in sorted(found.items())}
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError("NO_FILE", programs[0], f"the program cannot be read ({reason}); name its files") from None
+        raise InputError("NO_FILE", where, "the folder holds no program; name its files, or the folder they are in")
+    if len(found) > MOST_FILES:
+        raise InputError("BAD_FILE", where, f"the folder holds more than {MOST_FILES} files; name those of the program")
+    read, room = {}, LARGEST_MB * MB
+    for name, path in sorted(found.items()):
+        try:
+            read[name] = content(path, LARGEST_MB, "BAD_FILE", name)
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise InputError("NO_FILE", name, f"it cannot be read ({reason}); name the program's files") from None
+        room -= len(read[name])
+        if room < 0:
+            raise InputError("BAD_FILE", where, f"its files are larger than {LARGEST_MB} MB together; is that the program?")
+    return read
 
 
 def _known(path: str) -> Known:

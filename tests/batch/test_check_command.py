@@ -106,6 +106,12 @@ def test_programs_that_cannot_be_read_are_refused(workshop, sound):
     assert done.status == 2 and "error[NO_FILE]" in done.err
     for path in folder.iterdir():
         path.unlink()
+    for number in range(2001):
+        (folder / str(number)).touch()
+    done = run(workshop)
+    assert done.status == 2 and "error[BAD_FILE] edited: the folder holds more than 2000 files" in done.err
+    for path in folder.iterdir():
+        path.unlink()
     done = run(workshop)
     assert done.status == 2 and "error[NO_FILE]" in done.err
     assert not (workshop.folder / "out").exists()
