@@ -24,6 +24,7 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.program import without_moves
+from freecad_am.core.planning.task import CONDITION_FLOOR
 from freecad_am.core.preflight import clearance, joints
 from freecad_am.core.preflight.promise import Promise, row_place
 from freecad_am.core.program import ReadMoves
@@ -36,7 +37,6 @@ from . import job, job_cell, outputs, paths, report, tree
 
 # of the promises about joints and rapids, in their order, where one is not kept
 CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")
-LEAST_CONDITION = 0.02  # where a job leaves it to the planner, the least that this ever allows
 LARGEST_MB, MOST_FILES = 200, 2_000
 RAPID_PLACES = 20_000
 
@@ -163,20 +163,19 @@ def _promises(motion: Motion, cell: Cell, known: Known) -> list[Promise]:
     reached = motion.reachable[rows]
     if not cell.machine.is_table and reached.any():
         asked = known.joints.min_condition
-        least[:] = LEAST_CONDITION if isinstance(asked, str) else asked
+        least[:] = CONDITION_FLOOR if isinstance(asked, str) else asked
         condition[reached] = _condition(cell, motion.joints[rows[reached]], known.joints.characteristic_length)
     found = joints.promises(
         motion, cell, on_deposit(motion.deposit, condition), on_deposit(motion.deposit, least))
     found[1] = replace(found[1], how="inverse kinematics of what the text tells in positions, and joints driven")
     if known.bead is None:
-        what = clearance.rapids((), rapid_look.RapidsLooked(0, 0, 0.0, rows[:0], None)).promise
         how = "not checked: a cell alone does not tell how wide and high beads are; give a job"
-        return [*found, Promise(what, how, None)]
+        return [*found, Promise(clearance.ON_RAPIDS, how, None)]
     looked = rapid_look.looked_at(motion, driven.beads(motion), cell, [], *known.bead, RAPID_PLACES)
     place = row_place(motion, int(looked.rows[0])) if len(looked.rows) else None
     how = f"driven at {looked.places} places against the platform and what is deposited by then; no other body is known"
     met = float(len(looked.rows))
-    return [*found, Promise(clearance.rapids((), looked).promise, how, not met, met, "rapids", 0.0, place)]
+    return [*found, Promise(clearance.ON_RAPIDS, how, not met, met, "rapids", 0.0, place)]
 
 
 def _condition(cell: Cell, serial: Any, length: float) -> Any:

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 OF_MOTION = (
     "Every axis stays within its limits", "The joints bring the tool to every point",
     "No axis is asked for more than its largest speed", "The tool keeps away from singularities while it deposits",
-    "The nozzle stays clear on the rapids", "The arm stays clear of part, deposit, platform and nozzle",
+    clearance.ON_RAPIDS, "The arm stays clear of part, deposit, platform and nozzle",
 )
 
 

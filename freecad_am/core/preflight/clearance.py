@@ -18,6 +18,7 @@ from ..strategies.clearance_look import Looked
 from .promise import Place, Promise, issue_place, number, of_codes, row_place
 
 DEPOSITING = ("CLEARANCE", "OVER_PLATFORM")
+ON_RAPIDS = "The nozzle stays clear on the rapids"
 RAPIDS = ("RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR")
 
 
@@ -37,14 +38,13 @@ def nozzle(issues: Sequence[Issue], looked: Looked | None) -> Promise:
 
 def rapids(issues: Sequence[Issue], looked: RapidsLooked) -> Promise:
     """On the way between beads."""
-    what = "The nozzle stays clear on the rapids"
     found = of_codes(issues, RAPIDS)
     how = (
         f"retracts, travels and approaches driven anew, at {looked.places} places {number(looked.step)} mm apart, against "
         "bodies, platform and beads as wide and high as they are by then"
     )
     place = issue_place(found) if looked.place is None else Place(*looked.place)
-    return Promise(what, how, not found and not len(looked.rows), float(len(looked.rows)), "rapids", 0.0, place)
+    return Promise(ON_RAPIDS, how, not found and not len(looked.rows), float(len(looked.rows)), "rapids", 0.0, place)
 
 
 def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: bool) -> Promise:
