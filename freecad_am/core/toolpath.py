@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .geometry.columns import lengths
 from .geometry.curves.outline import Outline, estimated, outline
 from .geometry.surroundings import Body
 from .issues import Issue
@@ -100,7 +101,7 @@ class Bead:
     @property
     def length(self) -> float:
         """Length of the polyline, mm."""
-        return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
+        return float(lengths(np.diff(self.points, axis=0)).sum())
 
     def _predicted(self, change: Callable[[Array], Array]) -> dict[str, Any]:
         """Predicted width and height, changed alike."""
@@ -160,7 +161,7 @@ class Bead:
 
         def middle_direction(column: Array) -> Array:
             mean = column[segments] + column[at]
-            return np.insert(column, at, mean / np.linalg.norm(mean, axis=1, keepdims=True), axis=0)
+            return np.insert(column, at, mean / lengths(mean)[:, None], axis=0)
 
         points, tangents = self.outline.at(segments, 0.5)
         return dataclasses.replace(
@@ -175,7 +176,7 @@ class Bead:
         """A closed bead with its beginning repeated over `overlap` mm, at most once round; then it is open."""
         if overlap <= 0.0 or not self.closed:
             return self
-        along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))]
+        along = np.r_[0.0, np.cumsum(lengths(np.diff(self.points, axis=0)))]
         overlap = min(overlap, float(along[-1]))
         count = max(1, int(np.searchsorted(along, overlap)))
         share = float((overlap - along[count - 1]) / (along[count] - along[count - 1]))
@@ -186,7 +187,7 @@ class Bead:
 
         def directions(column: Array) -> Array:
             repeated = again(column)
-            return np.concatenate([column, repeated / np.linalg.norm(repeated, axis=1, keepdims=True)])
+            return np.concatenate([column, repeated / lengths(repeated)[:, None]])
 
         position = again(self.points)
         last, tangent = self.outline.at(np.array([count - 1]), share)

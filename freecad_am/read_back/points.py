@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.geometry.columns import lengths
 from ..core.issues import NOTE, Issue
 from ..core.kinematics.cell import Cell
 from ..core.program import ReadMoves
@@ -54,8 +55,8 @@ def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
 
 
 def point_issues(planned: Planned, path: Path) -> list[Issue]:
-    off = np.linalg.norm(path.position - planned.position, axis=1)
-    tilted = np.linalg.norm(path.tool - planned.tool, axis=1)
+    off = lengths(path.position - planned.position)
+    tilted = lengths(path.tool - planned.tool)
     message = f"the text leads up to {off.max():.3g} mm away from the planned point, more than its digits explain"
     found = planned.issue("VERIFY_POINT", ~(off <= path.bound), message)
     message = f"the tool is tilted by up to {np.degrees(tilted.max()):.3g} deg, more than the digits explain"
@@ -70,7 +71,7 @@ def second_opinion(cell: Cell, planned: Planned, shown: Array, flange: Array) ->
     arm, wrong = kdl_chain.KdlArm(cell.machine), np.zeros(len(shown), dtype=bool)
     for rows in pieces(np.arange(len(shown))):
         apart = arm.forward(cell.machine.from_controller(shown[rows])) - flange[rows]
-        wrong[rows] = np.linalg.norm(apart[:, :3, 3], axis=1) > COMPUTED_MM
+        wrong[rows] = lengths(apart[:, :3, 3]) > COMPUTED_MM
         wrong[rows] |= np.abs(apart[:, :3, :3]).max(axis=(1, 2)) > COMPUTED_AXIS
     issues = planned.issue("VERIFY_SOLVERS", wrong, "PyKDL and the joint-frame chain disagree")
     return issues, ("chain", "pykdl")

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry.columns import columns
+from ..geometry.columns import columns, lengths
 from .frustum import Array, Frustum, Index, Mask
 from .obstacles import Obstacles
 
@@ -24,13 +24,15 @@ PART = 25_000  # points of the parts of a deposit that is made again whenever it
 def of_beads(
     points: Array, build: Array, width: Array | float, height: Array | float, starts: Mask | Index,
     moments: Index | None = None, grain: float = 0.0, beside: float = 0.0, short: bool = False,
+    like: Obstacles | None = None,
 ) -> Obstacles:
     """The deposit of points (n, 3) in the order of deposition, on which beads stand along unit vectors build (n, 3).
 
     width, height: mm, of all or (n,). starts: the points at which beads begin, by numbers or (n,) marks. moments: (n,) at
     which each point is laid, rising; by default its number. grain: mm, pieces are joined as long as they are not longer than
     this. beside: mm, pieces of the layer being laid are next to the tip no farther from it than they are wide, or than this.
-    short: pieces are short against what is asked about them.
+    short: pieces are short against what is asked about them. like: the deposit of the same points before, with other
+    directions: finding an order of its pieces takes most of the time.
     A piece is there from the moment of the point at its end. Where no bead has a width, or a height, they are lines.
     """
     n = len(points)
@@ -41,11 +43,11 @@ def of_beads(
     if grain > 0.0 and n:
         last = np.append(first[1:], True)
         way = np.diff(points, axis=0, prepend=points[:1])
-        size = np.linalg.norm(way, axis=1)
+        size = lengths(way)
         step = np.where(first, 0.0, size)
         way /= np.maximum(size, 1e-12)[:, None]
         # what is turned at a point is the difference to the way on from it
-        turn = np.where(first | last, 0.0, np.linalg.norm(np.diff(way, axis=0, append=way[-1:]), axis=1))
+        turn = np.where(first | last, 0.0, lengths(np.diff(way, axis=0, append=way[-1:])))
         kept = np.flatnonzero(
             first | last | (np.diff(np.floor(np.cumsum(step) / grain), prepend=0.0) > 0.0)
             | (np.diff(np.floor(np.cumsum(turn) / BENT), prepend=0.0) > 0.0)
@@ -55,7 +57,7 @@ def of_beads(
     points, build, moment, first = points[kept], build[kept], moment[kept], first[kept]
     end = np.flatnonzero(~first)
     along = points[end] - points[end - 1]
-    size = np.linalg.norm(along, axis=1)
+    size = lengths(along)
     end, along, size = end[size > 0.0], along[size > 0.0], size[size > 0.0]
     begin = end - 1
     line = np.stack([points[begin], points[end]], axis=1)
@@ -81,6 +83,7 @@ def of_beads(
         np.concatenate([hull, wedge]), np.concatenate([since, since[turned + 1]]),
         np.concatenate([round_, np.maximum(round_[turned], round_[turned + 1])]),
         np.concatenate([line, line[turned + 1]]), np.maximum(np.concatenate([wide, wide[turned]]), beside), short,
+        None if like is None else like.order,
     )
 
 
@@ -135,6 +138,6 @@ class InParts:
 
 
 def _unit(vectors: Array) -> Array:
-    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    size = lengths(vectors)[:, None]
     unit: Array = vectors / np.where(size > 0.0, size, 1.0)
     return unit

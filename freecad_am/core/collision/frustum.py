@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.columns import dots
+from ..geometry.columns import dots, lengths
 from .tolerances import ALONG, ROUNDING
 
 Array = NDArray[np.float64]
@@ -91,7 +91,7 @@ class Frustum:
 
     def gap(self, offset: Array, axis: Array) -> Array:
         """Distances (k,) mm of points from the solid, 0 inside."""
-        gap: Array = np.linalg.norm(self.nearest(offset, axis) - offset, axis=1)
+        gap: Array = lengths(self.nearest(offset, axis) - offset)
         return gap
 
     def farthest(self, direction: Array, axis: Array) -> Array:
@@ -176,7 +176,7 @@ class Frustum:
         square = dots(normal, normal)
         level = dots(normal, base)
         lean = normal - dots(normal, axis)[:, None] * axis
-        size = np.linalg.norm(lean, axis=1)
+        size = lengths(lean)
         lean = lean / np.where(size > 0.0, size, 1.0)[:, None]
         inside: Mask = np.zeros(len(corners), dtype=bool)
         base_height = np.broadcast_to(np.asarray(self.low, dtype=float), size.shape)[:, None]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.columns import columns, dots
+from ..geometry.columns import columns, dots, lengths
 from . import separation, tree
 from .frustum import Array, Frustum, Index, Mask
 from .tolerances import CONVERGED
@@ -34,15 +34,18 @@ class Obstacles:
 
     since: (m,) the moment from which each is there; none, then always. line: (m, 2, 3) the segments along which the pieces
     of beads are laid, which they count as where they are of the layer being laid, no farther from the tip than `beside`
-    (m,) mm. chained: they are short, and those that follow each other mostly touch.
+    (m,) mm. chained: they are short, and those that follow each other mostly touch. order: (m,) that of others which lay
+    nearly where these do.
     """
 
     def __init__(
         self, corners: Array, since: Index | None = None, radius: Array | None = None, line: Array | None = None,
-        beside: Array | None = None, chained: bool = False,
+        beside: Array | None = None, chained: bool = False, order: Index | None = None,
     ) -> None:
-        middles = separation.middles(corners)
-        order = tree.chained(middles) if chained else tree.packed(middles)
+        if order is None:
+            middles = separation.middles(corners)
+            order = tree.chained(middles) if chained else tree.packed(middles)
+        self.order = order
         self.corners = corners[order]
         self.since = np.full(len(corners), ALWAYS, dtype=np.intp) if since is None else since[order]
         self.radius = None if radius is None else radius[order]
@@ -55,7 +58,7 @@ class Obstacles:
         self._levels = [self._volumes(size, low, high) for size in self._sizes]
         if corners.shape[1] == 3:
             normal = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
-            size = np.linalg.norm(normal, axis=1)
+            size = lengths(normal)
             self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
 
     def _volumes(self, size: int, low: Array, high: Array) -> _Level:
@@ -66,7 +69,10 @@ class Obstacles:
             return _Level(none, np.zeros(0), none, (none.T, none.T), np.zeros(0), np.zeros(0, dtype=np.intp))
         low, high = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
         centre = 0.5 * (low + high)
-        apart = self.corners - np.repeat(centre, size, axis=0)[: len(self.corners), None]
+        apart = self.corners.copy()
+        whole = len(apart) // size  # nodes; the last one may have fewer
+        apart[: whole * size].reshape(whole, -1, 3)[:] -= centre[:whole, None]
+        apart[whole * size :] -= centre[whole:, None]
         squared = np.einsum("ijk,ijk->ij", apart, apart)
         away = np.sqrt(separation.largest(squared))
         round_ = np.zeros(len(starts))
@@ -97,16 +103,14 @@ class Obstacles:
     def _touched(self, solid: Frustum, tip: Array, axis: Array, moment: Index, own: Index) -> Mask:
         found = np.zeros(len(tip), dtype=bool)
         top = len(self._levels[-1].radius)
-        waiting = [(len(self._levels) - 1, np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip)))]
+        waiting = [(len(self._levels) - 1, *_each_with_each(len(tip), top))]
         ready: list[tuple[Index, Index]] = []
         tips, axes = columns(tip), columns(axis)
         while waiting:
             depth, query, node = waiting.pop()
-            left = np.flatnonzero(~found.take(query))
-            query, node = query.take(left), node.take(left)
             level = self._levels[depth]
-            there = np.flatnonzero(level.since.take(node) < moment.take(query))
-            query, node = query.take(there), node.take(there)
+            left = np.flatnonzero((level.since.take(node) < moment.take(query)) & ~found.take(query))
+            query, node = query.take(left), node.take(left)
             centre, half = (each.take(node, axis=1) for each in level.columns)
             centre -= tips.take(query, axis=1)
             round_ = level.rounding.take(node)
@@ -187,7 +191,7 @@ class Obstacles:
     def _distance(self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float) -> Array:
         low, best = np.full(len(tip), reach), np.full(len(tip), reach)  # bounds of the least distance yet
         top = len(self._levels[-1].radius)
-        query, node = np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip))
+        query, node = _each_with_each(len(tip), top)
         for depth in range(len(self._levels) - 1, -1, -1):
             level = self._levels[depth]
             kept: list[tuple[Index, Index, Array]] = [(query[:0], node[:0], np.zeros(0))]
@@ -238,10 +242,17 @@ class Obstacles:
             np.minimum.at(best, q, top)
 
 
+def _each_with_each(queries: int, nodes: int) -> tuple[Index, Index]:
+    """All pairs of so many queries and nodes: np.repeat takes many times as long."""
+    query, node = np.empty((2, queries, nodes), dtype=np.intp)
+    query[:], node[:] = np.arange(queries)[:, None], np.arange(nodes)
+    return query.ravel(), node.ravel()
+
+
 def _from_origin(segment: Array) -> Array:
     """Distances (k,) mm of segments (k, 2, 3) from the origin."""
     start, along = segment[:, 0], segment[:, 1] - segment[:, 0]
     square = dots(along, along)
     share = np.clip(-dots(start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
-    away: Array = np.linalg.norm(start + share[:, None] * along, axis=1)
+    away: Array = lengths(start + share[:, None] * along)
     return away

@@ -18,7 +18,8 @@ MANY = 1000  # rows from which on columns are sooner done
 
 def columns(vectors: Array) -> Array:
     """(k, ...) the components of vectors (..., k), each in one piece."""
-    return np.ascontiguousarray(np.moveaxis(vectors, -1, 0))
+    last = vectors.ndim - 1
+    return np.ascontiguousarray(vectors.transpose(last, *range(last)))
 
 
 def dots(one: Array, other: Array) -> Array:
@@ -31,3 +32,13 @@ def dots(one: Array, other: Array) -> Array:
     product += one[:, 2] * other[:, 2]
     product += one[:, 1] * other[:, 1]
     return product
+
+
+def lengths(vectors: Array) -> Array:
+    """(n,) the lengths of vectors (n, k), as np.linalg.norm tells them of rows, in a fraction of its time where these are
+    short."""
+    total = vectors[:, 0] * vectors[:, 0]
+    for column in range(1, vectors.shape[1]):
+        total += vectors[:, column] * vectors[:, column]
+    found: Array = np.sqrt(total, out=total)
+    return found

@@ -90,8 +90,8 @@ class Chain:
             place = np.argsort(self.order)
             directions, origins = directions[place], origins[place]
         return JointFrames(
-            np.moveaxis(directions, -1, 0).reshape(lead + (self.axes, 3)),
-            np.moveaxis(origins, -1, 0).reshape(lead + (self.axes, 3)),
+            directions.transpose(2, 0, 1).reshape(lead + (self.axes, 3)),
+            origins.transpose(2, 0, 1).reshape(lead + (self.axes, 3)),
             flange.reshape(lead + (4, 4)),
         )
 
@@ -126,7 +126,8 @@ class Chain:
         for start in range(0, len(found), PIECE):
             piece = by_joint[:, start : start + PIECE]
             sines, cosines = sense * np.sin(piece), np.cos(piece)
-            place = np.repeat(first[:, None], piece.shape[1], axis=1)
+            place = np.empty((3, piece.shape[1]))
+            place[:] = first[:, None]
             for joint, link in zip(order, links[1:], strict=True):
                 if self.sliding[self.order[joint]]:
                     place[2] += sense * piece[joint]
@@ -160,11 +161,13 @@ class Chain:
         """Fill in flange poses (n, 4, 4), and where wanted directions and origins (axes, 3, n), of angles (axes, n)."""
         sines, cosines = np.sin(angles), np.cos(angles)
         count = angles.shape[1]
-        # one row per column of the rotation, each holding x, y, z of all poses
-        columns = np.repeat(np.eye(3).reshape(9, 1), count, axis=1).reshape(3, 3 * count)
-        position = np.zeros(3 * count)
+        # one row per column of the rotation, each holding x, y, z of all poses; the first link is the same in all
+        moved = np.empty((4, 3, count))
+        moved[:] = self._links[0, :3].T[:, :, None]
+        columns, position = moved[:3].reshape(3, 3 * count), moved[3].ravel()
         for joint in range(self.axes):
-            columns, position = _advance(columns, position, self._links[joint])
+            if joint:
+                columns, position = _advance(columns, position, self._links[joint])
             if axes is not None:
                 axes[0][joint], axes[1][joint] = columns[2].reshape(3, count), position.reshape(3, count)
             if self.sliding[self.order[joint]]:

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.columns import lengths
 from ..geometry.curves.outline import derivatives
 from ..toolpath import Array, Bead, Layer, Toolpath
 
@@ -161,7 +162,7 @@ def distance(points: Array, curve: Curve) -> Array:
         return _to_cubic(points, *_nearest_of_all(points, curve, bow), curve)
     from scipy.spatial import cKDTree  # slow to import, and the beads of most jobs are short
 
-    reach = 0.5 * float(np.linalg.norm(curve.end - curve.start, axis=1).max()) + 2.0 * float(bow.max())
+    reach = 0.5 * float(lengths(curve.end - curve.start).max()) + 2.0 * float(bow.max())
     middles = cKDTree(0.5 * (curve.start + curve.end))
     apart, near = middles.query(points, _NEAR)
     radius: Array = (apart[:, 0] + reach) * (1.0 + 1e-9)
@@ -180,7 +181,7 @@ def distance(points: Array, curve: Curve) -> Array:
 def _bow(curve: Curve) -> Array:
     """(m,) how far the cubic of each segment may be from its chord, at most."""
     chord = curve.end - curve.start
-    ends = np.linalg.norm(curve.start_slope - chord, axis=1) + np.linalg.norm(curve.end_slope - chord, axis=1)
+    ends = lengths(curve.start_slope - chord) + lengths(curve.end_slope - chord)
     bow: Array = 4.0 / 27.0 * ends
     return bow
 
@@ -223,7 +224,7 @@ def _nearest_chords(
     along = curve.end[segment] - curve.start[segment]
     offset = points[which] - curve.start[segment]
     offset -= _share(offset, along)[:, None] * along
-    apart = np.linalg.norm(offset, axis=1)
+    apart = lengths(offset)
     begins = np.flatnonzero(np.diff(which, prepend=-1))
     of = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(which))))
     hits = np.flatnonzero(apart == np.minimum.reduceat(apart, begins)[of])
@@ -259,7 +260,7 @@ def _to_cubic(points: Array, which: Index, segment: Index, own: Mask, curve: Cur
         step = np.einsum("ij,ij->i", away, slope) / np.where(rate > 0.0, rate, np.inf)
         u = np.clip(u - step, low, high)
     v = u[:, None]
-    apart = np.linalg.norm(p + v * (a + v * (square + v * cube)) - points, axis=1)
+    apart = lengths(p + v * (a + v * (square + v * cube)) - points)
     found: Array = np.minimum.reduceat(apart, np.flatnonzero(np.diff(which, prepend=-1)))
     return found
 
@@ -268,7 +269,7 @@ def _columns(points: Array, closed: bool, tangents: Array | None = None) -> tupl
     """The columns of `Curve` for the points (n, 3) of one bead or a part of it, and its unit tangents (n, 2, 3) where they
     are known."""
     step = np.diff(points, axis=0)
-    length = np.linalg.norm(step, axis=1)
+    length = lengths(step)
     if tangents is not None:
         turn = np.arccos(np.clip(np.einsum("ij,ij->i", tangents[:, 0], tangents[:, 1]), -1.0, 1.0))
         smooth = turn < SMOOTH
@@ -300,7 +301,7 @@ def _arcs(
 
 def _corners(before: Array, after: Array, closed: bool) -> NDArray[np.bool_]:
     """(n,) whether the path of segments with the unit directions (n, 3) has a corner at the start of each of them."""
-    turn = np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), np.einsum("ij,ij->i", before, after))
+    turn = np.arctan2(lengths(np.cross(before, after)), np.einsum("ij,ij->i", before, after))
     if not closed:
         turn[0] = 0.0
     beside = np.maximum(np.roll(turn, 1), np.roll(turn, -1))
@@ -315,6 +316,6 @@ def _mirrored(tangent: Array, chord: Array) -> Array:
 
 
 def _unit(vectors: Array) -> Array:
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    length = lengths(vectors)[:, None]
     unit: Array = vectors / np.where(length > 0.0, length, 1.0)
     return unit

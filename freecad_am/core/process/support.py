@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..geometry.columns import lengths
 from ..issues import WARNING, Issue
 from ..toolpath import Array, Toolpath
 
@@ -86,7 +87,7 @@ def _without_both(pieces: _Pieces, toolpath: Toolpath, ground: Ground, some: Ind
     found = []
     for side in (SIDE, -SIDE):
         across = np.cross(pieces.build[some], pieces.travel[some])
-        across *= (side * pieces.width[some] / np.maximum(np.linalg.norm(across, axis=1), 1e-300))[:, None]
+        across *= (side * pieces.width[some] / np.maximum(lengths(across), 1e-300))[:, None]
         found.append(_alone(pieces, toolpath, ground, some, across))
         some = np.setdiff1d(some, found[-1], assume_unique=True)
     return np.union1d(*found)
@@ -103,7 +104,7 @@ def _cut(toolpath: Toolpath) -> _Pieces:
     of = np.repeat(np.arange(len(beads)), size)
     start = np.delete(np.arange(len(points)), np.cumsum(size) - 1)  # of segments; beads end in points without one
     way = points[start + 1] - points[start]
-    length = np.linalg.norm(way, axis=1)
+    length = lengths(way)
     kept = length > 0.0
     start, way, length = start[kept], way[kept], length[kept]
     longest = np.maximum(PIECE * 0.5 * (wide[start] + wide[start + 1]), toolpath.chord_error)
@@ -118,7 +119,7 @@ def _cut(toolpath: Toolpath) -> _Pieces:
     begins = np.flatnonzero(np.diff(bead, prepend=-1))
     along -= np.repeat(along[begins], np.diff(np.r_[begins, len(bead)]))
     return _Pieces(
-        points[first] + share[:, None] * way[row], mixed / np.linalg.norm(mixed, axis=1, keepdims=True),
+        points[first] + share[:, None] * way[row], mixed / lengths(mixed)[:, None],
         way[row] / length[row, None], part, wide[first] + share * (wide[first + 1] - wide[first]), along,
         np.array([layer for layer, _, _ in beads])[bead], bead, first - (np.cumsum(size) - size)[bead],
         np.array([one.closing for _, _, one in beads])[bead],

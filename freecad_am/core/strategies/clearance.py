@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from ..collision import deposit
 from ..collision.bodies import Bodies, of_bodies
 from ..collision.nozzle import Nozzle, depositing
+from ..collision.obstacles import Obstacles
 from ..collision.scene import Scene
 from ..geometry.columns import columns
 from ..geometry.curves.polyline import turn_segments
@@ -87,13 +88,15 @@ class Clearance:
     bodies: Bodies
     between: Tips | None = None  # the points of the deposit, where the tips do not stand for all of it
 
-    def standing(self, build: Array) -> Scene:
-        """All that there is, with beads that stand along directions (k, 3), in components, at the points of the deposit."""
+    def standing(self, build: Array, like: Scene | None = None) -> Scene:
+        """All that there is, with beads that stand along directions (k, 3), in components, at the points of the deposit;
+        like: the same with other directions."""
         laid = self.deposit
         width, tall = laid.size
         directions = _in_space(build, laid.azimuth)
         beads = deposit.of_beads(
-            laid.points, directions, width, tall, laid.starts, laid.moment, beside=self.foot
+            laid.points, directions, width, tall, laid.starts, laid.moment, beside=self.foot,
+            like=like.deposit if like is not None and isinstance(like.deposit, Obstacles) else None,
         )
         return Scene(self.bodies, beads)
 

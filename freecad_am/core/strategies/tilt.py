@@ -238,9 +238,10 @@ class Tilting:
         still = SETTLED / clearance.nozzle.reach
         angle = np.maximum(low, np.where(np.isnan(start), most, start))
         about, change = np.full((len(low), 2), np.nan), np.full(len(low), np.inf)
+        among: Scene | None = None
         for sweep in range(SWEEPS):
             back = np.interp(laid.case, number, angle)
-            among = clearance.standing(directions.tilted_back(laid.build, back))
+            among = clearance.standing(directions.tilted_back(laid.build, back), among)
 
             def good(some: Index, tried: Array, among: Scene = among) -> NDArray[np.bool_]:
                 tool = self._tool(directions.tilted_back(cases.build[some], tried), cases.rising[some])

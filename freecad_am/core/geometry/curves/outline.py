@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..columns import lengths
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
@@ -51,7 +53,7 @@ def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, 
     """Derivatives (n - 1, 3) at the two ends of the cubics through points (n, 3) that have unit tangents (n - 1, 3) there:
     of the size at which the middle of a circle's arc is met."""
     chord = np.diff(points, axis=0)
-    length = np.linalg.norm(chord, axis=1)
+    length = lengths(chord)
     cosine = 0.5 * ((leaving + arriving) * unit(chord)).sum(axis=1)
     size = (length / np.maximum(0.5 * (1.0 + cosine), 0.5))[:, None]
     return size * leaving, size * arriving
@@ -64,7 +66,7 @@ def estimated(points: Array, closed: bool) -> Outline:
     of a curve lie about evenly. closed: the last point is the first.
     """
     along = np.diff(points, axis=0)
-    length = np.linalg.norm(along, axis=1, keepdims=True)
+    length = lengths(along)[:, None]
     along = along / np.maximum(length, 1e-12)
     rounded = closed and len(along) > 2
     before = np.concatenate([along[-1:] if rounded else along[:1], along])
