@@ -4842,7 +4842,7 @@
         <translation>La buse reste dégagée du dépôt, de la pièce et du plateau pendant le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>The nozzle stays clear on the rapids</source>
         <translation>La buse reste dégagée pendant les rapides</translation>
     </message>
