@@ -3,19 +3,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import os
 from typing import Any
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import calibration, urdf_reference
+from freecad_am.core.kinematics import calibration, proposed_cell, urdf_reference
 from freecad_am.core.parameters import external
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.objects import user_machines
 
 from . import fields, quantity, tree
 from .part_source import absolute
 
+PAPERS = "paper"  # limits
 PLANNED_SETUPS = ("tool-on-robot+positioner",)
 
 
@@ -53,6 +56,16 @@ def _of_section(section: Any, path: str) -> CellParameters:
         raise InputError(
             "NOT_YET", "cell.setup", f"{cell.setup!r} is not supported yet; use part-on-robot, tool-on-robot or rotary-table"
         )
+    return cell if section.get("deposition_point") is not None else _proposed(cell, section.get("branch") is not None)
+
+
+def _proposed(cell: CellParameters, own_branch: bool) -> CellParameters:
+    """The cell with the deposition point, or the platform, that suits its machine, and with such a branch but for its own;
+    within the limits of the papers their robot works where it did there."""
+    if (cell.machine, cell.limits) == (CellParameters().machine, PAPERS):
+        return cell
+    with contextlib.suppress(InputError):  # of the machine, which is told where it is planned for
+        return proposed_cell.proposed(cell, user_machines.folders(), own_branch)
     return cell
 
 

@@ -14,15 +14,19 @@ from ..core.parameters import external
 from ..core.parameters import field as f
 from ..core.parameters.cell import CellParameters
 
+SHOWN_APART = ("machine", "nozzle", "external", "world_up")
+PROPOSED = ("deposition_point", "branch")  # where a job file leaves them out
+
 
 def text(cell: CellParameters, folder: str) -> str:
-    """The YAML of a cell, of what is not at its default alone, each key on a line; lengths in mm, angles in degrees. Files
-    within `folder`, where the cell file will be, are named from there."""
+    """The YAML of a cell, of what is not at its default alone, and of where a robot deposits, each key on a line; lengths in
+    mm, angles in degrees. Files within `folder`, where the cell file will be, are named from there."""
     lines = [f"machine: {_machine(cell.machine, folder)}"]
     usual = CellParameters()
     for field in dataclasses.fields(cell):
         value = getattr(cell, field.name)
-        if field.name in ("machine", "nozzle", "external", "world_up") or value == getattr(usual, field.name):
+        kept = field.name in PROPOSED and cell.setup != "rotary-table"
+        if field.name in SHOWN_APART or (value == getattr(usual, field.name) and not kept):
             continue
         lines.append(f"{field.name}: {_shown(value, f.spec_of(field).kind)}")
     if cell.nozzle != usual.nozzle:

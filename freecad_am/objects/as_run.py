@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import Issue
+from ..core.kinematics import link_rods
 from ..core.kinematics.arm_contact import ArmContact
 from ..core.kinematics.cell import PART_ON_ROBOT, Cell
+from ..core.kinematics.link_rods import Mesh
 from ..core.motion import Motion
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
 from ..core.planning import moving_tool
 from ..core.planning import program as programs
-from ..core.simulation import link_rods
 from ..core.simulation.arm import ArmTouches, arm_touches, laid
-from ..core.simulation.link_rods import Mesh
 from ..core.simulation.margins import on_deposit
 from ..core.toolpath import Toolpath
 from ..posts import catalogue

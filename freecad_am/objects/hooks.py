@@ -21,7 +21,7 @@ _carrying = False
 
 def register(module: str) -> None:
     """Name the module with the functions `attach(obj)`, which gives an object its view provider and draws what is
-    stored, and `carry_out(work, title)`, which does long work while the window stays alive."""
+    stored, and `carry_out(work, title, doing)`, which does long work while the window stays alive."""
     global _module
     _module = module
 
@@ -32,8 +32,9 @@ def attach(obj: Any) -> None:
         importlib.import_module(_module).attach(obj)
 
 
-def carry_out(work: Callable[[], T], title: str) -> T:
-    """What `work` returns or raises. It must touch no document: in the window it is done in another thread.
+def carry_out(work: Callable[[], T], title: str, doing: str = "") -> T:
+    """What `work` returns or raises. It must touch no document: in the window it is done in another thread. doing: what is
+    told of it there as long as it tells nothing itself.
 
     Raises Cancelled when the user cancels it.
     """
@@ -42,7 +43,7 @@ def carry_out(work: Callable[[], T], title: str) -> T:
         return work()
     _carrying = True
     try:
-        found: T = importlib.import_module(_module).carry_out(work, title)
+        found: T = importlib.import_module(_module).carry_out(work, title, doing)
         return found
     finally:
         _carrying = False

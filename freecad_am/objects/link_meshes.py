@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from ..brep import looks
 from ..core.issues import InputError
+from ..core.kinematics.link_rods import Mesh
 from ..core.kinematics.link_shape import LinkShape
 from ..core.kinematics.machine import Machine
-from ..core.simulation.link_rods import Mesh
 
 
 def meshes_of(machine: Machine) -> tuple[Mesh | None, ...]:

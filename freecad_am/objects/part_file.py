@@ -17,6 +17,7 @@ from .shapes import global_shape, outer_placement
 
 # what the origin of an assembly or a body is made of: since FreeCAD 1.0 with shapes
 ORIGIN = ("App::Line", "App::Plane", "App::Point")
+READING = "reading the file"
 
 
 def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[Any, str]:
@@ -28,15 +29,15 @@ def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[An
     stem, extension = os.path.splitext(os.path.basename(path))
     refuse_scale(scale, path, "scale")
     if extension.lower() in MESHES:
-        return hooks.carry_out(lambda: read_mesh(path, scale), stem), stem
+        return hooks.carry_out(lambda: read_mesh(path, scale), stem, READING), stem
     if extension.lower() != ".fcstd":
-        return hooks.carry_out(lambda: read_shape(path), stem), stem
+        return hooks.carry_out(lambda: read_shape(path), stem, READING), stem
     if not os.path.isfile(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     for document in App.listDocuments().values():
         if document.FileName and os.path.realpath(document.FileName) == os.path.realpath(path):
             return _shape_in(document, path, object_name)  # open already: it is the user's, and stays open
-    return hooks.carry_out(lambda: apart(_shape_of_file, path, object_name), stem)
+    return hooks.carry_out(lambda: apart(_shape_of_file, path, object_name), stem, READING)
 
 
 def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:

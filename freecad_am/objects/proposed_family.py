@@ -30,6 +30,7 @@ COARSE = 0.3  # mm; of triangles that a look at solids is content with
 TOUCHING = 0.05  # mm from the surface of a hub
 LEAST = 3  # corners of a solid that lie on what it stands on
 OVER = 0.1  # of the surface; parts of which more hangs over get layers that need no support
+HARDLY = 0.005  # of the surface; what rounds to nothing
 STEEP = float(np.radians(45.0))
 FLAT = 0.01  # of the height, above the lowest point; what lies there stands on something
 OPEN = 0.1  # of its size; a mesh with a wider hole is a wall
@@ -161,6 +162,8 @@ def _solid(part: Taken, reason: str, tilts: bool, direction: Sequence[float] | N
     way = least if direction is None else np.array(direction) / np.linalg.norm(direction)
     over = _overhang(bodies[0], way)
     along = "" if np.array_equal(way, UP) else f", stacked along {_told(way)}"
+    if over < HARDLY:
+        return Proposal("solid", PLANES, f"{reason}, and less than 1% of its surface hangs over by more than 45 deg{along}")
     why = f"{reason}, and {over:.0%} of its surface hang over by more than 45 deg{along}"
     if over <= OVER:
         return Proposal("solid", PLANES, why)

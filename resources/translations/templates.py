@@ -22,7 +22,7 @@ MAKERS: dict[str, set[int]] = {
     "AmError": {1, 2}, "InputError": {1, 2}, "InfeasibleError": {1, 2}, "Issue": {2}, "report": {1}, "progress": {1},
     "Band": {0}, "Row": {0, 3},
     "Patch": {3}, "Chart": {0}, "Quantity": {0}, "Curve": {0}, "Entry": {0},
-    "Promise": {0, 1}, "Proposal": {2}, "on_controller": set(range(8)),
+    "Promise": {0, 1}, "Proposal": {2}, "carry_out": {2}, "on_controller": set(range(8)),
 }
 PROPERTY = "Message"  # of stages: what it is set to is told
 KEYWORDS = {"message", "where", "lacking", "text", "label", "short", "name"}

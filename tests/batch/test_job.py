@@ -11,6 +11,7 @@ import pytest
 
 from freecad_am.batch import job as jobs
 from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
@@ -108,8 +109,21 @@ def test_what_is_left_out(read):
     assert job.name == "some job"
     assert job.cell is None and job.program is None
     assert job.strategy == RevolutionParameters()
-    assert read("part: {file: part.step}\ncell:\nprogram:\n").cell == CellParameters()
+    assert read("part: {file: part.step}\ncell:\nprogram:\n").cell == cell_of("")
     assert read("part: {file: part.step}\ncell: null\nprogram: {post: none}\n").program is None
+
+
+@pytest.mark.parametrize("cell, wanted", [
+    ("{machine: kuka-kr16-2}", cell_of("kuka-kr16-2")),
+    ("{branch: auto}", dataclasses.replace(cell_of(""), branch="auto")),
+    ("{limits: paper}", CellParameters(limits="paper")),
+    ("{branch: [front, up, flip], deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0]}", CellParameters()),
+    ("{deposition_point: [500, 0, 700, 0, 0, 0]}", CellParameters(deposition_point=(500.0, 0.0, 700.0, 0.0, 0.0, 0.0))),
+    ("{machine: no-such-robot}", CellParameters(machine="no-such-robot")),
+])
+def test_where_it_deposits_is_proposed_where_it_is_left_out(read, cell, wanted):
+    """And the branch with it; as in the papers within their limits. Who plans tells that a machine is not known."""
+    assert read(f"part: {{file: part.step}}\ncell: {cell}\n").cell == wanted
 
 
 def test_values_reach_the_parameters(read):

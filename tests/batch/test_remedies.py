@@ -7,12 +7,13 @@ import re
 import pytest
 
 PART = "part: {file: cup.step}\nstrategy: {layer_height: 10 mm, chord_error: 0.2 mm}\n"
+OF_ANOTHER = "[1045.747, -630.155, 653.167, 0, 0, 0]"
 JOBS = {
-    # the deposition point left out is that of another machine
-    "machine": {"cell": {"machine": "kuka-kr16-2"}},
+    # the deposition point is that of another machine
+    "machine": {"cell": {"machine": "kuka-kr16-2", "deposition_point": OF_ANOTHER}},
     "speed": {"cell": {"limits": "paper"}, "process": {"travel_speed": "300 mm/s"}},
     "range": {"cell": {}, "joints": {"rotation_range": "[-5 deg, 5 deg]"}},
-    "tool": {"cell": {"machine": "abb-irb2400-12-155", "setup": "tool-on-robot"}},
+    "tool": {"cell": {"machine": "abb-irb2400-12-155", "setup": "tool-on-robot", "deposition_point": OF_ANOTHER}},
 }
 EXPECTED = {"machine": "cell.deposition_point", "speed": "process.travel_speed", "range": "", "tool": ""}
 

@@ -113,7 +113,7 @@ def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemispher
         person.click("RoboticAM_Cell")
         panel = person.panel(PANEL)
         told(person, panel, "with the nozzle upright: q")
-        assert stands_as(person, CellParameters(), panel_of[chosen]), chosen
+        person.until(lambda of=panel_of[chosen]: stands_as(person, cell_of(""), of), f"the machine, {chosen}", 10)
         person.press("Cancel")
         person.panel_closed()
 
@@ -157,7 +157,8 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     panel = person.panel(PANEL)
     note = person.field(panel, f"{POINT}Note")
     told(person, panel, "FANUC")
-    assert stands_as(person, CellParameters(), None) and not note.isVisible()
+    person.until(lambda: stands_as(person, cell_of(""), None), "the default robot at its point", 10)
+    assert note.isVisible() and note.text().startswith("Proposed for FANUC")
     hand.enter(panel, "Machine", "kuka-kr16-2")
     wanted = cell_of("kuka-kr16-2")
     person.until(lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]), "what is proposed", 10)

@@ -227,6 +227,25 @@ def test_that_there_is_nothing_to_plot_is_seen(person, planned, panel):
     assert canvas.height() <= canvas.visibleRegion().boundingRect().height()
 
 
+def test_a_dock_that_was_open_before_the_job_goes_on_to_its_joint_path(person, planned, panel):
+    document = App.newDocument("Later")
+    part = document.addObject("Part::Sphere", "Sphere")
+    part.Radius, part.Angle1 = 45, 0
+    document.recompute()
+    feature = api.make_feature(document, part, layer_height=15)
+    cell = api.make_cell(document, limits="paper")
+    toolpath = api.make_toolpath(document, feature, cell, between_layers_wait=2.0)
+    plotted = person.field(panel, "plotted")
+    person.until(lambda: plotted.currentText() == toolpath.Label, "the toolpath", 5)
+    path = api.make_joint_path(document, toolpath, cell)
+    person.until(lambda: plotted.currentText() == path.Label, "the joint path", 5)
+    person.select(toolpath)
+    person.until(lambda: plotted.currentText() == toolpath.Label, "what is selected", 5)
+    api.change(path, objective="condition")
+    person.idle(0.3)
+    assert plotted.currentText() == toolpath.Label
+
+
 def test_a_solid_in_plane_layers_is_seen_layer_by_layer(person):
     document = App.newDocument("Filled")
     part = document.addObject("Part::Feature", "Block")

@@ -6,26 +6,34 @@ robot are tried on a grid in the plane of its arm. At each the robot deposits on
 about the tool axis however suits it; what counts is the worst of these poses: how near an axis comes to a limit, the
 wrist to being stretched and the arm to its reach. Where it carries the part, axis 6 is left out: it turns the part, so
 where on the ball one looks decides it. Where it carries the tool, the ball is gone round, and where no place serves
-lying deposit, one that serves less is taken.
+lying deposit, one that serves less is taken. Poses in which a link, as far as it is drawn from the kinematics, touches
+platform or nozzle do not count, unless there are no others anywhere.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import frames
+from ..geometry.rods import Rod
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
+from . import link_rods, opw
 from . import machine as machines
-from . import opw
+from .arm_contact import ArmContact
 from .cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell, resolve
 from .limits import margins
 
 Array = NDArray[np.float64]
+
+# what is found for the cell that most jobs have, so that it is not looked for with each of them
+USUAL_POINT, USUAL_BRANCH = (1562.0, 0.0, 691.0, 0.0, 0.0, 0.0), ("front", "down", "noflip")
 
 TILTS = np.radians([0.0, 30.0, 60.0, 85.0])  # of the tool axis on the part
 BALL = 50.0  # mm, radius of the deposit held
@@ -39,30 +47,41 @@ ABOVE = np.linspace(-0.5, 0.7, 9)
 def cell_of(
     machine: str, folders: Sequence[str] = (), setup: str = PART_ON_ROBOT, tool: Pose | None = None
 ) -> CellParameters:
-    """The parameters of a cell with a machine, '' for the default one, whose cell is that of the papers. A robot has the
-    set-up that is asked for; tool: pose of the tip on its flange, where it is known. InputError for an unknown one."""
-    default = CellParameters()
-    chosen = replace(default, machine=machine or default.machine)
+    """The parameters of a cell with a machine, '' for the default one. A robot has the set-up that is asked for; tool: pose
+    of the tip on its flange, where it is known. InputError for an unknown one."""
+    chosen = CellParameters(machine=machine or CellParameters().machine)
     if machines.load(chosen.machine, tuple(folders)).is_table:
         return replace(chosen, setup=ROTARY_TABLE)
     nozzle = chosen.nozzle if tool is None else replace(chosen.nozzle, tool=tool)
-    chosen = replace(chosen, setup=setup, nozzle=nozzle)
-    return default if chosen == default else proposed(chosen, folders)
+    return proposed(replace(chosen, setup=setup, nozzle=nozzle), folders)
 
 
-def proposed(parameters: CellParameters, folders: Sequence[str] = ()) -> CellParameters:
-    """The cell with the deposition point or the platform, on whole mm, and the branch that serve best; as it is where none
-    serves, and where the part is on a positioner. Errors as `cell.resolve`."""
+def proposed(parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False) -> CellParameters:
+    """The cell with the deposition point or the platform, on whole mm, and the branch that serve best, its own one with
+    `own_branch`; as it is where none serves, and where the part is on a positioner. Errors as `cell.resolve`."""
+    if parameters == CellParameters() and not own_branch:
+        return replace(parameters, deposition_point=USUAL_POINT, branch=USUAL_BRANCH)
+    return searched(parameters, folders, own_branch)
+
+
+def searched(parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False) -> CellParameters:
+    """What is `proposed`, looked for."""
     machine = machines.load(parameters.machine, tuple(folders))
     if externals(parameters.external) or machine.arm is None or parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
         return parameters
     cell = resolve(parameters, np.eye(4), folders=folders)
+    branches = range(len(opw.BRANCHES)) if cell.branch is None or not own_branch else [cell.branch]
     if cell.setup == PART_ON_ROBOT:
-        return _best(parameters, cell, _directions(TILTS, 1)) or parameters
-    for steepest in range(len(LEANING), 0, -1):
-        found = _best(parameters, cell, _directions(LEANING[:steepest], ROUND))
-        if found is not None:
-            return found
+        leanings = [_directions(TILTS, 1)]
+    else:
+        leanings = [_directions(LEANING[:steepest], ROUND) for steepest in range(len(LEANING), 0, -1)]
+    rods = link_rods.of_robot(cell.robot.chain)
+    for touched in (rods, ()):
+        for axes in leanings:
+            found = _best(cell, axes, branches, touched)
+            if found is not None:
+                branch = parameters.branch if own_branch else opw.branch_name(found.branch)
+                return replace(parameters, deposition_point=found.point, branch=branch)
     return parameters
 
 
@@ -75,34 +94,73 @@ def _directions(tilts: Array, count: int) -> Array:
     return once
 
 
-def _best(parameters: CellParameters, cell: Cell, axes: Array) -> CellParameters | None:
-    """The cell where deposit on a ball along the axes (n, 3) has most room, None where it has none anywhere."""
-    machine, arm = cell.machine, cell.machine.arm
+class _Place(NamedTuple):
+    """Where the deposition point may be: the room of the worst pose there, in a branch; the lowest number has most."""
+
+    lack: float  # of room, 1 - room
+    number: int
+    branch: int
+    point: Pose
+
+
+def _best(cell: Cell, axes: Array, branches: Sequence[int], rods: Sequence[Sequence[Rod]]) -> _Place | None:
+    """Where deposit on a ball along the axes (n, 3) has most room, None where it has none anywhere. Without rods links may
+    touch what they like."""
+    places = sorted(_places(cell, axes, branches))
+    best: _Place | None = None
+    for place in places if rods else places[:1]:
+        if best is not None and best.lack <= place.lack:  # those that come now have no more room, whatever is touched
+            break
+        lack = 1.0 - _clear_room(_stood(cell, place.point), axes, place.branch, rods)
+        if lack < (1.0 if best is None else best.lack):
+            best = place._replace(lack=lack)
+    return best
+
+
+def _places(cell: Cell, axes: Array, branches: Sequence[int]) -> Iterator[_Place]:
+    """The places on the grid, and the branches, in which all of the poses have room."""
+    arm = cell.machine.arm
     assert arm is not None
     shoulder, height = arm.shoulder
     heights = height + ABOVE * arm.reach
     if cell.setup == TOOL_ON_ROBOT:  # no platform in the floor
         heights = np.unique(np.maximum(heights, 0.0))
+    for number, (ahead, above) in enumerate(itertools.product(AHEAD, heights)):
+        x, z = np.round([shoulder + ahead * arm.reach, above])
+        point = (float(x), 0.0, float(z), 0.0, 0.0, 0.0)
+        there = _stood(cell, point)
+        worst = _room(cell, _joints(there, axes)).max(axis=1).min(axis=1)
+        yield from (_Place(1.0 - float(worst[k]), number, k, point) for k in branches if worst[k] > 0.0)
+
+
+def _stood(cell: Cell, point: Pose) -> Cell:
+    """The cell with the deposition point, or the platform, at a point of the manufacturer's base frame."""
+    return replace(cell, station=cell.machine.base @ frames.bryant(point))
+
+
+def _joints(cell: Cell, axes: Array) -> Array:
+    """(8, turns, n, 6) joint values for deposit on a ball along the axes (n, 3), by branch."""
+    arm = cell.machine.arm
+    assert arm is not None
     phi = np.broadcast_to(np.linspace(-np.pi, np.pi, TURNS, endpoint=False)[:, None], (TURNS, len(axes)))
-    best: tuple[float, Pose, int] | None = None
-    for ahead in AHEAD:
-        for height in heights:
-            x, z = np.round([shoulder + ahead * arm.reach, height])
-            point = (float(x), 0.0, float(z), 0.0, 0.0, 0.0)
-            there = replace(cell, station=machine.base @ frames.bryant(point))
-            poses = there.pose_frames(BALL * axes, axes).at(phi)
-            joints = arm.inverse(poses.reshape(-1, 4, 4)).reshape(-1, TURNS, len(axes), 6)[:8]
-            worst = _room(cell, joints).max(axis=1).min(axis=1)
-            branch = int(np.argmax(worst))
-            if worst[branch] > 0.0 and (best is None or worst[branch] > best[0]):
-                best = float(worst[branch]), point, branch
-    if best is None:
-        return None
-    return replace(parameters, deposition_point=best[1], branch=opw.branch_name(best[2]))
+    poses = cell.pose_frames(BALL * axes, axes).at(phi)
+    joints: Array = arm.inverse(poses.reshape(-1, 4, 4)).reshape(-1, TURNS, len(axes), 6)[:8]
+    return joints
+
+
+def _clear_room(cell: Cell, axes: Array, branch: int, rods: Sequence[Sequence[Rod]]) -> float:
+    """The room of the worst pose in a branch, of those turned so that no link touches anything; below 0 where there is
+    none."""
+    joints = _joints(cell, axes)[branch]
+    room = _room(cell, joints)
+    if rods:
+        some = room > 0.0
+        room[some] = np.where(ArmContact(cell, rods).touches(joints[some]).any, -1.0, room[some])
+    return float(room.max(axis=0).min())
 
 
 def _room(cell: Cell, joints: Array) -> Array:
-    """(8, turns, n) 1 in the middle of everything, 0 at a limit or where the arm or the wrist is stretched, less beyond
+    """(..., turns, n) 1 in the middle of everything, 0 at a limit or where the arm or the wrist is stretched, less beyond
     and where the robot does not reach."""
     arm, limits = cell.machine.arm, cell.limits
     assert arm is not None

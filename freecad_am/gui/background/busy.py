@@ -31,12 +31,13 @@ _WIDTH = 420  # px
 _together: _Dialog | None = None
 
 
-def carry_out(work: Callable[[], Any], title: str) -> Any:
-    """What `work` returns or raises, done in another thread; it must touch no document. Raises Cancelled."""
+def carry_out(work: Callable[[], Any], title: str, doing: str = "") -> Any:
+    """What `work` returns or raises, done in another thread; it must touch no document. doing: what is told of it as long as
+    it tells nothing itself. Raises Cancelled."""
     worker = Worker(work)
     if not worker.ended.wait(AT_ONCE):
         with busy() as dialog:
-            _attend(worker, title, dialog)
+            _attend(worker, title, doing, dialog)
     return worker.result()
 
 
@@ -55,7 +56,7 @@ def busy() -> Iterator[_Dialog]:
         dialog.close()
 
 
-def _attend(worker: Worker, title: str, dialog: _Dialog) -> None:
+def _attend(worker: Worker, title: str, doing: str, dialog: _Dialog) -> None:
     """Handle events until the work has ended, or was cancelled."""
     loop, timer = QtCore.QEventLoop(), QtCore.QTimer()
     failure: list[BaseException] = []
@@ -68,14 +69,14 @@ def _attend(worker: Worker, title: str, dialog: _Dialog) -> None:
             failure.append(error)
         if worker.ended.is_set() or failure or dialog.cancelled or (dialog.is_due and not dialog.visible):
             loop.quit()
-        dialog.tell(title, worker.fraction, worker.text)
+        dialog.tell(title, worker.fraction, worker.text or doing)
 
     timer.setInterval(LOOK_EVERY)
     timer.timeout.connect(look)
     timer.start()
     while not (worker.ended.is_set() or failure or dialog.cancelled):
         if dialog.is_due:
-            dialog.show(title)
+            dialog.show(title, doing)
             _run(loop, QtCore.QEventLoop.AllEvents)
         else:
             _run(loop, QtCore.QEventLoop.ExcludeUserInputEvents)
@@ -114,7 +115,7 @@ class _Dialog:
         """Whether it is to be seen."""
         return self.box is not None
 
-    def show(self, title: str) -> None:
+    def show(self, title: str, doing: str) -> None:
         """Show it, unless it is there already."""
         if self.box is not None:
             return
@@ -137,7 +138,7 @@ class _Dialog:
             connect(escape, "activatedAmbiguously()", self.cancel)  # Qt makes one for each Cancel it was given
         self.box.setMinimumWidth(_WIDTH)
         self.box.canceled.connect(self.cancel)
-        self.tell(title, None, "")
+        self.tell(title, None, doing)
         QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.ArrowCursor))  # over FreeCAD's waiting one
         self.box.show()
         self.button.setFocus()

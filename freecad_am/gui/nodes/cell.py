@@ -14,11 +14,11 @@ from ...core.geometry import frames
 from ...core.kinematics import cell as cells
 from ...core.kinematics.cell import ROTARY_TABLE, TOOL_ON_ROBOT, Cell
 from ...core.kinematics.limits import Limits
+from ...core.kinematics.link_rods import Mesh
+from ...core.kinematics.link_solids import capsule
 from ...core.kinematics.machine import Machine
 from ...core.parameters.cell import CellParameters
-from ...core.simulation.link_rods import Mesh
 from ...core.simulation.placing import at_rest, placing
-from ...core.simulation.solids import capsule
 from ...core.toolpath import Toolpath
 from ...objects.link_meshes import meshes_of
 from .lines import Array, placed, turned

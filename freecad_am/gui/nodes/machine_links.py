@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from pivy import coin
 
 from ...core.issues import InputError
+from ...core.kinematics import robot_links
+from ...core.kinematics.link_rods import Mesh
 from ...core.kinematics.link_shape import LinkShape
+from ...core.kinematics.link_solids import BRIGHT, DARK, Solid
 from ...core.kinematics.machine import Machine
-from ...core.simulation import robot_links, table_links
-from ...core.simulation.link_rods import Mesh
-from ...core.simulation.solids import BRIGHT, DARK, Solid
+from ...core.simulation import table_links
 from ...objects import preferences
 from ...objects.link_meshes import mesh_of
 from ..texts.translation import error_line

@@ -37,7 +37,7 @@ class PlotsDock(Follower):
     """One for all documents; it follows what was selected last, and changes of it."""
 
     def __init__(self) -> None:
-        self.target: tuple[str, str] | None = None  # names of document and object
+        self.target: tuple[str, str] | None = None  # names of document and object that were asked for
         self.source: tuple[Any, Source] | None = None  # its key, and what was made from it
         self.picture: Picture | None = None
         self.shown: tuple[Any, ...] = ()  # object, picture and axis that are looked at
@@ -171,9 +171,7 @@ class PlotsDock(Follower):
             if plottable(found):
                 return found
         some = _plottable()
-        found = max(some, key=lambda obj: kind_of(obj) == JOINT_PATH) if some else None
-        self.target = None if found is None else (found.Document.Name, found.Name)
-        return found
+        return max(some, key=lambda obj: kind_of(obj) == JOINT_PATH) if some else None  # asked anew: a later stage may come
 
     def _chosen(self, index: int) -> None:
         some = _plottable()

@@ -13,16 +13,15 @@ import numpy as np
 from ...core.collision.bead_ends import LINK_GRAIN, Beads
 from ...core.issues import InputError
 from ...core.kinematics import cell as cells
-from ...core.kinematics import opw
+from ...core.kinematics import link_rods, opw
 from ...core.kinematics.arm_contact import ArmContact
 from ...core.kinematics.cell import Cell
+from ...core.kinematics.link_rods import Mesh
 from ...core.parameters.joints import JointParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.planning.joint_path import JointPath
 from ...core.planning.plan import REVOLUTION
 from ...core.planning.task import Task
-from ...core.simulation import link_rods
-from ...core.simulation.link_rods import Mesh
 from ...core.toolpath import Bead, Toolpath
 from ...objects import user_machines
 from ...objects.joint_path import planned_of

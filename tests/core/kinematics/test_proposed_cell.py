@@ -3,12 +3,13 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import machine as machines
-from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics import opw, robot_links
 from freecad_am.core.kinematics.cell import resolve
-from freecad_am.core.kinematics.proposed_cell import BALL, cell_of, proposed
+from freecad_am.core.kinematics.proposed_cell import BALL, cell_of, proposed, searched
 from freecad_am.core.parameters.cell import CellParameters
 from tests.core.kinematics.arms import EXAMPLES
 
@@ -19,7 +20,7 @@ ROBOTS = [name for name in EXAMPLES if machines.load(name).opw is not None]
 def test_every_robot_holds_a_dome_there_within_its_limits(name):
     """Any point of the dome, leaning any way: some rotation suits, told by the chain's poses and the limits of the file."""
     parameters = proposed(CellParameters(machine=name))
-    assert cell_of(name) == (CellParameters() if name == CellParameters().machine else parameters)
+    assert cell_of(name) == parameters
     cell = resolve(parameters, np.eye(4))
     random = np.random.default_rng(1)
     tilt, round_about = np.radians(random.uniform(0, 85, 60)), random.uniform(-np.pi, np.pi, 60)
@@ -62,4 +63,50 @@ def test_what_is_no_robot_stays_as_it_is():
 
 def test_machines_with_rotary_axes_get_their_set_up_and_none_given_is_the_default():
     assert cell_of("table-xyzac") == CellParameters(machine="table-xyzac", setup="rotary-table")
-    assert cell_of("") == CellParameters()
+    assert cell_of("") == proposed(CellParameters())
+
+
+def test_what_is_kept_for_the_usual_cell_is_what_is_found():
+    assert proposed(CellParameters()) == searched(CellParameters())
+
+
+def test_a_branch_of_ones_own_is_kept():
+    own = CellParameters(branch=("front", "up", "flip"))
+    assert proposed(own, own_branch=True).branch == own.branch
+    assert proposed(own, own_branch=True).deposition_point != proposed(own).deposition_point
+
+
+def inside_hulls(points, hulls):
+    """(n,) whether points (n, 3) are within one of the hulls, each told by the planes of its facets."""
+    return np.any([(points @ one[:, :3].T + one[:, 3] <= 0.0).all(axis=1) for one in hulls], axis=0)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_links_as_drawn_need_not_touch_the_platform_that_is_carried(name):
+    """Points all over a platform 10 mm wider all round and hulls of what is drawn: at any lean a rotation within the limits
+    has none inside. Where the papers have their point, an upright tool has no such rotation with the default robot."""
+    parameters = proposed(CellParameters(machine=name))
+    assert all(clear_rotations(parameters, tilt).any() for tilt in np.radians([0.0, 45.0, 85.0]))
+    if name == CellParameters().machine:
+        assert not clear_rotations(CellParameters(), 0.0).any()
+
+
+def clear_rotations(parameters, tilt):
+    """(k,) whether rotations keep an axis leaning by `tilt` within the limits and the platform out of links 0 to 4."""
+    cell = resolve(parameters, np.eye(4))
+    chain = cell.machine.chain
+    hulls = [[ConvexHull(one.points).equations for one in link] for link in robot_links.solids(chain)]
+    axis = np.array([[np.sin(tilt), 0.0, np.cos(tilt)]])
+    poses = cell.pose_frames(BALL * axis, axis).at(np.linspace(-np.pi, np.pi, 16)[:, None])[:, 0]
+    joints = cell.machine.opw.inverse_branch(poses, cell.branch)
+    good = np.isfinite(joints).all(axis=1)
+    good[good] &= (cell.limits.margin(joints[good])[:, :5] > 0.0).all(axis=1)
+    radius, angle = np.meshgrid(np.linspace(0.0, 0.5 * cell.platform_diameter + 10.0, 5), np.linspace(0.0, 2 * np.pi, 24))
+    disc = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0.0 * radius, 0.0 * radius + 1.0], axis=-1)
+    disc = disc.reshape(-1, 4)
+    for k in np.flatnonzero(good):
+        links = chain.links(joints[k])
+        platform = disc @ (links[-1] @ chain.flange @ cell.carried).T
+        seen = [(platform @ frames.inverse(links[number]).T)[:, :3] for number in range(5)]
+        good[k] = not any(hulls[number] and inside_hulls(seen[number], hulls[number]).any() for number in range(5))
+    return good

@@ -11,14 +11,13 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.surroundings import Body, disc
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics import link_rods, opw, robot_links
 from freecad_am.core.kinematics.arm_contact import ArmContact
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import BRANCHES, JointParameters, given_polynomials, given_text
 from freecad_am.core.planning import plan, spin_curve, spin_map
 from freecad_am.core.planning.points import TURN, gather
 from freecad_am.core.planning.task import Task
-from freecad_am.core.simulation import link_rods, robot_links
 from freecad_am.kdl.chain import KdlArm
 
 PART_ON_ROBOT = {}

@@ -8,10 +8,10 @@ import pytest
 
 from freecad_am.core.geometry.surroundings import disc
 from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import link_rods, robot_links
 from freecad_am.core.kinematics.arm_contact import NONE, ArmContact
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation import arm as arms
-from freecad_am.core.simulation import link_rods, robot_links
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics import machine
-from freecad_am.core.simulation import link_rods, robot_links, solids, table_links
+from freecad_am.core.kinematics import link_rods, machine, robot_links
+from freecad_am.core.kinematics import link_solids as solids
+from freecad_am.core.simulation import table_links
 from tests.core.kinematics.arms import EXAMPLES
 
 NAMES = EXAMPLES

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import frames
-from ..kinematics.chain import Chain
-from .solids import BRIGHT, DARK, Solid, capsule, cylinder, rod, turned
+from .chain import Chain
+from .link_solids import BRIGHT, DARK, Solid, capsule, cylinder, rod, turned
 
 Array = NDArray[np.float64]
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.rods import Array, Rod, about, needed, row
-from ..kinematics.chain import Chain
 from . import robot_links
-from .solids import Solid
+from .chain import Chain
+from .link_solids import Solid
 
 Mesh = tuple[Array, NDArray[np.int64]]
 
