@@ -8962,6 +8962,11 @@
         <translation>relecture et vérification</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/part_file.py"/>
+        <source>reading the file</source>
+        <translation>lecture du fichier</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>reading the points</source>
         <translation>lecture des points</translation>
@@ -12125,6 +12130,16 @@
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} {1}; use {2}, or choose another machine</source>
         <translation>{0} {1} ; utilisez {2}, ou choisissez une autre machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and less than 1% of its surface hangs over by more than 45 deg</source>
+        <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and less than 1% of its surface hangs over by more than 45 deg, stacked along {1}</source>
+        <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg, empilé suivant {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
