@@ -25,7 +25,18 @@ NEARER = 0.7  # of what is asked for; of the few triangles some are a quarter fa
 
 
 def fine(shape: Any, chord: float) -> Tessellation:
-    """Triangles within `chord` mm of the shape, as `tessellated` has them; without nodes where they were quartered."""
+    """Triangles within `chord` mm of the shape, as `tessellated` has them; without nodes where they were quartered, or are of
+    splines instead of faces that the kernel makes no triangles of, as of some whole cones."""
+    made = _fine(shape, chord)
+    if len(np.unique(made.owner)) == len(shape.Faces):
+        return made
+    splines = shape.toNurbs()
+    if len(splines.Faces) != len(shape.Faces):
+        return made
+    return tessellated(splines, chord)._replace(nodes=[])
+
+
+def _fine(shape: Any, chord: float) -> Tessellation:
     about = max((_about(face, chord) for face in shape.Faces), default=0.0)
     if about < SLOW:
         return tessellated(shape, chord)

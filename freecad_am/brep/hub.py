@@ -19,6 +19,7 @@ from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from .axis import from_normals
 from .fine_mesh import fine
+from .kernel import refuse_bare
 from .kernel_process import beside
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
@@ -56,14 +57,18 @@ def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching
     crossing: list[str] = []
     for solid in source.Solids:
         first = next((entry for entry in made if entry[0].isPartner(solid)), None)
-        made.append((solid, _meshed(solid, chord_error, label, touching) if first is None else _placed(*first, solid)))
+        made.append((solid, _meshed(solid, source, chord_error, label, touching) if first is None else _placed(*first, solid)))
         if first is None and touching:
             crossing += crossing_told(made[-1][1], CROSSED * chord_error)
     return Bodies(_named([mesh for _, mesh in made], label), mended_issues(label, crossing))
 
 
-def _meshed(solid: Any, chord_error: float, label: str, touching: bool) -> SolidMesh:
-    vertices, corners = beside(fine, solid.copy(), SHARE * chord_error)[:2]
+def _meshed(solid: Any, source: Any, chord_error: float, label: str, touching: bool) -> SolidMesh:
+    made = beside(fine, solid.copy(), SHARE * chord_error)
+    vertices, corners = made.vertices, made.triangles
+    if len(np.unique(made.owner)) < len(solid.Faces):
+        numbers = {face.hashCode(): number for number, face in enumerate(source.Faces, start=1)}
+        refuse_bare([(f"Face{numbers[face.hashCode()]}", face) for face in solid.Faces], made.owner, label)
     mesh = SolidMesh(vertices, corners)
     mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
     mesh.refuse_unsound(label, of_shape=True, touching=touching)

@@ -50,7 +50,8 @@ class Tessellation(NamedTuple):
 
 
 def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
-    """Triangles within `chord` mm of the shape; vertices that faces share are one."""
+    """Triangles within `chord` mm of the shape; vertices that faces share are one. Faces that the kernel makes no triangles
+    of have none."""
     import MeshPart  # slow to import
 
     # all at once, so that shared edges are divided alike; coarser around than the faces' own call would have it
@@ -61,7 +62,7 @@ def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
         points.append(np.array([tuple(point) for point in own]).reshape(-1, 3))
         corners.append(np.array(triangles, dtype=np.intp).reshape(-1, 3) + count)
         owner.append(np.full(len(triangles), k, dtype=np.intp))
-        nodes.append(np.array(face.getUVNodes(), dtype=float).reshape(-1, 2))
+        nodes.append(np.array(face.getUVNodes() if triangles else [], dtype=float).reshape(-1, 2))
         count += len(own)
     return Tessellation(*welded(np.vstack(points), np.vstack(corners), np.concatenate(owner)), nodes)
 

@@ -8,9 +8,10 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep import fine_mesh
+from freecad_am.brep import fine_mesh, hub
 from freecad_am.brep.tessellate import tessellated
 from freecad_am.core.geometry.mesh.refined import Edges
+from freecad_am.core.issues import InputError
 
 CHORD = 0.0015
 
@@ -46,3 +47,41 @@ def test_others_are_as_the_kernel_makes_them():
     shape = Part.makeTorus(40, 16)
     ours, kernels = fine_mesh.fine(shape.copy(), 0.1), tessellated(shape.copy(), 0.1)
     assert np.array_equal(ours.vertices, kernels.vertices) and np.array_equal(ours.triangles, kernels.triangles)
+
+
+def without(face):
+    """The kernel's triangles, but for those of one face as long as that is no spline."""
+    def made(shape, chord):
+        found = tessellated(shape, chord)
+        bare = found.owner == face if shape.Faces[face].Surface.TypeId != "Part::GeomBSplineSurface" else found.owner < 0
+        return found._replace(triangles=found.triangles[~bare], owner=found.owner[~bare])
+
+    return made
+
+
+def test_a_face_that_the_kernel_makes_no_triangles_of_gets_those_of_splines(monkeypatch):
+    """As it does of some countersinks out of STEP files, at any deflection."""
+    monkeypatch.setattr(fine_mesh, "tessellated", without(0))
+    shape = Part.makeCone(8, 5, 4)
+    vertices, triangles, owner, nodes = fine_mesh.fine(shape, 0.02)
+    assert (Edges(triangles).count == 2).all() and set(owner) == {0, 1, 2} and not nodes
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
+    assert (np.cross(a, b) * c).sum() / 6.0 == pytest.approx(shape.Volume, rel=5e-3)
+    side = vertices[(vertices[:, 2] > 1e-6) & (vertices[:, 2] < 4.0 - 1e-6)]
+    assert np.abs(np.hypot(side[:, 0], side[:, 1]) - (8.0 - 0.75 * side[:, 2])).max(initial=0.0) < 1e-6
+
+
+def test_a_face_of_which_there_are_no_triangles_at_all_is_named(monkeypatch):
+    """Also where its solid is not the first."""
+    two = Part.makeCompound([Part.makeBox(5, 5, 5, Vector(20, 0, 0)), Part.makeBox(1, 2, 3)])
+    monkeypatch.setattr(hub, "beside", lambda made, *words: made(*words))
+
+    def bare(shape, chord):
+        found = tessellated(shape, chord)
+        kept = (found.owner != 4) | (np.ptp(found.vertices[:, 0]) > 1.5)  # of the smaller box
+        return found._replace(triangles=found.triangles[kept], owner=found.owner[kept])
+
+    monkeypatch.setattr(fine_mesh, "tessellated", bare)
+    with pytest.raises(InputError) as caught:
+        hub.bodies_of(two, "boxes", 0.1, 0.0)
+    assert caught.value.code == "BAD_SHAPE" and caught.value.where == "boxes Face11"
