@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from freecad_am.core.geometry.curves.bead_curves import POINT_FILES
-from freecad_am.core.geometry.mesh.file_unit import MESHES
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
@@ -45,8 +44,8 @@ class JobFeature:
     start_faces: tuple[str, ...] = ()
 
 
-def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = False) -> JobFeature:
-    """The feature of the sections of a job file `path`, or of a feature in it; earlier: others are deposited before it.
+def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
+    """The feature of the sections of a job file `path`, or of a feature in it.
     Raises InputError that names key and what to do."""
     if values.get("part") is None:
         raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
@@ -70,7 +69,7 @@ def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = Fa
             "or use those layers",
         )
     return JobFeature(
-        name, part, _substrate(values.get("substrate"), strategy, part, path, earlier),
+        name, part, _substrate(values.get("substrate"), strategy, part, path),
         fixtures_of(values.get("fixtures"), path), strategy, build_direction, process, guide, start_faces=start_faces,
     )
 
@@ -91,7 +90,7 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str, path:
     )
 
 
-def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str, earlier: bool) -> JobFeature:
+def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str) -> JobFeature:
     """The feature with the family that was left open: of its keys those that the family has. mend: mm across of the largest
     hole that is closed where the job does not say, 0 for what is usual. Raises InputError as any."""
     values, family = dict(feature.sections), KINDS[kind]
@@ -102,7 +101,7 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str, 
         values.pop("substrate", None)
     if kind != "solid" and isinstance(values["part"], dict):
         values["part"] = {key: value for key, value in values["part"].items() if key != "fuse"}
-    return one_feature(values, feature.name, path, earlier)
+    return one_feature(values, feature.name, path)
 
 
 def stacking(feature: JobFeature) -> tuple[float, float, float] | None:
@@ -143,7 +142,7 @@ def several(values: dict[str, Any], path: str, lines: tree.Tree) -> tuple[JobFea
         if name in [one.name for one in made]:
             raise InputError("BAD_VALUE", f"{here}.name", f"{name!r} is the name of another feature; give each its own")
         try:
-            made.append(one_feature(_with_defaults(own, values), name, path, number > 0))
+            made.append(one_feature(_with_defaults(own, values), name, path))
         except InputError as error:
             raise about_feature(error, number, name, lines) from None
     return tuple(made)
@@ -244,7 +243,7 @@ def _refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) 
         raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why.format(build_direction.mode))
 
 
-def _substrate(section: Any, strategy: Any, part: PartSource, path: str, earlier: bool) -> PartSource | None:
+def _substrate(section: Any, strategy: Any, part: PartSource, path: str) -> PartSource | None:
     family = family_of(strategy)
     if part.start_edges and not family.edges:
         raise InputError("NOT_FOR_FAMILY", "part.start_edges", "only strategy.kind surface starts from edges; leave "
@@ -259,13 +258,8 @@ def _substrate(section: Any, strategy: Any, part: PartSource, path: str, earlier
     if part.faces and not family.faces:
         raise InputError("NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out")
     if family.substrate == NEEDED:
-        if section is None and (part.start_edges or earlier or part.file.lower().endswith(MESHES)):
-            return None
         if section is None:
-            raise InputError(
-                "NO_SUBSTRATE", "substrate", "a wall of the kind surface grows on an existing part; write substrate: {file: "
-                "pipe.step}, or name the edges to start from in part.start_edges",
-            )
+            return None
         found = part_of(fields.mapping(section, "substrate"), path, "substrate")
         if found.faces:
             raise InputError(

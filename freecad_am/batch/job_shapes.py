@@ -59,7 +59,7 @@ class Shapes:
                 self.of.process.bead_width, self.job.cell is not None,
                 base=() if self.of.substrate is None else self.of.substrate.faces, direction=stacking(self.of),
             )
-            self.of = chosen(self.of, found.kind, found.layers, found.mend, self.job.path, bool(earlier))
+            self.of = chosen(self.of, found.kind, found.layers, found.mend, self.job.path)
         except InputError as error:
             raise self.placed(error) from None
         return Issue(NOTE, "PROPOSED", found.told())

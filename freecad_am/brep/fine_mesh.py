@@ -25,8 +25,8 @@ NEARER = 0.7  # of what is asked for; of the few triangles some are a quarter fa
 
 
 def fine(shape: Any, chord: float) -> Tessellation:
-    """Triangles within `chord` mm of the shape, as `tessellated` has them; without nodes where they were quartered, or are of
-    splines instead of faces that the kernel makes no triangles of, as of some whole cones."""
+    """Triangles within `chord` mm of the shape, as `tessellated` has them; without nodes where they were quartered, or are
+    those of splines because the kernel makes none of a face, as of some countersinks."""
     made = _fine(shape, chord)
     if len(np.unique(made.owner)) == len(shape.Faces):
         return made

@@ -57,7 +57,8 @@ def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching
     crossing: list[str] = []
     for solid in source.Solids:
         first = next((entry for entry in made if entry[0].isPartner(solid)), None)
-        made.append((solid, _meshed(solid, source, chord_error, label, touching) if first is None else _placed(*first, solid)))
+        mesh = _placed(*first, solid) if first is not None else _meshed(solid, source, chord_error, label, touching)
+        made.append((solid, mesh))
         if first is None and touching:
             crossing += crossing_told(made[-1][1], CROSSED * chord_error)
     return Bodies(_named([mesh for _, mesh in made], label), mended_issues(label, crossing))

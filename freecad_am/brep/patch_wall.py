@@ -18,7 +18,8 @@ from ..core.geometry.walls.patch_wall import FirstCurve, PatchWall
 from ..core.geometry.walls.rims import outward_volume, parts, rims_of, with_ends
 from ..core.issues import NOTE, InputError, Issue
 from .sheet import MOST, sheet
-from .start_edges import curves_of
+from .standing import standing_edges
+from .start_edges import curves_along, curves_of
 from .substrate import Substrate
 from .wall_checks import refuse_creases, refuse_gaps, refuse_tight, smallest_radii
 from .wall_cuts import refuse_crossing, refuse_folded
@@ -31,7 +32,8 @@ def find_patch_wall(
     shape: Any, named: Sequence[tuple[str, Any]], substrate: Substrate | None, height: float, label: str = "part",
     start_edges: Sequence[str] = (),
 ) -> PatchWall:
-    """The wall of the faces `named` of a shape, for layers of `height` mm, on a substrate or from edges of its own.
+    """The wall of the faces `named` of a shape, for layers of `height` mm, on a substrate, from edges of its own, or
+    from those that stand on the platform.
 
     All curves in which it leaves the substrate are taken; an issue tells where when there are several. Raises InputError
     GAP, CREASE, BRANCHING_FACES, SELF_INTERSECTION, LAYER_HEIGHT, ROUGH_WALL, TOO_FINE, NOT_ORIENTABLE, NO_CONTACT, INSIDE,
@@ -49,9 +51,8 @@ def find_patch_wall(
         first = curves_of(shape, start_edges, wall, label)
         behind = np.zeros(len(wall.vertices), dtype=bool)
     elif substrate is None:
-        raise InputError(
-            "NO_SUBSTRATE", label, "there is nothing to grow on; choose a substrate, or the edges to start from"
-        )
+        first, issues = _from_platform(wall, [face for _, face in named], label)
+        behind = np.zeros(len(wall.vertices), dtype=bool)
     else:
         first, behind, issues = from_substrate(wall, substrate, rims, label)
     refuse_tight(wall, ~behind, height, label)
@@ -59,6 +60,20 @@ def find_patch_wall(
     return replace(
         wall, first=tuple(first), behind=behind, rims=with_ends(wall, rims, tuple(first), behind), issues=tuple(issues),
     )
+
+
+def _from_platform(wall: PatchWall, faces: Sequence[Any], label: str) -> tuple[list[FirstCurve], list[Issue]]:
+    """The edges that stand on the platform, and a note. InputError NO_SUBSTRATE."""
+    lowest = wall.vertices[np.argmin(wall.vertices[:, 2])]
+    edges = standing_edges(faces, float(lowest[2]))
+    if not edges:
+        raise InputError(
+            "NO_SUBSTRATE", label, f"there is nothing to grow on: none of its edges lies on the platform, the plane Z = "
+            f"{lowest[2]:.4g} mm through its lowest place {place(lowest)}; choose a substrate, or the edges to start from",
+        )
+    first = curves_along(edges, wall)
+    told = f"the first layer is the edge of {label} at {place(first[0].points.mean(axis=0))}, which stands on the platform"
+    return first, [Issue(NOTE, "FIRST_LAYER", told)]
 
 
 def several_loops(first: Sequence[FirstCurve], label: str) -> list[Issue]:

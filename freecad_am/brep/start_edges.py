@@ -38,7 +38,12 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
                 "choose edges of the wall's own faces",
             )
         edges.append(edge)
-    return [_curve(chain, wall) for chain in Part.sortEdges(edges)]
+    return curves_along(edges, wall)
+
+
+def curves_along(edges: Sequence[Any], wall: PatchWall) -> list[FirstCurve]:
+    """The chains and loops that edges of the wall's faces form."""
+    return [_curve(chain, wall) for chain in Part.sortEdges(list(edges))]
 
 
 def _curve(chain: list[Any], wall: PatchWall) -> FirstCurve:

@@ -35,10 +35,10 @@ def wall_on(
     """The wall of a Part.Shape, or of a mesh (Body), for layers of `height` mm, in its coordinates. mend: the largest hole
     of a mesh that is closed, mm.
 
-    substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from edges of the part. A
-    SurfaceWall where the faces are one surface that closes around, its end straight across, and the first layer one loop; a
-    PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and `substrate_of`, LAYER_HEIGHT,
-    BAD_SHAPE.
+    substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from edges of the part, those
+    that stand on the platform if none are named. A SurfaceWall where the faces are one surface that closes around, its end
+    straight across, and the first layer one loop; a PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and
+    `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
     """
     with told(substrate_label):
         carrier = None if substrate is None else substrate_of(substrate, substrate_label, mend)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..brep import hub as hubs
 from ..brep import kernel, part_depths
 from ..brep.revolution import find_wall
+from ..brep.standing import stand
 from ..brep.wall_on import named_faces
 from ..core.geometry.curves.profile import RevolvedWall
 from ..core.geometry.mesh.crossing import crossings
@@ -46,12 +47,13 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Proposal:
     """A family, by its `strategy.kind`, layers of solids ('' of other families), and why. mend: mm across of the largest
-    hole that has to be closed for it; 0 for those that are closed anyway."""
+    hole that has to be closed for it; 0 for those that are closed anyway. stands: a wall that starts on the platform."""
 
     kind: str
     layers: str
     reason: str
     mend: float = 0.0
+    stands: bool = False
 
     def told(self) -> str:
         """What is proposed, in one sentence."""
@@ -106,16 +108,18 @@ def proposed(
             "cladding", "", f"faces of {part.label} are chosen, which do not turn about one axis, and it is thicker there "
             f"than a bead of {width:.4g} mm, so they are covered",
         )
+    if names and stand([shape.getElement(name) for name in names]):
+        return Proposal(
+            "surface", "", f"faces of {part.label} are chosen, which do not turn about one axis, so they are a wall that "
+            "starts on the platform", stands=True,
+        )
     if names:
         return Proposal(
             "surface", "", f"faces of {part.label} are chosen, which do not turn about one axis, so they are a wall; it "
             "needs a substrate, or edges to start from",
         )
     if not shape.Solids:
-        return Proposal(
-            "surface", "", f"{part.label} is an open skin and not of revolution, and nothing else serves it; it needs a "
-            "substrate, or edges to start from, and what does not grow from there is left out"
-        )
+        return _of_skin(part)
     if clicked and not left and substrate is None and _own_hub(part, clicked):
         return Proposal("developable", "", f"{', '.join(clicked)} of {part.label} is chosen, which the rest of it stands on")
     if substrate is not None and _thin(part, width):
@@ -143,9 +147,7 @@ def _of_mesh(
             f"so it is no wall of one bead: it is filled, with its {len(open_)} holes of up to {size:.4g} mm closed"
         )
         return replace(_solid(part, why, tilts, direction), mend=min(size, WIDEST))
-    normals = np.cross(*np.diff(found.vertices[found.triangles], axis=1).swapaxes(0, 1))
-    areas = np.linalg.norm(normals, axis=1)
-    lies = float(areas[np.abs(normals[:, 2]) > np.cos(STEEP) * areas].sum()) / max(float(areas.sum()), 1e-300)
+    lies = _lying(found.vertices[found.triangles])
     if substrate is None and not edges and lies >= LYING:
         return Proposal(
             "cladding", "", f"{part.label} is an open mesh that lies rather than stands, {lies:.0%} of it at less than 45 "
@@ -153,6 +155,32 @@ def _of_mesh(
         )
     where = "starts on the platform" if substrate is None else f"grows on {substrate.label}"
     return Proposal("surface", "", f"{part.label} is an open mesh, so it is a thin wall that {where}")
+
+
+def _of_skin(part: Taken) -> Proposal:
+    """A face that is covered where it lies, else a wall, as an open mesh."""
+    body = part.body()
+    lies = _lying(body.vertices[body.triangles])
+    if lies >= LYING:
+        return Proposal(
+            "cladding", "", f"{part.label} is an open skin that lies rather than stands, {lies:.0%} of it at less than 45 "
+            "deg to the platform, so it is a face that is covered",
+        )
+    if stand(part.shape.Faces):
+        return Proposal(
+            "surface", "", f"{part.label} is an open skin, so it is a thin wall that starts on the platform", stands=True
+        )
+    return Proposal(
+        "surface", "", f"{part.label} is an open skin and not of revolution, and nothing else serves it; it needs a "
+        "substrate, or edges to start from, and what does not grow from there is left out"
+    )
+
+
+def _lying(corners: Array) -> float:
+    """The share of triangles (m, 3, 3), by their area, that are less than STEEP from level."""
+    normals = np.cross(*np.diff(corners, axis=1).swapaxes(0, 1))
+    areas = np.linalg.norm(normals, axis=1)
+    return float(areas[np.abs(normals[:, 2]) > np.cos(STEEP) * areas].sum()) / max(float(areas.sum()), 1e-300)
 
 
 def _solid(part: Taken, reason: str, tilts: bool, direction: Sequence[float] | None) -> Proposal:

@@ -74,7 +74,7 @@ def test_a_part_on_another():
 def test_what_nothing_serves_gets_the_nearest():
     bent = Part.makeSphere(30).Faces[0].toNurbs().Faces[0].Surface.toShape(0.1, 2.0, 0.1, 0.9)
     bent = bent.transformGeometry(FreeCAD.Matrix(1, 0.3, 0, 0, 0, 0.7, 0.2, 0, 0, 0, 1, 0, 0, 0, 0, 1))
-    found = of(bent)
+    found = of(bent.rotated(Vector(), Vector(1, 0, 0), 20.0))  # else it stands on its lower edge
     assert found.kind == "surface" and "needs a substrate, or edges to start from" in found.reason
 
 
@@ -140,6 +140,25 @@ def test_an_open_mesh_that_lies_is_covered_and_one_that_stands_is_a_wall():
             for under, edges in ((None, False), (None, True), (Taken("ground", Part.makeBox(9, 9, 9)), False))
         ])
     assert kinds == [["cladding", "surface", "surface"], ["surface", "surface", "surface"]]
+
+
+def test_an_open_skin_lies_or_stands_as_a_mesh_does(workshop):
+    """A cup of no revolution on its edge needs nothing else; the same lid as above lies; turned, nothing carries the cup."""
+    lid = Part.makeSphere(60, Vector(), UP, 60, 90, 360).Faces[0].toNurbs()
+    squeezed = FreeCAD.Matrix(1, 0, 0, 0, 0, 0.7, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)
+    cup = Part.makeCone(20, 30, 25).Faces[0].toNurbs().transformGeometry(squeezed)
+    turned = cup.rotated(Vector(), Vector(1, 0, 0), 20.0)
+    found = [of(one) for one in (lid.transformGeometry(squeezed), cup, turned)]
+    assert [one.kind for one in found] == ["cladding", "surface", "surface"]
+    assert [one.stands for one in found] == [False, True, False] and "starts on the platform" in found[1].reason
+    cup.exportStep(str(workshop.folder / "part.step"))
+    report, rows = planned(workshop, AUTO.replace("0.1 mm", "0.1 mm, end: whole"))
+    told = {issue["code"]: issue["message"] for issue in report["issues"]}
+    assert told["PROPOSED"].startswith("kind: surface: ") and "stands on the platform" in told["FIRST_LAYER"]
+    laid = [dict(zip(rows[0], row)) for row in rows[1:]]
+    points = np.array([[float(row[key]) for key in ("x_mm", "y_mm", "z_mm")] for row in laid if row["kind"] == "deposit"])
+    assert np.hypot(points[:, 0], points[:, 1] / 0.7) == pytest.approx(20.0 + 0.4 * points[:, 2], abs=0.1)
+    assert points[0, 2] == pytest.approx(0.0, abs=1e-6) and len({row["layer"] for row in laid if row["layer"]}) == 6
 
 
 def open_tube(radius, first, last, sides=24):

@@ -346,7 +346,6 @@ def test_a_wall_on_a_substrate(read):
 @pytest.mark.parametrize(
     ("old", "new", "code", "where", "says"),
     [
-        ("substrate: {file: part.step}\n", "", "NO_SUBSTRATE", "substrate", "pipe.step"),
         ("substrate: {file: part.step}", "substrate: {file: none.step}", "NO_FILE", "substrate.file", "none.step"),
         ("step}\nstrategy", "step, faces: [Face1]}\nstrategy", "NOT_YET", "substrate.faces", "whole"),
         ("substrate: {file: part.step}", "substrate: {object: A}", "NO_PART", "substrate.file", "write substrate"),

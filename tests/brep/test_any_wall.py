@@ -180,6 +180,39 @@ def test_chosen_edges_need_no_substrate():
     assert not wall.behind.any() and [rim.points[0, 2] for rim in wall.rims if rim.end] == pytest.approx([60.0])
 
 
+def oval(turned=0.0):
+    """Two halves of a lofted tube that is of no revolution, and its ends as (x, y) semi-axes by height."""
+    ends = []
+    for half in (0.0, np.pi):
+        for z, (a, b) in ((0.0, (30.0, 18.0)), (60.0, (22.0, 36.0))):
+            long, short, ahead = (a, b, Vector(1, 0, 0)) if a > b else (b, a, Vector(0, 1, 0))
+            begin = half if a > b else half - 0.5 * np.pi
+            ellipse = Part.Ellipse(Vector(long * ahead.x, long * ahead.y, z), Vector(-short * ahead.y, short * ahead.x, z),
+                                   Vector(0, 0, z))
+            ends.append(Part.Wire(Part.ArcOfEllipse(ellipse, begin, begin + np.pi).toShape()))
+    skin = Part.Compound([Part.makeLoft(ends[:2]), Part.makeLoft(ends[2:])])
+    return skin.rotated(Vector(), Vector(1, 0, 0), turned)
+
+
+def test_what_stands_on_the_platform_needs_no_substrate_either():
+    """Faces that are not sewn; their common edges are none to start from."""
+    wall = wall_on(oval(), (), None, 4.0, "Vase")
+    (first,), (note,) = wall.first, wall.issues
+    assert first.closed and first.points[:, 2] == pytest.approx(0.0, abs=1e-6)
+    x, y = first.points[:, :2].T
+    assert np.hypot(x / 30.0, y / 18.0) == pytest.approx(1.0, abs=1e-6) and abs(np.ptp(x)) > 59.0
+    assert note.code == "FIRST_LAYER" and "Vase" in note.message and "stands on the platform" in note.message
+    assert [rim.points[0, 2] for rim in wall.rims if rim.end] == pytest.approx([60.0])
+    for names, length in (((), 60.0), (("Face1",), 30.0)):
+        half = wall_on(Part.Compound([Part.makePlane(20, 30, Vector(x, 0, 5), Vector(0, -1, 0)) for x in (0, 30)]),
+                       names, None, 4.0)
+        assert sum(one.curve().length for one in half.first) == pytest.approx(length) and not half.first[0].closed
+    with pytest.raises(InputError) as caught:
+        wall_on(oval(20.0), (), None, 4.0, "Vase")
+    low = -18.0 * np.sin(np.radians(20.0))
+    assert caught.value.code == "NO_SUBSTRATE" and f"Z = {low:.4g}"[:8] in caught.value.message
+
+
 def test_several_loops_are_all_taken_and_told():
     wall = wall_on(Part.makeCylinder(5, 120, Vector(0, 0, -60)).Faces[0], (), pipe(), 3.0)
     assert len(wall.first) == 2

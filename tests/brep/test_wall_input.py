@@ -85,7 +85,8 @@ def kinked():
     (kinked, slab, 4.0, (), "ROUGH_WALL", "Wall Face1", ["26.6 deg", "40)"]),
     (lambda: Part.Compound([tube(), tube(100.0)]), lambda: None, 4.0, ("Edge6",), "NO_START", "Wall Edge6", ["100 mm off"]),
     (tube, lambda: None, 4.0, ("Edge99",), "UNKNOWN_EDGE", "Wall", ["Edge99", "Edge1 to Edge3"]),
-    (tube, lambda: None, 4.0, (), "NO_SUBSTRATE", "Wall", ["choose a substrate"]),
+    (lambda: tube().rotated(Vector(), Vector(1, 0, 0), 30.0), lambda: None, 4.0, (), "NO_SUBSTRATE", "Wall",
+     ["choose a substrate"]),
 ], ids=["fan", "twisted", "twisted in two", "huge", "large", "fine", "kinked", "edge elsewhere", "no such edge", "nothing"])
 def test_refusals(make, substrate, height, edges, code, where, words):
     faces = ("Face1",) if code == "NO_START" else ()

@@ -122,6 +122,7 @@ def test_fixtures_of_a_part_of_revolution_are_looked_at(doc, tube):
 
 
 def test_needs_a_solid_substrate(doc, tube):
+    tube[0].Placement = App.Placement(App.Vector(), App.Rotation(App.Vector(1, 0, 0), 20))  # it stands on no edge
     with pytest.raises(InputError) as caught:
         api.make_surface_feature(doc, tube[0], ["Face1"])
     assert caught.value.code == "NO_SUBSTRATE" and "edges to start from" in caught.value.message

@@ -25,8 +25,8 @@ NEEDED, OPTIONAL, NONE = "needed", "optional", "none"
 @dataclass(frozen=True)
 class Family:
     """kind: `strategy.kind` of a job. parameters: the dataclass of `strategy`. substrate: whether it grows on an existing
-    part: NEEDED (or edges to start from, or a mesh, which starts on the platform), OPTIONAL, NONE. meshes: a mesh may be the
-    part. filled: solids are filled, so that the width and the speed of beads are settings of their own. modes: those of
+    part: NEEDED (or edges to start from, or that stand on the platform), OPTIONAL, NONE. meshes: a mesh may be the part.
+    filled: solids are filled, so that the width and the speed of beads are settings of their own. modes: those of
     `build_direction` that it knows, and why not others. edges, faces: the part may name edges to start from, and faces.
     """
 

@@ -61,7 +61,8 @@ def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
             missing = unclear or tr("Select also, with Ctrl, the faces to deposit on {}.").format(picks[0].obj.Label)
             return JobProposal(kind, reason, (), ground, missing)
         wall = picking.whole(wall)
-        return JobProposal(kind, reason, (wall,), ground, unclear or _ground_missing(wall, ground))
+        missing = "" if picking.stands(wall) else _ground_missing(wall, ground)
+        return JobProposal(kind, reason, (wall,), ground, unclear or missing)
     if kind == CURVES:
         return JobProposal(kind, reason, (_with_edges(picks[0]),), next((Pick(one.obj) for one in picks[1:]), None))
     if kind == CLADDING:
@@ -126,7 +127,7 @@ def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposa
 
 
 def _as_told(found: Proposal, parts: tuple[Pick, ...], ground: Pick | None) -> JobProposal:
-    missing = _ground_missing(parts[0], ground) if found.kind == SURFACE else ""
+    missing = _ground_missing(parts[0], ground) if found.kind == SURFACE and not found.stands else ""
     return JobProposal(found.kind, translated(found.reason), parts, ground, missing, found.layers, found.mend)
 
 

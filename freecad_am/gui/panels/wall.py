@@ -57,12 +57,11 @@ class WallPanel(PickPanel):
         return unclear
 
     def _lacking(self) -> PickField | None:
-        """A substrate is not missing where a wall starts at edges of its own, and where it is a mesh, which may stand on the
-        platform."""
+        """A substrate is not missing where a wall starts at edges of its own, and where it may stand on the platform."""
         if not self._field("Source").picks:
             return self._field("Source")
         edges = any(field.picks for field in self.picks if field.element == picking.EDGE)
-        if edges or self._field("Substrate").picks or picking.is_mesh(self._field("Source").picks[0].obj):
+        if edges or self._field("Substrate").picks or picking.stands(self._field("Source").picks[0]):
             return None
         return self._field("Substrate")
 

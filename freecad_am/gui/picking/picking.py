@@ -9,6 +9,7 @@ from typing import Any
 
 import FreeCADGui as Gui
 
+from ...brep.standing import stand
 from ...core.issues import InputError
 from ...objects.job_group import is_group
 from ...objects.shapes import global_shape
@@ -134,6 +135,14 @@ def whole(pick: Pick) -> Pick:
     faces = with_faces(pick)
     lone = len(faces.names) == 1 and len(global_shape(pick.obj).Faces) > 1
     return Pick(pick.obj) if lone else faces
+
+
+def stands(wall: Pick) -> bool:
+    """Whether faces can start on the platform as a wall; a mesh may."""
+    if is_mesh(wall.obj):
+        return True
+    shape, names = global_shape(wall.obj), with_faces(wall).names
+    return stand([shape.getElement(name) for name in names] or list(shape.Faces))
 
 
 def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
