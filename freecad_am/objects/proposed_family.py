@@ -18,11 +18,12 @@ from ..core.geometry.curves.profile import RevolvedWall
 from ..core.geometry.mesh.crossing import crossings
 from ..core.geometry.mesh.manifold import holes, told_apart
 from ..core.geometry.mesh.repair import WELDS, connected_triangles
+from ..core.geometry.mesh.uncrossed import uncrossed
 from ..core.geometry.surroundings import Body
 from ..core.geometry.told import at_least, place
 from ..core.issues import InputError
 from ..core.layers.stacking import best, facets, judged
-from ..core.parameters.strategy import DevelopableParameters, SolidParameters
+from ..core.parameters.strategy import DevelopableParameters, SolidParameters, SurfaceParameters
 from ..core.process.deposit_balance import LITTLE, MM3, of_wall
 from .developable_feature import found_in
 from .shapes import Taken
@@ -111,7 +112,7 @@ def proposed(
     if names and stand([shape.getElement(name) for name in names]):
         return Proposal(
             "surface", "", f"faces of {part.label} are chosen, which do not turn about one axis, so they are a wall that "
-            "starts on the platform", stands=True,
+            "starts on the platform where nothing carries it", stands=True,
         )
     if names:
         return Proposal(
@@ -139,7 +140,8 @@ def _of_mesh(
     if opening <= OPEN * float(np.linalg.norm(np.ptp(body.vertices, axis=0))):
         return _solid(part, f"{part.label} is a mesh, which is filled", tilts, direction)
     crossed = crossings(found.vertices, found.triangles, WELDS[-1])
-    if len(crossed.pairs) and not edges:
+    sheet = found.vertices, found.triangles
+    if len(crossed.pairs) and not edges and uncrossed(*sheet, crossed.pairs, SurfaceParameters.mend, WELDS[-1]) is None:
         at = place(crossed.places[crossed.length.argmax()])
         size = at_least(opening)
         why = (
@@ -168,7 +170,8 @@ def _of_skin(part: Taken) -> Proposal:
         )
     if stand(part.shape.Faces):
         return Proposal(
-            "surface", "", f"{part.label} is an open skin, so it is a thin wall that starts on the platform", stands=True
+            "surface", "", f"{part.label} is an open skin and not of revolution, so it is a thin wall, which starts on the "
+            "platform where nothing carries it", stands=True,
         )
     return Proposal(
         "surface", "", f"{part.label} is an open skin and not of revolution, and nothing else serves it; it needs a "

@@ -146,6 +146,31 @@ def test_pieces_that_nothing_starts_on_and_walls_that_cut_themselves_are_refused
     assert caught.value.code == "TOO_FINE"
 
 
+def test_facets_that_cross_in_one_place_are_cut_out_and_what_cuts_itself_farther_is_refused():
+    """Two vertices of a tube are pulled out, and one of them under the facets of the other; next to the end of the tube
+    nothing tells what was meant."""
+    points, faces = turned(20.0, 20.0, 40.0, rows=20)
+
+    def crossed(row):
+        moved = points.copy()
+        for up, out, at in ((0, 20.3, 2), (2, 21.0, 2)):
+            place = (row + up) * SIDES + 3
+            moved[place] = [*(moved[place, :2] * out / 20.0), moved[row * SIDES, 2] + 2.0 * at]
+        return moved
+
+    made = wall(crossed(10), faces, mend=8.0)
+    told = " ".join(issue.message for issue in made.issues if issue.code == "MENDED")
+    assert "8 triangles that cross were cut out, as at (" in told and "which left holes of up to 7.4 mm across" in told
+    found = layers(made)
+    assert [len(layer.beads) for layer in found] == [1] * 11
+    radii = np.concatenate([np.hypot(*layer.beads[0].points[:, :2].T) for layer in found])
+    assert radii.min() > 19.9 and radii.max() < 21.0 and np.median(np.abs(radii - 20.0)) < 0.02
+    for bad, mend in ((crossed(10), 7.0), (crossed(18), 8.0)):
+        with pytest.raises(InputError) as caught:
+            wall(bad, faces, mend=mend)
+        assert caught.value.code == "SELF_INTERSECTION" and "6 pairs of its triangles cross" in caught.value.message
+
+
 def test_large_facets_are_followed_where_they_meet():
     """A drum of 40 facets, 30 to 70 mm large, that meet at 10 to 20 deg: edges of the mesh ran across where they meet, up
     to 0.7 mm off, and beads with them."""

@@ -127,7 +127,8 @@ def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposa
 
 
 def _as_told(found: Proposal, parts: tuple[Pick, ...], ground: Pick | None) -> JobProposal:
-    missing = _ground_missing(parts[0], ground) if found.kind == SURFACE and not found.stands else ""
+    starts = found.stands and picking.is_alone(parts[0].obj)
+    missing = _ground_missing(parts[0], ground) if found.kind == SURFACE and not starts else ""
     return JobProposal(found.kind, translated(found.reason), parts, ground, missing, found.layers, found.mend)
 
 

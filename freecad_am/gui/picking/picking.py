@@ -138,11 +138,21 @@ def whole(pick: Pick) -> Pick:
 
 
 def stands(wall: Pick) -> bool:
-    """Whether faces can start on the platform as a wall; a mesh may."""
+    """Whether a wall starts on the platform if nothing else is picked: a mesh may, and faces with an edge there may where
+    the document holds no other part that they could grow on."""
     if is_mesh(wall.obj):
         return True
+    if not is_alone(wall.obj):
+        return False
     shape, names = global_shape(wall.obj), with_faces(wall).names
     return stand([shape.getElement(name) for name in names] or list(shape.Faces))
+
+
+def is_alone(obj: Any) -> bool:
+    """Whether the document of an object has no solid and no mesh but those that it is made of, or that are made of it."""
+    own = {obj.Name, *(one.Name for one in (*obj.OutListRecursive, *obj.InListRecursive))}
+    others = [one for one in obj.Document.Objects if one.Name not in own and stage_of(one) is None]
+    return not any(is_mesh(one) or (hasattr(one, "Shape") and one.Shape.Solids) for one in others)
 
 
 def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:

@@ -19,6 +19,7 @@ from ..mesh.repair import WELDS, connected_triangles, mended_issues
 from ..mesh.smooth import SmoothMesh
 from ..mesh.solid import Search, SolidMesh
 from ..mesh.triangle_mesh import Index, Mask
+from ..mesh.uncrossed import uncrossed
 from ..told import deviation, place
 from .patch_wall import Array, PatchWall
 from .rims import outward_volume
@@ -129,15 +130,23 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
     if not len(triangles) or not np.isfinite(points).all():
         raise InputError("BAD_FILE", label, "the mesh has no triangles, or points that are no numbers; export it again")
     found = connected_triangles(points, triangles, label, mend)
+    mended = list(found.mended)
     crossed = crossings(found.vertices, found.triangles, WELDS[-1])
     if len(crossed.pairs):
         at = place(crossed.places[crossed.length.argmax()])
-        raise InputError(
-            "SELF_INTERSECTION", label, f"the wall cuts itself: {len(crossed.pairs)} pairs of its triangles cross, for "
-            f"instance at {at}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with holes "
-            "of up to strategy.mend closed",
+        plain = uncrossed(found.vertices, found.triangles, crossed.pairs, mend, WELDS[-1])
+        if plain is None:
+            raise InputError(
+                "SELF_INTERSECTION", label, f"the wall cuts itself: {len(crossed.pairs)} pairs of its triangles cross, for "
+                f"instance at {at}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with "
+                "holes of up to strategy.mend closed",
+            )
+        size = max((hole.size for hole in plain.closed), default=0.0)
+        mended.append(
+            f"{plain.cut_out} triangles that cross were cut out, as at {at}, which left holes of up to {size:.3g} mm across"
         )
-    return _Read(found.vertices, found.triangles, (*found.issues, *mended_issues(label, list(found.mended))))
+        found = found._replace(vertices=plain.vertices, triangles=plain.triangles)
+    return _Read(found.vertices, found.triangles, (*found.issues, *mended_issues(label, mended)))
 
 
 def _areas(vertices: Array, triangles: Index, edge: float = np.inf) -> Index:
