@@ -6813,6 +6813,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>faces of {0} are chosen, which do not turn about one axis, so they are a wall that starts on the platform where nothing carries it</source>
+        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi qui part du plateau là où rien ne la porte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>faces of {0} are chosen, which do not turn about one axis, so they are a wall; it needs a substrate, or edges to start from</source>
         <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi ; il lui faut un substrat, ou des arêtes d&apos;où partir</translation>
     </message>
@@ -10383,8 +10388,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/patch_wall.py"/>
-        <source>there is nothing to grow on; choose a substrate, or the edges to start from</source>
-        <translation>il n&apos;y a rien sur quoi croître ; choisissez un substrat, ou les arêtes de départ</translation>
+        <source>there is nothing to grow on: none of its edges lies on the platform, the plane Z = {0} mm through its lowest place {1}; choose a substrate, or the edges to start from</source>
+        <translation>il n&apos;y a rien sur quoi croître : aucune de ses arêtes n&apos;est sur le plateau, le plan Z = {0} mm par son point le plus bas {1} ; choisissez un substrat, ou les arêtes d&apos;où partir</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
@@ -11215,6 +11220,16 @@
         <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0} is an open skin and not of revolution, and nothing else serves it; it needs a substrate, or edges to start from, and what does not grow from there is left out</source>
         <translation>{0} est une peau ouverte et non de révolution, et rien d&apos;autre ne lui convient ; il lui faut un substrat, ou des arêtes d&apos;où partir, et ce qui n&apos;en croît pas est laissé de côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is an open skin and not of revolution, so it is a thin wall, which starts on the platform where nothing carries it</source>
+        <translation>{0} est une peau ouverte qui n&apos;est pas de révolution, donc une paroi mince, qui part du plateau là où rien ne la porte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is an open skin that lies rather than stands, {1} of it at less than 45 deg to the platform, so it is a face that is covered</source>
+        <translation>{0} est une peau ouverte qui est couchée plutôt que debout, dont {1} à moins de 45 deg du plateau, c&apos;est donc une face qui est recouverte</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur_read.py"/>
@@ -12060,6 +12075,11 @@
         <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>{0} that stands on the flange</source>
         <translation>{0} qui est sur la bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
+        <source>{0} triangles that cross were cut out, as at {1}, which left holes of up to {2} mm across</source>
+        <translation>{0} triangles qui se croisent ont été retirés, par exemple en {1}, ce qui a laissé des trous larges de {2} mm au plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
