@@ -2,12 +2,14 @@
 """Runs commands as freecad_am/batch/boot.py does, each in a copy of this process, which has FreeCAD and all modules.
 
 What is asked for comes in by stdin, a line of JSON each: [folder, environment, file for stdout, file for stderr, words, most
-seconds of the processor, most bytes]; the exit status, negative for a signal, s of the processor, and MB of memory of the
-largest process, go to the descriptor named by the first argument. This process computes nothing and has
+seconds of the processor, most bytes, whether the copy is to have a group of its own]; to the descriptor named by the first
+argument goes the number of the copy, once it is there, and in a further line the exit status, negative for a signal, s of
+the processor, and MB of memory of the largest process. This process computes nothing and has
 one thread: OpenCASCADE 7.8 would wait in a copy of one that has meshed for threads that are not copied.
 """
 
 import contextlib
+import gc
 import importlib
 import json
 import os
@@ -66,12 +68,18 @@ def main():
     import FreeCAD  # noqa: F401  before Part
 
     load_all()
+    gc.set_threshold(300_000, 50, 50)  # as boot.py; and no copy looks through what all of them have
+    gc.freeze()
     answer = int(sys.argv[1])
     for line in sys.stdin:
         assert len(os.listdir("/proc/self/task")) == 1, "this process is to have one thread"
+        *asked, apart = json.loads(line)
         process = os.fork()
         if not process:
-            be_command(*json.loads(line))
+            be_command(*asked)
+        if apart:
+            os.setpgid(process, process)
+        os.write(answer, f"{process}\n".encode())
         _, status, used = os.wait4(process, 0)
         seconds, memory = used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3
         os.write(answer, f"{os.waitstatus_to_exitcode(status)} {seconds:.3f} {memory:.1f}\n".encode())

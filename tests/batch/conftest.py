@@ -81,30 +81,53 @@ class Commands:
 
     def __init__(self) -> None:
         self.process: subprocess.Popen | None = None
+        self.copy = 0  # the number of the one at work
 
     def run(
         self, folder: Path, words: list[str], most_seconds: int = 0, most_bytes: int = 0, patience: int = PATIENCE
     ) -> Ended:
         """Limits of 0 are none. TimeoutError where the command does not end: after `patience` s in which it did not even
         wait for the processor, or computed where there is no limit to that. A machine that is busy is none of its."""
-        if self.process is None:
-            self._start()
         with tempfile.TemporaryDirectory() as place:
             out, err = Path(place) / "out", Path(place) / "err"
-            environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
-            asked = json.dumps([str(folder), environment, str(out), str(err), words, most_seconds, most_bytes])
-            self.process.stdin.write(f"{asked}\n".encode())
-            self.process.stdin.flush()
-            idle, began = 0, used_by(self.process.pid)[0]
-            while not select.select([self.answer], [], [], 1.0)[0]:
-                used, wants = used_by(self.process.pid)
-                idle += not wants
-                if idle > patience or (used - began > patience and not most_seconds):
-                    self._kill()
-                    raise TimeoutError(f"{' '.join(words)} did not end in {patience} s")
-            status, seconds, memory = self.answer.readline().split()
+            self._ask(folder, out, err, words, most_seconds, most_bytes)
+            status, seconds, memory = self._answered(" ".join(words), patience, computes=not most_seconds)
             told = (stream.read_text(encoding="utf-8") for stream in (out, err))
-            return Ended(int(status), *told, float(seconds), float(memory))
+            return Ended(status, *told, seconds, memory)
+
+    def start(self, folder: Path, words: list[str]) -> int:
+        """The number of a copy at work that nobody listens to, the leader of a group; `waited` tells how it ended."""
+        self._ask(folder, Path(os.devnull), Path(os.devnull), words, 0, 0, apart=True)
+        return self.copy
+
+    def at_work(self) -> bool:
+        return not select.select([self.answer], [], [], 0.0)[0]
+
+    def waited(self) -> tuple[int, float]:
+        """Exit status, negative for a signal, and s of the processor of the copy that was started."""
+        status, seconds, _ = self._answered("a command", PATIENCE, computes=True)
+        return status, seconds
+
+    def _answered(self, what: str, patience: int, computes: bool) -> tuple[int, float, float]:
+        """Status, s and MB of the copy at work, once it has ended; `computes`: for no longer than `patience`."""
+        idle, began = 0, used_by(self.process.pid)[0]
+        while not select.select([self.answer], [], [], 1.0)[0]:
+            used, wants = used_by(self.process.pid)
+            idle += not wants
+            if idle > patience or (used - began > patience and computes):
+                self._kill()
+                raise TimeoutError(f"{what} did not end in {patience} s")
+        status, seconds, memory = self.answer.readline().split()
+        return int(status), float(seconds), float(memory)
+
+    def _ask(self, folder: Path, out: Path, err: Path, words: list[str], *limits: int, apart: bool = False) -> None:
+        if self.process is None:
+            self._start()
+        environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
+        asked = json.dumps([str(folder), environment, str(out), str(err), words, *limits, apart])
+        self.process.stdin.write(f"{asked}\n".encode())
+        self.process.stdin.flush()
+        self.copy = int(self.answer.readline())
 
     def _start(self, script: Path = SERVER) -> None:
         ours, theirs = os.pipe()
@@ -117,7 +140,9 @@ class Commands:
 
     def _kill(self) -> None:
         assert self.process is not None
-        os.killpg(self.process.pid, signal.SIGKILL)
+        for group in (self.process.pid, self.copy):  # the server's most often
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(group, signal.SIGKILL)
         self.process.wait()
         self.process = None
 

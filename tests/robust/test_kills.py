@@ -21,7 +21,7 @@ import pytest
 from freecad_am import api
 from freecad_am.batch import console, outputs, staging
 from freecad_am.core.issues import InputError
-from tests.batch.conftest import ended, used_by
+from tests.batch.conftest import COMMANDS, ended, used_by
 
 KINDS = ("plan", "plan", "export", "batch")
 TICK = 0.01  # s, in which the system counts what of the processor was used
@@ -162,17 +162,53 @@ def test_two_runs_in_one_folder_are_told_and_leave_one_set(tmp_path):
 # whole commands ------------------------------------------------------------------------------------------------------
 
 
+class Launched:
+    """A command as its users start it."""
+
+    def __init__(self, shop, words):
+        self.before = used_by_ended()
+        self.process = subprocess.Popen(
+            [str(shop.launcher), *words], cwd=shop.folder, env=shop.environment(), start_new_session=True,
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )
+        self.pid = self.process.pid
+
+    def at_work(self):
+        return self.process.poll() is None
+
+    def waited(self):
+        """Exit status, negative for a signal, and s of the processor."""
+        return ended(self.process), used_by_ended() - self.before
+
+
+class Copied:
+    """The same in a copy of a process that has all modules: none of the kills comes while these are imported, which writes
+    nothing."""
+
+    def __init__(self, shop, words):
+        self.pid = COMMANDS.start(shop.folder, words)
+
+    def at_work(self):
+        return COMMANDS.at_work()
+
+    def waited(self):
+        return COMMANDS.waited()
+
+
+def used_by_ended():
+    """s of the processor of the processes that were started here and ended."""
+    return sum(os.times()[2:4])
+
+
 class Bench:
     """Runs commands over earlier outputs, kills them and looks at what is left."""
 
-    def __init__(self, workshop, seed):
-        self.shop, self.random, self.speed = workshop, random.Random(seed), 4.0
+    def __init__(self, workshop, seed, start):
+        self.shop, self.random, self.speed, self.begun = workshop, random.Random(seed), 4.0, start
         self.took, self.finished = {}, 0
         for kind in dict.fromkeys(KINDS):
-            process = self.start(kind)
-            _, status, used = os.wait4(process.pid, 0)
+            status, self.took[kind] = self.start(kind).waited()
             assert status == 0
-            self.took[kind] = used.ru_utime + used.ru_stime
 
     def start(self, kind):
         """A command of a speed that none before had."""
@@ -189,10 +225,7 @@ class Bench:
         else:
             self.save()
             words = ["export", "saved.FCStd", "-o", "export"]
-        return subprocess.Popen(
-            [str(self.shop.launcher), *words], cwd=self.shop.folder, env=self.shop.environment(), start_new_session=True,
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )
+        return self.begun(self.shop, words)
 
     def save(self):
         """The document that is exported, of the speed at hand."""
@@ -217,12 +250,12 @@ class Bench:
         machine leaves as it is, and the signal."""
         process, number = self.start(kind), self.random.choice(SIGNALS)
         share = self.random.uniform(0.1, 1.02)
-        while process.poll() is None and used_by(process.pid)[0] < share * self.took[kind]:
+        while process.at_work() and used_by(process.pid)[0] < share * self.took[kind]:
             time.sleep(TICK)
         time.sleep(self.random.uniform(0.0, TICK))
         with contextlib.suppress(ProcessLookupError):
             (os.killpg if number == signal.SIGKILL or kind == "batch" else os.kill)(process.pid, number)
-        ended(process)
+        process.waited()
         return f"{share:.3f} {signal.Signals(number).name}"
 
     def folders(self):
@@ -273,8 +306,8 @@ def speed(name, data):
     return float(found[1]) if found else None
 
 
-def assert_survives(workshop, seed, kills, whole_every):
-    bench = Bench(workshop, seed)
+def assert_survives(workshop, seed, kills, whole_every, start):
+    bench = Bench(workshop, seed, start)
     bench.assert_one_set()
     for number in range(kills):
         kind = KINDS[number % len(KINDS)]
@@ -284,7 +317,7 @@ def assert_survives(workshop, seed, kills, whole_every):
             bench.assert_one_set()
             if number % whole_every == whole_every - 1:
                 for other in dict.fromkeys(KINDS):
-                    assert ended(bench.start(other)) == 0, other
+                    assert bench.start(other).waited()[0] == 0, other
                 bench.assert_one_set()
                 bench.assert_no_litter()
         except AssertionError as error:
@@ -293,11 +326,11 @@ def assert_survives(workshop, seed, kills, whole_every):
 
 
 def test_a_dozen_kills(workshop):
-    assert_survives(workshop, seed=1, kills=12, whole_every=12)
+    assert_survives(workshop, seed=1, kills=12, whole_every=12, start=Copied)
 
 
 @pytest.mark.long
 def test_three_hundred_kills(workshop):
     seed = int(os.environ.get("ROBUST_SEED") or random.SystemRandom().randrange(1 << 30))
     print(f"seed {seed}: ROBUST_SEED={seed} runs the same kills")
-    assert_survives(workshop, seed, kills=300, whole_every=20)
+    assert_survives(workshop, seed, kills=300, whole_every=20, start=Launched)
