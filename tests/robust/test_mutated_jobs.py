@@ -70,7 +70,7 @@ def _excess(folder, job, points, build):
     around = triangles_of(str(file.resolve()))
     away = np.min([triangles.distance(place, around) for place in cuts(points, build, strategy)], axis=0)
     chord = length(strategy.get("chord_error", 0.01))
-    if strategy.get("kind") in ("developable", "solid"):
+    if strategy.get("kind") in ("developable", "solid", "auto"):  # of parts in these jobs the last comes to a solid
         inside = [triangles.inside(place, around) for place in cuts(points, build, strategy)]
         away = np.where(np.any(inside, axis=0), 0.0, away)
         widest = max(length(strategy.get("bead_spacing", 5.0)), length(process.get("bead_width", 8.0)))

@@ -29,7 +29,7 @@ class SeamParameters:
 class WireParameters:
     """The feedstock; carried to the report and to the deposit commands of a post."""
 
-    diameter: float = f.parameter(1.2, f.LENGTH, "Diameter of the wire.", low=0.0, open_low=True)
+    diameter: float = f.parameter(1.2, f.LENGTH, "Diameter of the wire.", low=0.001, high=1000.0)
     feed: float | str = f.parameter(
         "auto", f.SPEED, "Speed of the wire; auto: what makes beads of their width and the layer height at the travel "
         "speed, or what the beads of the bead model were made with. 0: no wire.", low=0.0, words=("auto",),

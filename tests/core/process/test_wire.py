@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.process import bead_table
 from freecad_am.core.process.wire import fed
@@ -50,3 +51,10 @@ def test_beads_of_a_model_are_fed_as_they_were_measured():
     model = bead_table.load("csw")
     assert fed(PATH, process("auto"), model).wire_feed == model.wire_feed == pytest.approx(6500.0 / 60.0)
     assert fed(PATH, process(50.0), model).wire_feed == 50.0
+
+
+@pytest.mark.parametrize("diameter", [0.0, 1e-308, 9e-4])
+def test_a_wire_without_a_section_is_refused(diameter):
+    """The square of the thinnest is 0 in floats, by which the feed was divided."""
+    with pytest.raises(InputError, match="give at least 0"):
+        WireParameters(diameter=diameter)
