@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """From a selected hemisphere to a program by clicks."""
 
+from dataclasses import replace
+
 import FreeCAD as App
 import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.gui import registry
 
 
@@ -20,7 +22,7 @@ def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
     person.press("Ok")
     person.panel_closed()
     assert [(obj.Label, obj.Limits, obj.Status) for obj in api.stages_of(doc)] == [("Cell", "paper", "up to date")]
-    assert api.result(doc.Cell) == CellParameters(limits="paper")  # no digit is lost in the panel
+    assert api.result(doc.Cell) == replace(cell_of(""), limits="paper")  # no digit is lost in the panel
 
     person.select(part)
     person.click("RoboticAM_Feature")

@@ -42,6 +42,7 @@ GIGABYTES_A_POINT = 1.5e-6  # at the peak, all stages
 FEWEST = 24  # points of a bead on a wall
 PLACES = 181  # at which meridians and tubes are looked at
 ASKED = 20_000  # vertices that tell how far a wall reaches
+SECONDS_A_LAYER = 0.05  # s of the processor through all stages, however few points its beads have, measured at 25
 SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point of a bead that needs some, measured
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to
 # layer, and layers of cladding are laid flat to be filled
@@ -145,7 +146,8 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     """A note LARGE where planning takes more than LARGE_SECONDS or LARGE_GIGABYTES. Raises InputError as `refuse_absurd`."""
     refuse_absurd(size, strategy)
     a_point = next(seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind))
-    seconds, gigabytes = size.points * a_point, size.points * GIGABYTES_A_POINT
+    seconds = max(size.points * a_point, size.layers * SECONDS_A_LAYER)
+    gigabytes = size.points * GIGABYTES_A_POINT
     if seconds < LARGE_SECONDS and gigabytes < LARGE_GIGABYTES:
         return ()
     return (Issue(

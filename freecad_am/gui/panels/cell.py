@@ -159,17 +159,19 @@ class CellPanel(PreviewPanel):
             self._tell_of_machine(f"{type(error).__name__}: {error}")
             return
         proposal = self.of_machine.get(wanted)
-        usual = (None if before is None else self.of_machine.get(before)) or CellParameters()
+        default = CellParameters()
+        usual = (None if before is None else self.of_machine.get(before)) or default
         if proposal is None:  # no cell can have it, which the preview tells
             return
-        for place, value, was in (
-            (POINT, proposal.deposition_point, usual.deposition_point), (BRANCH, proposal.branch, usual.branch),
+        for place, value, *was in (
+            (POINT, proposal.deposition_point, usual.deposition_point, default.deposition_point),
+            (BRANCH, proposal.branch, usual.branch, default.branch),
         ):
             field = self.places[place][0]
             shown, holds = field.row.outer(value), self._holds(place)
             if _alike(holds, shown):
                 continue
-            if self.enabled[place] and any(_alike(holds, one) for one in (self.put.get(place), field.row.outer(was))):
+            if self.enabled[place] and any(_alike(holds, one) for one in (self.put.get(place), *map(field.row.outer, was))):
                 field.show(shown)
                 self.put[place] = shown
                 told = tr("Proposed for {}; enter what yours really has.").format(title)

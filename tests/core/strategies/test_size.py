@@ -173,6 +173,14 @@ def test_large_jobs_are_told(family, points, told):
         assert found[0].message.startswith(f"about {points:,} points in 180 layers are planned, which takes about {told} of")
 
 
+def test_many_layers_of_few_points_are_told():
+    """A cup in layers of 8 um, each of 25 points: minutes, which the points alone do not tell."""
+    assert size.judged(size.Size(500.0, 12_500.0), RevolutionParameters()) == ()
+    (issue,) = size.judged(size.Size(6_000.0, 150_000.0), RevolutionParameters())
+    assert issue.code == "LARGE" and "150,000 points in 6,000 layers" in issue.message
+    assert "takes about 5 min of the processor" in issue.message
+
+
 def test_what_is_absurd_is_refused_and_not_told():
     with pytest.raises(InputError, match="points"):
         size.judged(size.Size(180.0, 2.0 * size.MOST_POINTS), RevolutionParameters())
