@@ -9,7 +9,7 @@ part of their points and scaled up; its polyline below is refined four times, or
 
 from __future__ import annotations
 
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 
@@ -36,9 +36,9 @@ def run() -> list[Row]:
     first = on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, POINTS))
     times, peers = [], []
     for _ in range(ROUNDS):
-        start = perf_counter()
+        start = process_time()
         layers = constant_distance.layers(torus, first, HEIGHT, 0.5 * np.pi, POINTS)
-        times.append(perf_counter() - start)
+        times.append(process_time() - start)
         peers.append(np.mean([_bisected(torus, layers[i - 1], layers[i]) for i in SAMPLED]) * (len(layers) - 1))
     name = f"constant distance, {len(layers)} layers of {POINTS} points, {TOLERANCE:g} mm, against bisection"
     return [Row(name, float(np.median(times)), float(np.median(peers)), "s", 50.0), *_doublings(torus), _fronts()]
@@ -54,9 +54,9 @@ def _doublings(torus: Torus) -> list[Row]:
     times: list[list[float]] = [[] for _ in grids]
     for _ in range(ROUNDS):  # in turn, so that what else the machine does meets all of them
         for i, (points, first) in enumerate(zip(grids, firsts)):
-            start = perf_counter()
+            start = process_time()
             layers = constant_distance.layers(torus, first, 5.0 * HEIGHT, 0.5 * np.pi, points)
-            times[i].append((perf_counter() - start) / sum(len(layer.v) for layer in layers))
+            times[i].append((process_time() - start) / sum(len(layer.v) for layer in layers))
     middle = [float(np.median(some)) for some in times]
     return [
         Row(f"constant distance, time per point of {points} points around against {grids[i]}", 1e6 * middle[i + 1],
@@ -72,9 +72,9 @@ def _fronts() -> Row:
     times: list[list[float]] = [[] for _ in FRONTS]
     for _ in range(ROUNDS):
         for some, wall, height in zip(times, walls, FRONTS):
-            start = perf_counter()
+            start = process_time()
             layers = fronts.layers(wall, height).fronts
-            some.append((perf_counter() - start) / sum(len(front.w) for layer in layers for front in layer))
+            some.append((process_time() - start) / sum(len(front.w) for layer in layers for front in layer))
     coarse, fine = (float(np.median(some)) for some in times)
     name = f"fronts, time per point of layers {FRONTS[1]:g} mm apart against {FRONTS[0]:g} mm (4 times the points)"
     return Row(name, 1e6 * fine, 1e6 * coarse, "us", LINEAR)
@@ -88,7 +88,7 @@ def _bisected(torus: Torus, below: WallLayer, above: WallLayer) -> float:
     v = above.v[:-1:EVERY]
     base = np.interp(v, below.v, below.u)
     found = np.empty(len(v))
-    start = perf_counter()
+    start = process_time()
     for i, (one, low) in enumerate(zip(v, base)):
         high = low + 3.0 * HEIGHT / (torus.bend - torus.tube)
         while (high - low) * (torus.bend + torus.tube) > 0.1 * TOLERANCE:
@@ -101,7 +101,7 @@ def _bisected(torus: Torus, below: WallLayer, above: WallLayer) -> float:
             else:
                 high = middle
         found[i] = 0.5 * (low + high)
-    seconds = perf_counter() - start
+    seconds = process_time() - start
     apart = np.abs(found - above.u[:-1:EVERY]).max() * (torus.bend + torus.tube)
     if apart > TOLERANCE:
         raise RuntimeError(f"bisection differs by {apart:.2g} mm")

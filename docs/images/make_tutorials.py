@@ -41,7 +41,7 @@ def main(pages: list[str]) -> int:
     tests = [str(path) for path in sorted(TESTS.glob("test_*.py")) if not pages or path.stem.split("_")[-1] in pages]
     with tempfile.TemporaryDirectory() as folder:
         env = {**os.environ, "ROBOTIC_AM_PICTURES": folder}
-        run = [sys.executable, "-m", "tests.run"]
+        run = [sys.executable, "-m", "tests.run", "--long"]
         # each in a window of its own, where no panel has the size that another tutorial gave it
         status = max(subprocess.run([*run, test], cwd=ROOT, env=env, check=False).returncode for test in tests)
         if status == 0:
