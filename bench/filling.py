@@ -1,29 +1,38 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parallel curves of a region of 2,000 points, as arrays, against the bare library doing the same; the distance through a
-solid that curved layers are levels of."""
+"""Parallel curves of a region of 2,000 points, as arrays, against the bare library doing the same; a bracket cut and filled
+with contours against its bare parallel curves; the distance through a solid that curved layers are levels of."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from statistics import median
 from time import process_time
 
 import numpy as np
 
+from freecad_am.brep.hub import bodies_of
+from freecad_am.brep.read import read_shape
+from freecad_am.core.filling.curve import Beads
+from freecad_am.core.filling.fill import fill
 from freecad_am.core.geometry.regions.region import regions, shapely
 from freecad_am.core.layers import eikonal
 from freecad_am.core.layers.voxels import voxels
+from freecad_am.core.slicing.plane_sections import PlaneCuts
 
 from rows import Row
 
 POINTS, OFFSETS, ROUNDS, DEEPEST, CHORD_ERROR = 2000, 100, 15, 20.0, 0.02
 WITHIN = 1.5  # times the bare library
 FEWER = 3
+BRACKET = Path(__file__).resolve().parent.parent / "resources" / "examples" / "bracket.step"
+# of the bracket; mm; times its bare parallel curves, most of it for the middles that these leave open
+SECTIONS, SPACING, SEVERAL = 100, 4.0, 80.0
 BLOCK, STEPS, FIELD = (100.0, 80.0, 25.0), (1.0, 0.5848), 5.0  # mm; 200,000 and a million nodes; s
 
 
 def run() -> list[Row]:
     """Offsets, and fields, the latter against the time asked for and against themselves."""
-    return [*_offsets(), *_fields()]
+    return [*_offsets(), _filled(), *_fields()]
 
 
 def _offsets() -> list[Row]:
@@ -49,6 +58,30 @@ def _offsets() -> list[Row]:
         bare.append(process_time() - start)
     name = f"{OFFSETS} offsets of a region of {POINTS} points, against shapely alone"
     return [Row(name, median(ours), median(bare), "s", 1.0 / WITHIN)]
+
+
+def _filled() -> Row:
+    """Contours with the beads between them that close gaps, against the parallel curves alone, which leave these open."""
+    body, = bodies_of(read_shape(BRACKET), "bracket", 0.05, 0.0).bodies
+    cuts = PlaneCuts(body.vertices, body.triangles.astype(np.intp))
+    low, high = body.vertices[:, 2].min(), body.vertices[:, 2].max()
+    layers = [regions(loops) for loops in cuts.loops(low + (high - low) * (np.arange(SECTIONS) + 0.5) / SECTIONS)]
+    beads = Beads(SPACING, 0.2 * SPACING, 2.0, chord_error=CHORD_ERROR)
+    library = shapely()
+    start = process_time()
+    assert all(fill(region, beads) for layer in layers for region in layer)
+    ours = process_time() - start
+    start = process_time()
+    for region in (region for layer in layers for region in layer):
+        rings = region.rings()
+        whole = library.geometry.Polygon(rings[0], rings[1:])
+        left, depth = whole, 0.5 * SPACING
+        while not left.is_empty:
+            left = whole.buffer(-depth, **{library.arcs: 8})
+            depth += SPACING
+    bare = process_time() - start
+    name = f"{SECTIONS} sections of a bracket filled with contours, against their bare parallel curves"
+    return Row(name, ours, bare, "s", 1.0 / SEVERAL)
 
 
 def _fields() -> list[Row]:
