@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Fillings measured: spacing, cover, gaps, sense, start, links; by distances of their own."""
 
+import functools
 import importlib.util
 from pathlib import Path
 
@@ -30,24 +31,30 @@ def filled(name, pattern, beads=BEADS, **options):
     return fill(region, beads, pattern, **options)
 
 
+@functools.cache
+def ground(name):
+    """Of a shape: its border, places of a grid, which of these are inside, and which beads inside can reach: those within half
+    a bead of a place that is half a bead inside."""
+    border = tree([(loop, True) for loop in SHAPES[name]], STEP)
+    grid, within = raster(SHAPES[name], PITCH)
+    core = within & (distance(border, grid, 0.5 * S) >= 0.5 * S)
+    return border, grid, within, distance(tree([(grid[core], False)], 1e9), grid, 0.5 * S) < 0.5 * S - PITCH
+
+
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("pattern", PATTERNS)
 def test_cover_gaps_and_nothing_outside(name, pattern):
     loops = SHAPES[name]
     gap = 1.0  # the gap allowed decides how much stays open
     curves = filled(name, pattern, Beads(S, gap, 0.0), angle=0.4, walls=1)
-    border = tree([(loop, True) for loop in loops], STEP)
+    border, grid, within, reach = ground(name)
     beads = tree([(curve.points, curve.closed) for curve in curves], STEP)
     # no middle of a bead nearer to the border than half a bead, minus the chord error
     points = np.vstack([dense(curve.points, curve.closed, 0.3) for curve in curves])
     assert inside(loops, points).all()
     assert distance(border, points, S).min() > 0.5 * S - 2.0 * BEADS.chord_error - 1e-3
-    grid, within = raster(loops, PITCH)
     away = distance(beads, grid, S)
     assert ((away <= 0.5 * S) & ~within).sum() < 0.01 * within.sum()
-    # what beads inside can reach: within half a bead of a place that is half a bead inside
-    core = within & (distance(border, grid, 0.5 * S) >= 0.5 * S)
-    reach = distance(tree([(grid[core], False)], 1e9), grid, 0.5 * S) < 0.5 * S - PITCH
     # the beads are points up to a STEP apart, and rows of the grid lie just between two of them
     covered = away <= np.hypot(0.5 * S, 0.5 * STEP)
     assert (covered & reach).sum() > 0.99 * reach.sum()
@@ -176,11 +183,8 @@ def test_short_beads_that_close_gaps_go_on_until_they_are_long_enough(pattern):
     lines = [np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points for curve in curves]
     lengths = [np.hypot(*np.diff(line, axis=0).T).sum() for line in lines]
     assert min(lengths) >= least - 1e-9
-    grid, within = raster(SHAPES["wavy 1"], PITCH)
-    border = distance(tree([(loop, True) for loop in SHAPES["wavy 1"]], STEP), grid, 0.5 * S)
+    _, grid, _, reach = ground("wavy 1")
     away = distance(tree([(curve.points, curve.closed) for curve in curves], STEP), grid, S)
-    core = within & (border >= 0.5 * S)
-    reach = distance(tree([(grid[core], False)], 1e9), grid, 0.5 * S) < 0.5 * S - PITCH
     assert away[reach].max() < 0.5 * (S + GAP) + PITCH
 
 
