@@ -162,11 +162,11 @@ def shell_on_a_dome():
 def test_layers_start_on_the_faces_that_are_named(planned, layers):
     """Every point lies on the ball its layer says, though the part touches the plane under it with its rim alone."""
     cap, inner = shell_on_a_dome()
-    done, _, rows = planned(cap, layers, 2.0, more=f", start_faces: [{inner}]")
+    done, _, rows = planned(cap, layers, more=f", start_faces: [{inner}]")
     assert done.status == 0, done.err
     points, layer = column(rows, "x_mm", "y_mm", "z_mm"), np.array([int(row["layer"]) for row in rows])
-    assert set(layer) == set(range(5))
-    assert np.abs(np.linalg.norm(points, axis=1) - 40.0 - 2.0 * layer).max() < 0.3
+    assert set(layer) == set(range(4))
+    assert np.abs(np.linalg.norm(points, axis=1) - 40.0 - HEIGHT * layer).max() < 0.3
     assert (points[:, 2] > 25.0).all()
 
 
@@ -187,11 +187,11 @@ def test_start_faces_of_another_object_must_be_touched():
         part, dome, away = (document.addObject("Part::Feature", name) for name in ("Cap", "Dome", "Away"))
         part.Shape, dome.Shape = cap, Part.makeSphere(40)
         away.Shape = Part.makeBox(10, 10, 10, FreeCAD.Vector(80, 0, 0))
-        values = {"layers": "offset", "layer_height": 2, "chord_error": 0.05, "bead_spacing": 4}
+        values = {"layers": "offset", "layer_height": HEIGHT, "chord_error": 0.2, "bead_spacing": SPACING}
         made = api.result(api.make_toolpath(document, api.make_solid_feature(
             document, part, start_faces=(dome, ["Face1"]), **values)))
         for index, _, bead in made:
-            assert np.abs(np.linalg.norm(bead.points, axis=1) - 40.0 - 2.0 * index).max() < 0.3
+            assert np.abs(np.linalg.norm(bead.points, axis=1) - 40.0 - HEIGHT * index).max() < 0.3
         with pytest.raises(InputError) as caught:
             api.make_toolpath(document, api.make_solid_feature(document, part, start_faces=(away, ["Face1"]), **values))
         assert caught.value.code == "NOT_STANDING" and "mm away" in caught.value.message

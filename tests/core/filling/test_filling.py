@@ -33,8 +33,8 @@ def filled(name, pattern, beads=BEADS, **options):
 
 @functools.cache
 def ground(name):
-    """Of a shape: its border, places of a grid, which of these are inside, and which beads inside can reach: those within half
-    a bead of a place that is half a bead inside."""
+    """Of a shape: its border, places of a grid, which of these are inside, and which beads inside can reach: those within
+    half a bead of a place that is half a bead inside."""
     border = tree([(loop, True) for loop in SHAPES[name]], STEP)
     grid, within = raster(SHAPES[name], PITCH)
     core = within & (distance(border, grid, 0.5 * S) >= 0.5 * S)

@@ -23,7 +23,7 @@ def paper(tube=15.0, start=0.0, pipe=PIPE):
 
 
 def fine_line(layer):
-    """A fine polyline through a layer, and the tree of its points, which lie in order: halves that are as they come serve."""
+    """A fine polyline through a layer, and the tree of its points, which lie in order and need no balance."""
     line = layer.curve.at(layer.curve.refined(80))[0]
     return line, cKDTree(line, compact_nodes=False, balanced_tree=False)
 
