@@ -99,12 +99,14 @@ def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
 
     A piece ends where the axis would pass a limit; the next starts with the axis turned back. An axis
     without the stroke for a full turn gets pieces of equal length, `more` than the fewest, which then need
-    rotations of their own.
+    rotations of their own; where points are out of reach nobody knows how many, and the bead is left whole.
     """
     axis = int(np.argmax(np.ptp(joints, axis=0) * ~task.unturned))
     low, high = task.rows_of_axis(axis)
     along = joints[:, axis]
     if high - low < TURN:
+        if not np.isfinite(along).all():
+            return [slice(0, len(bead))]
         count = int(np.ceil(np.ptp(along) / (USABLE * (high - low)))) + more
         count = min(count, len(bead) - 1)  # a piece has two points at least
         ends = np.round(np.linspace(0, len(bead) - 1, count + 1)).astype(int)

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.planning import turns
 from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.task import Task
 from freecad_am.core.toolpath import Layer
 
 
@@ -28,6 +30,18 @@ def test_a_limited_axis_6_is_solved(sliced, cell_of, with_axis_6, part, half):
         points = np.concatenate([path.bead.points for path in found.beads if path.layer == layer])
         distance = np.linalg.norm(planned.beads[0].points[:, None] - points[None], axis=2).min(axis=1)
         assert distance.max() < 1e-9
+
+
+def test_a_bead_with_points_out_of_reach_is_left_whole(sliced, cell_of, with_axis_6):
+    """All robots but the papers' have an axis 1 of less than a turn, by whose stroke it is cut then."""
+    toolpath = sliced("sphere", 20.0)
+    bead = toolpath.layers[0].beads[0]
+    joints = np.linspace(0.0, 1.0, len(bead))[:, None] * np.ones(6)
+    joints[3] = np.nan
+    cell = with_axis_6(cell_of(toolpath), 165.0)
+    limits = dataclasses.replace(cell.limits, lower=np.full(6, -2.0), upper=np.full(6, 2.0))
+    task = Task(dataclasses.replace(cell, limits=limits), 0, JointParameters())
+    assert turns.pieces(task, bead, joints, 1) == [slice(0, len(bead))]
 
 
 def test_beads_are_split_only_where_the_stroke_is_less_than_a_turn(sliced, cell_of, with_axis_6):
