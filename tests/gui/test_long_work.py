@@ -14,7 +14,7 @@ from freecad_am import api
 from freecad_am.core.issues import InputError
 from freecad_am.gui.background import busy
 from freecad_am.gui.background.worker import Worker
-from freecad_am.objects import hooks, progress
+from freecad_am.objects import hooks, part_file, progress
 from freecad_am.objects.feature import RevolutionFeature
 from freecad_am.objects.progress import Cancelled
 from freecad_am.objects.toolpath import Toolpath
@@ -252,6 +252,17 @@ def test_progress_is_shown_with_words(person, feature, monkeypatch):
     watcher.stop()
     assert seen[0][0] == "Toolpath: counting" and seen[0][1] > 0
     assert seen[0][2]  # nothing of the bar is cut off
+
+    def endlessly(path):
+        while True:
+            time.sleep(0.01)
+
+    monkeypatch.setattr(part_file, "read_shape", endlessly)
+    watcher = Watcher(person, look)
+    with pytest.raises(Cancelled):
+        part_file.part_shape("/parts/cup.step")
+    watcher.stop()
+    assert seen[1][0] == "cup: reading the file"  # not that it is computed
 
 
 def test_work_that_swallows_the_order_to_end_is_left_to_itself(person):
