@@ -61,17 +61,16 @@ def test_one_bead_through_all_contours(name):
     border = shapes.tree([(loop, True) for loop in loops], 0.1)
     assert border.query(line)[0].min() > 0.5 * S - 0.05
     grid, within = shapes.raster(loops, 0.5)
-    from_border = border.query(grid)[0]
-    away = shapes.tree([(curve.points, True)], 0.1).query(grid)[0]
-    reach = within & (from_border >= 0.5 * S)
+    tree = shapes.tree([(curve.points, True)], 0.1)
+    away = shapes.distance(tree, grid, S + BEADS.gap)
+    reach = within & (shapes.distance(border, grid, 0.5 * S) >= 0.5 * S)
     assert (away[reach] <= 0.5 * S + 0.01).mean() >= 0.99
     assert away[reach].max() < 0.5 * S + BEADS.gap, "beside links about the gap allowed stays open"
     # every contour of the usual filling is there, but for its openings
     contours = [one for one in fill(region, BEADS) if one.kind == "contour"]
-    tree = shapes.tree([(curve.points, True)], 0.1)
     for one in contours:
         at = shapes.dense(one.points, True, 0.1)
-        lost = (tree.query(at)[0] > 0.15).sum() * 0.1
+        lost = (shapes.distance(tree, at, 0.2) > 0.15).sum() * 0.1
         assert lost < 0.75 * len(at) * 0.1 or len(at) * 0.1 < 12.0 * S
     share = np.ones(len(curve.points)) if curve.share is None else curve.share
     assert share.min() >= 0.3 and share.max() == 1.0

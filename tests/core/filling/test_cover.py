@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Cover at the defaults of a job, measured on a raster by distances of its own: no wedges, no gaps, nothing outside."""
 
+import functools
 import importlib.util
 import math
 from dataclasses import replace
@@ -52,18 +53,24 @@ def whole(curve):
     return np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
 
 
+@functools.cache
+def ground(name):
+    """Of a region: places of a grid, which of these are inside, how far they are from the border, up to half a bead, and
+    what beads inside can reach: within half a bead of a place that is half a bead inside."""
+    grid, within = shapes.raster(REGIONS[name], PITCH)
+    border = shapes.tree([(loop, True) for loop in REGIONS[name]], STEP)
+    from_border = shapes.distance(border, grid, 0.5 * S)
+    reach = shapes.distance(cKDTree(grid[within & (from_border >= 0.5 * S)]), grid, 0.5 * S) < 0.5 * S - PITCH
+    return grid, within, from_border, reach
+
+
 @pytest.mark.parametrize("pattern,angle", WAYS, ids=IDS)
 @pytest.mark.parametrize("name", REGIONS)
 def test_at_least_99_percent_is_covered_and_no_bead_is_outside(name, pattern, angle):
-    loops = REGIONS[name]
-    region, = regions(loops)
+    region, = regions(REGIONS[name])
     curves = fill(region, BEADS, pattern, angle, DEFAULT.contour)
-    grid, within = shapes.raster(loops, PITCH)
-    border = shapes.tree([(loop, True) for loop in loops], STEP)
-    from_border = shapes.distance(border, grid, 0.5 * S)
+    grid, within, from_border, reach = ground(name)
     away = shapes.distance(shapes.tree([(curve.points, curve.closed) for curve in curves], STEP), grid, 2.0 * S)
-    # what beads inside can reach: within half a bead of a place that is half a bead inside
-    reach = shapes.distance(cKDTree(grid[within & (from_border >= 0.5 * S)]), grid, 0.5 * S) < 0.5 * S - PITCH
     covered = away <= 0.5 * S + 1e-3
     assert (covered & reach).sum() >= 0.99 * reach.sum()
     assert away[reach].max() < 0.5 * (S + GAP) + 0.02, "no gap is wider than stated"
