@@ -60,15 +60,15 @@ def as_run(
 
 def arm_of(
     motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, shapes: tuple[Mesh | None, ...],
-    most: int | None = None,
+    most: int | None = None, clearance: float = 0.0,
 ) -> ArmTouches | None:
-    """What the links of a robot touch, looked at in so many places at most; None for machines with rotary axes, of whose
-    links no file tells enough."""
+    """What the links of a robot touch, or come nearer to than `clearance` mm, looked at in so many places at most; None for
+    machines with rotary axes, of whose links no file tells enough."""
     if cell.machine.is_table:
         return None
     rods = link_rods.of_robot(cell.robot.chain, shapes)
     deposited = laid(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
-    return arm_touches(motion, ArmContact(cell, rods, toolpath.surroundings, deposited), most)
+    return arm_touches(motion, ArmContact(cell, rods, toolpath.surroundings, deposited, clearance), most)
 
 
 def _renumbered(issue: Issue, before: Motion, after: Motion, origin: NDArray[np.int64]) -> Issue:

@@ -26,6 +26,7 @@ from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
 from . import progress, user_machines
+from .links_clear import arm_issues, rods_of
 from .stage import Link, Outcome, Section, Stage, Work, stage_of
 from .staleness import UP_TO_DATE
 
@@ -119,16 +120,19 @@ class JointPath(Stage):
         def work() -> Outcome:
             toolpath, process = job.toolpath(), job.process
             cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
+            rods = () if cell.arm_clearance is None else rods_of(cell)
             joint_path = plan_joints(
-                toolpath, cell, job.parameters, lambda fraction, text: progress.report(JOINTS * fraction, text)
+                toolpath, cell, job.parameters, lambda fraction, text: progress.report(JOINTS * fraction, text), rods
             )
             progress.report(JOINTS, "joining the beads by rapid moves")
             motion, rapid_issues = assemble(
-                joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height
+                joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height, rods
             )
-            issues = (*joint_path.issues, *rapid_issues, *_heights_as_run(joint_path, toolpath, process))
+            near = () if not rods else arm_issues(motion, cell, toolpath, process, rods, (*joint_path.issues, *rapid_issues))
+            issues = (*joint_path.issues, *rapid_issues, *near, *_heights_as_run(joint_path, toolpath, process))
             asked = Tried(
-                lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed
+                lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,
+                rods=rods,
             )
             issues = (*remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)), *issues)
             condition = np.concatenate([bead.condition for bead in joint_path.beads])

@@ -113,7 +113,7 @@ def of_motion(
             planned.motion, [one.bead for one in planned.joint_path.beads], cell, toolpath.surroundings,
             toolpath.bead_width or known.process.bead_width, toolpath.layer_height, RAPID_PLACES,
         ), condition=run.condition, threshold=run.threshold,
-        arm=arm_of(run.motion, cell, toolpath, known.process, shapes, ARM_PLACES),
+        arm=arm_of(run.motion, cell, toolpath, known.process, shapes, ARM_PLACES, cell.arm_clearance or 0.0),
         true_shapes=bool(shapes) and None not in shapes,
         read=None if read is None else _read_back(read, toolpath.chord_error),
         on_controller=() if settings is None else catalogue.load(settings.post).ON_CONTROLLER,

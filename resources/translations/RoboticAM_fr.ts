@@ -630,6 +630,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; left out, planning does not look at them. (mm)</source>
+        <translation>Robots : distance que les corps du bras gardent à la pièce, au dépôt, à la plateforme, aux montages et à la buse, déplacements rapides compris ; sans valeur, la planification ne les regarde pas. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: shoulder, elbow and wrist, or auto to search all eight.</source>
         <translation>Robots : épaule, coude et poignet, ou auto pour chercher parmi les huit.</translation>
     </message>
@@ -1365,6 +1370,11 @@
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
         <source>Area of the faces.</source>
         <translation>Aire des faces.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Arm clearance</source>
+        <translation>Dégagement du bras</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
@@ -3990,6 +4000,11 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: axes beside them that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
         <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; left out, planning does not look at them.</source>
+        <translation>Robots : distance que les corps du bras gardent à la pièce, au dépôt, à la plateforme, aux montages et à la buse, déplacements rapides compris ; sans valeur, la planification ne les regarde pas.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -8047,6 +8062,11 @@
         <translation>joints.given nomme des cordons qui n&apos;existent pas : {0} ; retirez-les</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/layer_by_layer.py"/>
+        <source>keeping the arm clear</source>
+        <translation>dégagement du bras</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/in_sequence.py"/>
         <source>keeping the nozzle clear</source>
         <translation>maintien de la buse à distance</translation>
@@ -8225,6 +8245,16 @@
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>lines of the surface</source>
         <translation>lignes de la surface</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <source>link {0} comes nearer than {1} mm to {2}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -8625,6 +8655,16 @@
         <location filename="../../freecad_am/core/preflight/written.py"/>
         <source>not checked: there is no program that was read back</source>
         <translation>non vérifié : il n’y a pas de programme relu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come nearer than {0} mm to nothing, looked at every {1} deg</source>
+        <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique ne s’approchent à moins de {0} mm de rien, regardés tous les {1} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come nearer than {0} mm to {1} with {2}, looked at every {3} deg</source>
+        <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique s’approchent à moins de {0} mm de {1} avec {2}, regardés tous les {3} deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -9080,6 +9120,16 @@
         <location filename="../../freecad_am/core/planning/plan.py"/>
         <source>several solutions of this arm bear the same configuration; along each bead the one it begins with is followed</source>
         <translation>plusieurs solutions de ce bras ont la même configuration ; le long de chaque cordon, celle du début est suivie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>shapes of all links, every {0} deg of the whole motion: they come nearer than {1} mm to nothing; links against each other are not checked</source>
+        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils ne s’approchent à moins de {1} mm de rien ; les corps entre eux ne sont pas vérifiés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>shapes of all links, every {0} deg of the whole motion: they come nearer than {1} mm to {2} with {3}; links against each other are not checked</source>
+        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils s’approchent à moins de {1} mm de {2} avec {3} ; les corps entre eux ne sont pas vérifiés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>

@@ -248,6 +248,7 @@ def test_a_saved_cell_is_the_cell_again_where_jobs_name_it(tmp_path):
     given = CellParameters(
         machine=f"ur-ur10e calibration={tmp_path / 'robot 1.yaml'}", setup="tool-on-robot", branch="auto",
         platform=(1.0, 2.0, 3.0, 0.1, -0.2, 0.3), platform_diameter=250.0, mount="part", world_up="0 0.5 1",
+        arm_clearance=12.5,
         nozzle=NozzleParameters(half_angle=0.3, tool=(1.5, 0.0, 210.0, 0.0, 0.4, 0.0)),
         external="motoman-motopos-d500 at 900 10.5 -200 0 0 30 carries part",
     )

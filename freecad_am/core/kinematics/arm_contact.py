@@ -63,7 +63,7 @@ class _Group:
 @dataclass(frozen=True)
 class ArmContact:
     """A robot in its cell. rods: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
-    deposit: in part coordinates.
+    deposit: in part coordinates. clearance: mm, links that are nearer touch.
 
     names: what can be touched, as messages call it.
     """
@@ -72,6 +72,7 @@ class ArmContact:
     rods: Sequence[Sequence[Rod]]
     bodies: Sequence[Body] = ()
     deposit: Obstacles | None = None
+    clearance: float = 0.0
     names: tuple[str, ...] = field(init=False)
     _groups: tuple[_Group, ...] = field(init=False, repr=False)
     _balls: tuple[tuple[Array, float], ...] = field(init=False, repr=False)
@@ -128,18 +129,19 @@ class ArmContact:
             for number in group.links:
                 middle, size = self._balls[number]
                 away = links[:, number, :3, :3] @ middle + links[:, number, :3, 3] - centre
-                within = size + group.radius + 2.0 * ABOUT_FACES
+                within = size + group.radius + self.clearance + 2.0 * ABOUT_FACES
                 rows = np.flatnonzero((link == NONE) & (np.einsum("ij,ij->i", away, away) < within**2))
                 if len(rows):
                     seen = frames.inverse(frame[rows]) @ links[rows, number]
-                    met = rows[_meets(group, self.rods[number], seen, moment[rows])]
+                    met = rows[_meets(group, self.rods[number], seen, moment[rows], self.clearance)]
                     link[met], what[met] = number, place
         return link, what
 
 
-def _meets(group: _Group, rods: Sequence[Rod], seen: Array, moment: Index) -> Mask:
-    """(k,) whether rods of a link, whose frame is seen as (k, 4, 4), meet a group."""
+def _meets(group: _Group, rods: Sequence[Rod], seen: Array, moment: Index, clearance: float) -> Mask:
+    """(k,) whether rods of a link, whose frame is seen as (k, 4, 4), meet a group, or come nearer."""
     met = np.zeros(len(seen), dtype=bool)
+    more = ABOUT_FACES + clearance
     for rod in rods:
         left = np.flatnonzero(~met)
         start = seen[left, :3, :3] @ rod.start + seen[left, :3, 3]
@@ -147,9 +149,9 @@ def _meets(group: _Group, rods: Sequence[Rod], seen: Array, moment: Index) -> Ma
         # only rods that come near the ball are looked at closely
         along = np.clip(np.einsum("ij,ij->i", group.centre - start, axis), 0.0, rod.length)
         off = start + along[:, None] * axis - group.centre
-        within = group.radius + rod.radius + 2.0 * ABOUT_FACES
+        within = group.radius + rod.radius + ABOUT_FACES + more
         near = np.flatnonzero(np.einsum("ij,ij->i", off, off) < within**2)
-        solid = Frustum(rod.radius + ABOUT_FACES, 0.0, -ABOUT_FACES, rod.length + ABOUT_FACES)
+        solid = Frustum(rod.radius + more, 0.0, -more, rod.length + more)
         met[left[near]] = group.scene.touched(solid, start[near], axis[near], moment[left[near]])
     return met
 

@@ -60,6 +60,7 @@ class Cell:
     nozzle: NozzleParameters = field(default_factory=NozzleParameters)
     platform_diameter: float = 0.0
     external: ExternalAxes | None = None
+    arm_clearance: float | None = None
 
     @property
     def robot(self) -> Machine:
@@ -271,4 +272,5 @@ def resolve(
         nozzle=parameters.nozzle,
         platform_diameter=parameters.platform_diameter,
         external=external,
+        arm_clearance=parameters.arm_clearance,
     )

@@ -71,6 +71,10 @@ class CellParameters:
     world_up: str = f.parameter(
         "0 0 1", f.TEXT, "Against gravity, as x y z in the world.", advanced=True,
     )
+    arm_clearance: float | None = f.parameter(
+        None, f.LENGTH, "Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; "
+        "left out, planning does not look at them.", low=0.0, high=1000.0, optional=True,
+    )
 
     def upward(self) -> tuple[float, float, float]:
         """`world_up` as three numbers, not of unit length. InputError BAD_VALUE for what is no direction."""

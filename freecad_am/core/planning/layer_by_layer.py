@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..issues import Issue
 from ..toolpath import Bead
-from . import given, refine, room, search, valley
+from . import arm_clear, given, refine, room, search, valley
 from .joint_path import BeadPath
 from .judged import judged
 from .points import gather
@@ -54,6 +54,10 @@ def _searched(
     coarse_threshold, threshold = task.thresholds(coarse), task.thresholds(full)
     progress(0.1, "searching rotations")
     found = search.everywhere(task, coarse, coarse_threshold)
+    if task.kept is not None:
+        progress(0.2, "keeping the arm clear")
+        looked = gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
+        found = arm_clear.without_touching(task, task.kept, looked, places, found)
     best, each = found.best(), np.arange(len(beads))
     start = found.coefficients[best, each]
     # a bead that no rotation serves from its own seam may do from another: cheaper to try than a local search
@@ -80,6 +84,13 @@ def _searched(
             path if good and path.margin >= min(FITS, other.margin) else other
             for path, other, good in zip(paths, as_found, equal)
         ]
+    if task.kept is not None:
+        progress(0.8, "keeping the arm clear")
+        reached = np.array([path.coefficients for path in paths])
+        clear, changed = arm_clear.brought_clear(task, task.kept, beads, places, start, reached)
+        if changed.any():
+            others = judged(task, beads, places, full, threshold, clear, refined)
+            paths = [other if one else path for path, other, one in zip(paths, others, changed)]
     # a joined bead that a higher degree serves in one piece need not be split
     helped = {k: some for k, some in helped.items() if len(some) == 1 or not joined[k] or paths[k].margin < FITS}
     late = [int(k) for k in each if paths[k].margin < FITS and k not in helped and k not in hopeless]

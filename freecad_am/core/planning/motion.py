@@ -15,6 +15,7 @@ from ..kinematics.cell import Cell
 from ..motion import DEPOSIT, Motion
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
+from .arm_kept import Rods
 from .joint_path import BeadPath, JointPath
 from .rapid_findings import findings
 from .rapid_ways import RapidWays, Way
@@ -46,7 +47,7 @@ class _Rows:
 
 def assemble(
     joint_path: JointPath, cell: Cell, process: ProcessParameters, bodies: Sequence[Body] = (),
-    parameters: JointParameters | None = None, layer_height: float = 0.0,
+    parameters: JointParameters | None = None, layer_height: float = 0.0, rods: Rods = (),
 ) -> tuple[Motion, tuple[Issue, ...]]:
     """The motion of a joint path with its rapids, and what is wrong with the rapids.
 
@@ -57,10 +58,11 @@ def assemble(
     the sphere about all of these, then in other directions. Where nothing helps, that is an issue.
 
     parameters: those the joint path was planned with, for the least condition; the usual ones where left out. layer_height:
-    mm, how high beads are that do not tell it.
+    mm, how high beads are that do not tell it. rods: of each link of the robot, kept clear as the nozzle is where
+    `cell.arm_clearance` asks for it.
     """
     ways = RapidWays(joint_path, cell, process.between_layers.lift, bodies, parameters or JointParameters(),
-                      process.bead_width, layer_height)
+                      process.bead_width, layer_height, rods)
     parts: list[_Rows] = []
     for number, path in enumerate(joint_path.beads):
         parts += [_rapid(path, ways.ways[number], ways.legs[2 * number], cell), _deposit(path)]

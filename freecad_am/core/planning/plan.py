@@ -15,7 +15,8 @@ from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
-from . import comparison, constant, given, layer_by_layer, point_by_point, search, table, track, turns
+from . import arm_clear, comparison, constant, given, layer_by_layer, point_by_point, search, table, track, turns
+from .arm_kept import ArmKept, Rods, of_job
 from .certificate import bound
 from .findings import findings
 from .joint_path import BeadPath, JointPath
@@ -28,6 +29,7 @@ from .task import Task
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
+Place = tuple[int, int]
 
 METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_point.plan, "constant": constant.plan}
 # what there is to choose where a robot is free to turn about the tool
@@ -46,12 +48,13 @@ def _silent(fraction: float, text: str) -> None:
 
 
 def plan_joints(
-    toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress = _silent
+    toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress = _silent, rods: Rods = ()
 ) -> JointPath:
     """The joint path of a toolpath.
 
     Findings (unreachable, over a limit, singular, too fast) are issues of the result with layer, bead and point; the
-    path is there all the same, to be looked at. progress(fraction, text) may raise to cancel. Raises InputError
+    path is there all the same, to be looked at. progress(fraction, text) may raise to cancel. rods: of each link of the
+    robot, which are kept clear where `cell.arm_clearance` asks for it. Raises InputError
     NOT_FOR_SETUP for what only rotary axes can do.
     """
     if cell.machine.is_table:
@@ -63,14 +66,15 @@ def plan_joints(
     joined = all(part.family != REVOLUTION for part, _ in toolpath.parts)
     wanted = cell.branch if parameters.own_branch == OF_CELL else opw.branch_index(parameters.own_branch.split("-"))
     among = range(BRANCHES) if wanted is None else (wanted,)
+    places, kept = [(layer, index) for layer, index, _ in toolpath], of_job(toolpath, cell, rods)
 
     def served(some: Sequence[Bead]) -> float:
-        return -_ranked(some, cell, parameters, joined, among)[0][0] / min(len(some), SCREENED)
+        return -_ranked(some, places, Task(cell, 0, parameters, joined, kept), among)[0][0] / min(len(some), SCREENED)
 
     planned: JointPath | None = None
     for moved in track.placed(beads, cell, served):
-        branches = [wanted] if wanted is not None else best_branches(moved, cell, parameters, joined)
-        found = _of_robot(toolpath, moved, tilted, cell, parameters, joined, branches, progress)
+        branches = [wanted] if wanted is not None else best_branches(moved, cell, parameters, joined, kept, places)
+        found = _of_robot(toolpath, moved, tilted, Task(cell, 0, parameters, joined, kept), branches, progress)
         if planned is None or found.feasible:
             planned = found
         if planned.feasible:
@@ -80,16 +84,15 @@ def plan_joints(
 
 
 def _of_robot(
-    toolpath: Toolpath, beads: list[Bead], tilted: list[Issue], cell: Cell, parameters: JointParameters, joined: bool,
-    branches: Sequence[int], progress: Progress,
+    toolpath: Toolpath, beads: list[Bead], tilted: list[Issue], asked: Task, branches: Sequence[int], progress: Progress,
 ) -> JointPath:
     """The joint path of a robot, external axes as the beads have them, in the first of the branches that serves."""
-    places = [(layer, index) for layer, index, _ in toolpath]
-    task = Task(cell, branches[0], parameters, joined)
+    places, cell, parameters = [(layer, index) for layer, index, _ in toolpath], asked.cell, asked.parameters
+    task = dataclasses.replace(asked, branch=branches[0])
     paths, issues = _planned(task, toolpath, beads, places, progress)
     failed = _failed(paths, issues, places)
     for branch in branches[1:] if has_errors(issues) else ():
-        other = Task(cell, branch, parameters, joined)
+        other = dataclasses.replace(asked, branch=branch)
         # most branches fail at the same beads: these alone are soon planned
         some = [beads[k] for k in failed], [places[k] for k in failed]
         if failed and has_errors(_planned(other, toolpath, *some, progress)[1]):
@@ -147,26 +150,31 @@ def _not_used(parameters: JointParameters) -> list[Issue]:
     )]
 
 
-def best_branches(beads: Sequence[Bead], cell: Cell, parameters: JointParameters, joined: bool = False) -> list[int]:
+def best_branches(
+    beads: Sequence[Bead], cell: Cell, parameters: JointParameters, joined: bool = False, kept: ArmKept | None = None,
+    places: Sequence[Place] = (),
+) -> list[int]:
     """The branches worth planning, the best first: those that serve as many beads as any, by objective, then margin.
 
     A few beads from the first to the last are looked at; what they promise, the planning has to keep.
     """
-    ranks = _ranked(beads, cell, parameters, joined, range(BRANCHES))
+    ranks = _ranked(beads, places, Task(cell, 0, parameters, joined, kept), range(BRANCHES))
     return [rank[-1] for rank in ranks if rank[0] == ranks[0][0]][:TRIED]
 
 
 def _ranked(
-    beads: Sequence[Bead], cell: Cell, parameters: JointParameters, joined: bool, among: Sequence[int]
+    beads: Sequence[Bead], places: Sequence[Place], asked: Task, among: Sequence[int]
 ) -> list[tuple[int, float, float, int]]:
     """Of each branch what ranks it, the best first: beads looked at that it serves (less than 0), objective, margin (less
     than 0), and itself."""
     some = np.unique(np.round(np.linspace(0, len(beads) - 1, SCREENED)).astype(int))
-    points = gather([beads[k] for k in some], cell, search.POINTS_PER_BEAD)
+    points = gather([beads[k] for k in some], asked.cell, search.POINTS_PER_BEAD)
     ranks = []
     for branch in among:
-        task = Task(cell, branch, parameters, joined)
+        task = dataclasses.replace(asked, branch=branch)
         found = search.everywhere(task, points, task.thresholds(points))
+        if task.kept is not None:
+            found = arm_clear.without_touching(task, task.kept, points, [places[k] for k in some], found)
         best, each = found.best(), np.arange(len(some))
         margin, objective = found.margin[best, each], found.objective[best, each]
         feasible = margin >= 0.0
@@ -190,6 +198,8 @@ def _planned(
     issues = given.not_used(task.parameters, places) + issues + notes + [issue for _, found in straight for issue in found]
     for path in paths:
         issues += findings(task, path)
+    if task.kept is not None:
+        issues += arm_clear.findings(task.kept, paths)
     if not has_errors(issues):
         paths, found = _slowed(task.cell, paths, toolpath)
         issues = issues + found

@@ -14,7 +14,13 @@ from .retract_ways import ASKED, LIMIT, SINGULAR, Failure, Leg
 
 def findings(ways: RapidWays) -> tuple[Issue, ...]:
     """An error for each bead that cannot be come to or left, and notes about what was taken in place of what was asked."""
-    met = [_collision(ways.told(k), ways.place(k).layer, ways.place(k).index) for k in ways.met]
+    met: list[Issue] = []
+    for k in ways.met:
+        names, arm = ways.told(k), ways.arm_told(k)
+        if names or arm is None:
+            met.append(_collision(names, ways.place(k).layer, ways.place(k).index))
+        if arm is not None:
+            met.append(arm)
     return (*met, *_failures(ways), *_lifted(ways), *_others(ways))
 
 

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from ..collision.bead_ends import Beads
 from ..geometry.surroundings import Body
+from ..issues import Issue
 from ..kinematics.cell import Cell
 from ..motion import APPROACH, RETRACT, TRAVEL
 from ..parameters.joints import JointParameters
+from .arm_kept import Rods, contact_of, on_moves, told
 from .joint_path import BeadPath, JointPath
 from .rapids import Moves, Surroundings
 from .retract_ways import DIRECTIONS, Ends, Failure, Leg
@@ -62,7 +64,7 @@ class RapidWays:
 
     def __init__(
         self, joint_path: JointPath, cell: Cell, lift: float, bodies: Sequence[Body], parameters: JointParameters,
-        width: float = 0.0, height: float = 0.0,
+        width: float = 0.0, height: float = 0.0, rods: Rods = (),
     ) -> None:
         """width, height: mm, of beads that do not tell theirs."""
         self.beads, self.cell, self.lift = joint_path.beads, cell, lift
@@ -74,7 +76,9 @@ class RapidWays:
             self._ask()
         self.ways = [self._way(k, self.legs) for k in range(len(self.beads) + 1)]
         self.rows = np.concatenate([[0], np.cumsum([len(path.bead) for path in self.beads])])
-        self.surroundings = Surroundings(cell, Beads.of([path.bead for path in self.beads], width, height), bodies)
+        beads = [path.bead for path in self.beads]
+        self.surroundings = Surroundings(cell, Beads.of(beads, width, height), bodies)
+        self.arm = contact_of(beads, cell, rods, bodies, width, height)
         self.lifted: list[int] = []
         self.met = self._clear(self._attempts(bodies))
 
@@ -155,7 +159,11 @@ class RapidWays:
         moves = [self._moves(k, way) for k, way in zip(some, ways)]
         if not moves:
             return []
-        met = self.surroundings.met(Moves(*(np.concatenate(parts) for parts in zip(*moves))))
+        together = Moves(*(np.concatenate(parts) for parts in zip(*moves)))
+        met = self.surroundings.met(together)
+        if self.arm is not None:
+            move, touched = on_moves(self.arm, *together)
+            met[move[touched.any]] = True
         number = np.repeat(np.arange(len(moves)), [len(one.start) for one in moves])
         return [some[k] for k in np.unique(number[met]).tolist()]
 
@@ -164,11 +172,23 @@ class RapidWays:
         sound = self.retracts.sound
         some = [k for k in range(len(self.ways)) if sound[self.ends(k)].all()]
         met = self._met(some, [self.ways[k] for k in some])
+        # where a link is too near at the very end of a bead, no way off or onto it helps
+        hopeless = self._standing_too_near(met)
+        met = [k for k in met if k not in hopeless]
         for attempt in attempts:
             if not met:
                 break
             met = self._without_cleared(met, attempt)
-        return met
+        return sorted({*met, *hopeless})
+
+    def _standing_too_near(self, some: Sequence[int]) -> set[int]:
+        """The ways, of those numbered, at whose beginning or end on a bead a link of the arm is too near to something."""
+        if self.arm is None or not some:
+            return set()
+        ends = [(k, self.beads[k - 1].joints[-1]) for k in some if k > 0]
+        ends += [(k, self.beads[k].joints[0]) for k in some if k < len(self.beads)]
+        touches = self.arm.touches(np.array([joints for _, joints in ends]), np.array([self.rows[k] for k, _ in ends]))
+        return {k for (k, _), near in zip(ends, touches.any) if near}
 
     def _without_cleared(self, met: Sequence[int], attempt: Attempt) -> list[int]:
         """Takes an attempt for the ways where nothing is met with it; the others."""
@@ -215,5 +235,15 @@ class RapidWays:
         return self.beads[min(k, len(self.beads) - 1)]
 
     def told(self, k: int) -> list[str]:
-        """What is met on way k."""
+        """What the nozzle meets on way k."""
         return self.surroundings.names(self._moves(k, self.ways[k]))
+
+    def arm_told(self, k: int) -> Issue | None:
+        """What a link comes too near on way k, where one does."""
+        if self.arm is None:
+            return None
+        _, touched = on_moves(self.arm, *self._moves(k, self.ways[k]))
+        if not touched.any.any():
+            return None
+        first, path = int(np.argmax(touched.any)), self.place(k)
+        return told(self.arm, int(touched.link[first]), int(touched.what[first]), path.layer, path.index, on_way=True)

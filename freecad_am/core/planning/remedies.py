@@ -25,6 +25,7 @@ from ..parameters.external import externals
 from ..parameters.joints import OF_CELL, JointParameters
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
+from .arm_kept import Rods
 from .joint_path import JointPath
 from .motion import assemble
 from .plan import Progress, best_branches, plan_joints
@@ -61,15 +62,16 @@ class Tried:
     fixed: Fixed | None = None
     told: str = field(default="")
     own_speed: tuple[bool, ...] = ()
+    rods: Rods = ()
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
         """What is wrong with it; rapids only of a whole one."""
         cell = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
         joints = dataclasses.replace(self.joints, compare=())
-        path = plan_joints(toolpath, cell, joints, progress)
+        path = plan_joints(toolpath, cell, joints, progress, self.rods)
         found = (*toolpath.issues, *path.issues)
         if whole and not has_errors(found):
-            _, rapids = assemble(path, cell, self.process, toolpath.surroundings, joints, toolpath.layer_height)
+            _, rapids = assemble(path, cell, self.process, toolpath.surroundings, joints, toolpath.layer_height, self.rods)
             found += rapids
         return found
 

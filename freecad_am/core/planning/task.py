@@ -16,6 +16,7 @@ from ..kinematics.inverse.serial_arm import SerialArm
 from ..kinematics.limits import Limits
 from ..parameters.joints import JointParameters
 from . import following
+from .arm_kept import ArmKept
 from .points import TURN, Points, unwrapped
 
 Array = NDArray[np.float64]
@@ -86,13 +87,14 @@ class Task:
     """A cell with one branch and the parameters of the planning.
 
     joined: whether the polynomial of a closed bead must come back to its value but for whole turns. On parts of revolution
-    it need not: there a limited axis turns back between layers.
+    it need not: there a limited axis turns back between layers. kept: what keeps the links clear, where that is asked for.
     """
 
     cell: Cell
     branch: int
     parameters: JointParameters
     joined: bool = False
+    kept: ArmKept | None = None
 
     @cached_property
     def rows(self) -> LimitRows:

@@ -59,14 +59,15 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
         link, other = touches.link[rows[0]], touches.names[touches.what[rows[0]]]
         met = f"{other} with {('base', *cell.machine.axes)[link]}"
     step = number(math.degrees(touches.step))
+    near = f"come nearer than {cell.arm_clearance:g} mm to" if cell.arm_clearance else "touch"
     if not true_shapes:
         how = (
-            f"not checked: without the manufacturer's shapes, links drawn from the kinematics touch {met}, looked at every "
+            f"not checked: without the manufacturer's shapes, links drawn from the kinematics {near} {met}, looked at every "
             f"{step} deg"
         )
         return Promise(what, how, None, float(len(rows)), "points", None, place)
     how = (
-        f"shapes of all links, every {step} deg of the whole motion: they touch {met}; links against each other are not "
+        f"shapes of all links, every {step} deg of the whole motion: they {near} {met}; links against each other are not "
         "checked"
     )
     return Promise(what, how, not len(rows), float(len(rows)), "points", 0.0, place)

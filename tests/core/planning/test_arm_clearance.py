@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`cell.arm_clearance`: links that a plan without it drives into a post keep clear of it, on rapids too. Judged by PyKDL's
+frames of the links, and by how far points on these are from a box, at ten times as many places."""
+
+import dataclasses
+
+import numpy as np
+import PyKDL
+import pytest
+
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.issues import has_errors
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import link_rods
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.strategies import revolution
+from freecad_am.kdl.chain import KdlArm
+from tests.core.planning.conftest import sphere
+
+CLEARANCE = 10.0
+SIZE = np.array([60.0, 60.0, 400.0])  # of a post, mm
+CELL = {
+    "limits": "paper", "setup": "tool-on-robot", "deposition_point": (900.0, 0.0, -100.0, 0.0, 0.0, 0.0),
+    "nozzle": NozzleParameters(length=60.0, tool=(120.0, 0.0, 200.0, 0.0, np.radians(45.0), 0.0)),
+}
+DOWN, UP = ("front", "down", "noflip"), ("front", "up", "flip")
+# where a post stands about the part, mm and deg, and a configuration that can do without touching it
+POSTS = [(160.0, 60.0, DOWN), (120.0, 180.0, UP)]
+
+
+@pytest.fixture(scope="module")
+def dome():
+    """A hemisphere in layers of 15 mm, the nozzle upright."""
+    wall = RevolvedWall(Meridian.chained(sphere()), np.eye(4))
+    return revolution.plan(
+        wall, RevolutionParameters(layer_height=15.0, chord_error=0.2), BuildDirectionParameters(mode="fixed"),
+        ProcessParameters(), NozzleParameters(), 113.0,
+    )
+
+
+def box(low, size, name):
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * size + low
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return Body(name, corners, np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]))
+
+
+def planned(toolpath, cell):
+    """The motion of a job, and its issues."""
+    rods = link_rods.of_robot(cell.robot.chain)
+    path = plan_joints(toolpath, cell, JointParameters(), rods=rods)
+    motion, rapids = assemble(
+        path, cell, ProcessParameters(), toolpath.surroundings, JointParameters(), toolpath.layer_height, rods
+    )
+    return motion, [*path.issues, *rapids]
+
+
+def on_rods(rods, spacing=8.0):
+    """Points (n, 3) on the sides and ends of the rods of a link."""
+    points = []
+    for rod in rods:
+        axis = (rod.end - rod.start) / rod.length
+        one = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+        one /= np.linalg.norm(one)
+        other = np.cross(axis, one)
+        along = np.linspace(0.0, rod.length, 2 + int(rod.length / spacing))
+        turn = np.linspace(0.0, 2.0 * np.pi, 8 + int(6.3 * rod.radius / spacing))
+        ring = np.cos(turn)[:, None] * one + np.sin(turn)[:, None] * other
+        points.append((rod.start + along[:, None, None] * axis + rod.radius * ring).reshape(-1, 3))
+        points += [at + share * rod.radius * ring for at in (rod.start, rod.end) for share in (0.25, 0.5, 0.75)]
+    return np.concatenate(points)
+
+
+def nearest(motion, cell, low):
+    """(n,) mm between the links, by PyKDL, and the post in part coordinates, at ten places of each move of a motion."""
+    arm = KdlArm(cell.machine)
+    joints = motion.joints
+    parts = [joints[:-1] + share * np.diff(joints, axis=0) for share in np.linspace(0.1, 1.0, 10)]
+    mount = cell.station @ np.linalg.inv(cell.mount)
+    frame, found = PyKDL.Frame(), []
+    links = [(number, on_rods(rods)) for number, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if number and rods]
+    for q in np.concatenate(parts)[::23]:
+        angles, best = arm.angles(q), np.inf
+        for number, points in links:
+            arm._forward.JntToCart(angles, frame, 2 * number)
+            turned = np.array([[frame.M[i, j] for j in range(3)] for i in range(3)])
+            place = points @ turned.T + [frame.p.x(), frame.p.y(), frame.p.z()]
+            seen = (place - mount[:3, 3]) @ mount[:3, :3]
+            best = min(best, np.linalg.norm(np.maximum(np.maximum(low - seen, seen - low - SIZE), 0.0), axis=1).min())
+        found.append(best)
+    return np.array(found)
+
+
+@pytest.mark.parametrize(("radius", "azimuth", "branch"), POSTS)
+def test_links_that_met_a_post_keep_clear_of_it(dome, radius, azimuth, branch):
+    turn = np.radians(azimuth)
+    low = np.array([radius * np.cos(turn), radius * np.sin(turn), 195.0]) - 0.5 * SIZE
+    job = dataclasses.replace(dome, surroundings=(*dome.surroundings, box(low, SIZE, "post")))
+    without = cells.resolve(CellParameters(**CELL, branch=DOWN), job.frame)
+    motion, issues = planned(job, without)
+    assert not has_errors(issues) and nearest(motion, without, low).min() < CLEARANCE
+    kept = cells.resolve(CellParameters(**CELL, branch=branch, arm_clearance=CLEARANCE), job.frame)
+    motion, issues = planned(job, kept)
+    assert not has_errors(issues)
+    assert nearest(motion, kept, low).min() >= CLEARANCE
+    # and it is the same deposit, within limits
+    tip, _ = kept.tip_in_part(KdlArm(kept.machine).forward(motion.joints[motion.deposit]))
+    assert np.abs(tip - motion.position[motion.deposit]).max() < 1e-6
+    assert not kept.limits.exceeded(motion.joints).any()
+
+
+def test_what_cannot_be_cleared_is_named(dome):
+    wall = box(np.array([-400.0, 75.0, -5.0]), np.array([800.0, 40.0, 900.0]), "back wall")
+    job = dataclasses.replace(dome, surroundings=(*dome.surroundings, wall))
+    cell = cells.resolve(CellParameters(**CELL, branch=DOWN, arm_clearance=150.0), job.frame)
+    _, issues = planned(job, cell)
+    told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
+    assert {issue.layer for issue in told} == set(range(len(job.layers)))
+    assert all(issue.message.startswith("link q") and "150 mm" in issue.message for issue in told)
+    assert any("back wall" in issue.message for issue in told)
