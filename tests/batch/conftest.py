@@ -140,9 +140,10 @@ class Commands:
 
     def _kill(self) -> None:
         assert self.process is not None
-        for group in (self.process.pid, self.copy):  # the server's most often
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(group, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):  # its own group, where it leads one
+            if self.copy and os.getpgid(self.copy) == self.copy:
+                os.killpg(self.copy, signal.SIGKILL)
+        os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
         self.process = None
 

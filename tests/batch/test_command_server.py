@@ -11,7 +11,7 @@ SERVER = """
 import json, os, sys, time
 for name in json.loads(sys.stdin.readline())[2:4]:
     open(name, "w").close()
-os.write(int(sys.argv[1]), b"0\\n")
+os.write(int(sys.argv[1]), str(os.getpid()).encode() + b"\\n")
 while time.process_time() < {computes}:
     pass
 time.sleep({sleeps})
