@@ -7027,6 +7027,11 @@
         <translation>hauteur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>height of each point over the nearest place of the layer below, along the build direction there</source>
+        <translation>hauteur de chaque point au-dessus de l’endroit le plus proche de la couche inférieure, selon la direction de dépôt à cet endroit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>highest</source>
         <translation>la plus haute</translation>

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..issues import WARNING, Issue
 from ..parameters.process import ProcessParameters
-from ..process import deposit_balance, on_part, spacing, support, wire
+from ..process import deposit_balance, layer_heights, on_part, spacing, support, wire
 from ..process.deposit_balance import MM3, Balance
 from ..toolpath import Array, Toolpath
 from .promise import PERCENT, Promise, issue_place, of_codes
@@ -18,6 +18,10 @@ from .promise import PERCENT, Promise, issue_place, of_codes
 def layers(toolpath: Toolpath, issues: Sequence[Issue], known: Sequence[Array] | None = None) -> Promise:
     """Of the distance between layers, (n,) for each but the first; what families allow of it they have said themselves."""
     what = "Layers lie one layer height apart"
+    how = "distance in space of each point to the layer below, against what the strategy allows"
+    if toolpath.filled and not spacing.is_plane(toolpath):
+        known = layer_heights.over_layers(toolpath)
+        how = "height of each point over the nearest place of the layer below, along the build direction there"
     distances = [values for values in (spacing.between_layers(toolpath) if known is None else known) if len(values)]
     if not distances:
         return Promise(what, "there is one layer alone", None)
@@ -26,7 +30,6 @@ def layers(toolpath: Toolpath, issues: Sequence[Issue], known: Sequence[Array] |
     low, high = min(low for low, _ in extremes), max(high for _, high in extremes)
     worst = low if height - low > high - height else high
     wide = of_codes(issues, ("SPACING",), WARNING)
-    how = "distance in space of each point to the layer below, against what the strategy allows"
     return Promise(what, how, not wide, worst, "mm", place=issue_place(wide))
 
 

@@ -120,6 +120,11 @@ def _is_spiral(toolpath: Toolpath) -> bool:
     return len(toolpath.layers) == 1 and len(beads) == 1 and not beads[0].closed and toolpath.family == "revolution"
 
 
+def is_plane(toolpath: Toolpath) -> bool:
+    """Whether the layers are planes that are filled, whose distance is told; of several features, all."""
+    return all(_planes(part) is not None for part, _ in toolpath.parts)
+
+
 def _planes(toolpath: Toolpath) -> Array | None:
     """(layers,) mm along the Z of the frame, where layers are filled planes square to it; else None."""
     if toolpath.family != "solid":
