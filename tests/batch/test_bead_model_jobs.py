@@ -190,10 +190,11 @@ def test_messages_name_the_keys_of_the_job(fin):
 
 
 def test_notes_of_single_layers_and_of_what_a_table_does_not_use(fin):
-    _, report, *_ = fin("500 mm", ("cell:", "joints: {method: constant, compare: point-by-point}\ncell:"))
+    _, report, *_ = fin("500 mm", (
+        "cell: {", "joints: {method: constant, compare: point-by-point}\ncell: {arm_clearance: 5 mm, "))
     notes = {issue["code"]: issue["message"] for issue in report["issues"] if issue["level"] == "note"}
     assert notes["SINGLE_LAYER"].startswith("1 of 1 solids") and "500 mm" in notes["SINGLE_LAYER"]
-    assert notes["NOT_USED"].startswith("joints.method, joints.compare: of no effect")
+    assert notes["NOT_USED"].startswith("joints.method, joints.compare, cell.arm_clearance: of no effect")
     _, report, *_ = fin("10 mm")
     assert not {"SINGLE_LAYER", "NOT_USED"} & {issue["code"] for issue in report["issues"]}
 

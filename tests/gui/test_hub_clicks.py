@@ -337,10 +337,13 @@ def test_a_cell_follows_its_machine(person, rotor):
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
     fields = {name: person.field(panel, name) for name in ("Setup", "Branch", "DepositionPoint", "Machine", "MachineNote")}
-    assert fields["Branch"].isVisible() and fields["Setup"].currentData() == "part-on-robot"
+    fields["ArmClearance"] = person.field(panel, "ArmClearance")
+    assert fields["Branch"].isVisible() and fields["ArmClearance"].isVisible()
+    assert fields["Setup"].currentData() == "part-on-robot"
     person.type(panel, "Machine", "table-xyzbc")
     person.until(lambda: fields["Setup"].currentData() == "rotary-table", "the set-up to follow", 5)
-    assert not any(fields[name].isVisible() for name in ("Setup", "Branch", "DepositionPoint"))
+    of_robots = [fields[name] for name in ("Setup", "Branch", "DepositionPoint", "ArmClearance")]
+    person.until(lambda: not any(field.isVisible() for field in of_robots), "the fields of robots to go", 5)
     person.screenshot("panel_cell_table")
     person.type(panel, "Machine", "table-xyz")
     person.until(fields["MachineNote"].isVisible, "what is wrong with the machine", 5)

@@ -135,13 +135,14 @@ def _on_table(toolpath: Toolpath, cell: Cell, parameters: JointParameters, progr
     if not has_errors(issues):
         paths, found = _slowed(cell, paths, toolpath)
         issues += found
-    return JointPath(table.METHOD, "none", (), cell.limits.name, tuple(paths), (*issues, *_not_used(parameters)))
+    return JointPath(table.METHOD, "none", (), cell.limits.name, tuple(paths), (*issues, *_not_used(cell, parameters)))
 
 
-def _not_used(parameters: JointParameters) -> list[Issue]:
+def _not_used(cell: Cell, parameters: JointParameters) -> list[Issue]:
     """A note on what was chosen about the rotation about the tool, which machines with rotary axes do not have."""
     usual = JointParameters()
     chosen = [f"joints.{name}" for name in OF_ROBOTS if getattr(parameters, name) != getattr(usual, name)]
+    chosen += [] if cell.arm_clearance is None else ["cell.arm_clearance"]
     if not chosen:
         return []
     return [Issue(

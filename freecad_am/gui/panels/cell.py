@@ -33,8 +33,9 @@ from ..widgets import suggestions
 from .preview import PreviewPanel
 
 MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
+ARM = "cell_arm_clearance"
 TOOL = "cell_nozzle_tool"
-_OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL)
+_OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, ARM)
 
 
 class CellPanel(PreviewPanel):

@@ -84,8 +84,10 @@ class Fold:
         name = QtGui.QLabel(label)
         name.setToolTip(widget.toolTip())
         for one in (widget, *widget.findChildren(QtGui.QWidget), name):
-            if not one.whatsThis():
-                one.setWhatsThis(widget.whatsThis() or one.toolTip() or widget.toolTip())
+            # PySide takes a new child now and then for one that was deleted at its address; Qt then asks its parent for help
+            with contextlib.suppress(RuntimeError):
+                if not one.whatsThis():
+                    one.setWhatsThis(widget.whatsThis() or one.toolTip() or widget.toolTip())
         note = Note()
         note.setObjectName(f"{widget.objectName()}Note")
         note.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
