@@ -191,26 +191,28 @@ def _rotation(wpr: Array) -> Array:
     return np.moveaxis(np.array(rows), -1, 0)
 
 
-def _lines(content: bytes) -> list[str]:
-    return content.decode("latin-1").replace("\r\n", "\n").split("\n")
+def _text(content: bytes) -> str:
+    return content.decode("latin-1").replace("\r\n", "\n")
 
 
 def _name(file: str, content: bytes) -> str:
     """The name of a program, upper case."""
-    title = re.match(r"/PROG +(\w+)\s*$", _lines(content[:_TITLE])[0])
+    title = re.match(r"/PROG +(\w+)\s*$", _text(content[:_TITLE]).partition("\n")[0])
     if title is None:
         raise unreadable(file, _NO_LISTING)
     return title[1].upper()
 
 
 def _listing(file: str, content: bytes) -> _Listing:
-    lines = _lines(content)
-    marks = [lines.index(section) if section in lines else -1 for section in ("/MN", "/POS", "/END")]
+    text = f"\n{_text(content)}\n"
+    marks = [text.find(f"\n{section}\n") for section in ("/MN", "/POS", "/END")]
     if -1 in marks or marks != sorted(marks):
         raise unreadable(file, _NO_LISTING)
-    start, positions, end = marks
-    instructions, moves = _instructions(file, lines[start + 1 : positions], start + 2)
-    records = records_of(file, lines, positions, end)
+    # the records, by far the most of it, are not taken apart by lines
+    lines = text[1 : marks[1]].split("\n")
+    start, positions = lines.index("/MN"), len(lines)
+    instructions, moves = _instructions(file, lines[start + 1 :], start + 2)
+    records = records_of(file, lines, text[marks[1] + len("\n/POS\n") : marks[2]], positions)
     return _Listing(file, instructions, moves, records)
 
 
