@@ -65,10 +65,14 @@ class KdlArm:
         # these calls are much of the time of a read-back: parts of the frame are looked up once, for the solver fills it in
         # place; a quaternion is one call where a matrix is nine; and joints that stay where they are need not be told again
         x, y, z, turned = frame.p.x, frame.p.y, frame.p.z, frame.M.GetQuaternion
+        put, all_axes = angles.__setitem__, tuple(range(self.axes))
         seen: list[float] = []
         for row, axes in zip(values.tolist(), _moved(values), strict=True):
-            for axis in axes:
-                angles[axis] = row[axis]
+            if len(axes) == self.axes:
+                any(map(put, all_axes, row))  # puts them all, for it gives back nothing
+            else:
+                for axis in axes:
+                    put(axis, row[axis])
             solve(angles, frame)
             seen += x(), y(), z()
             seen += turned()
