@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The motion of a joint path as it is run: all of it, or the rows of a program, and what the arm meets on the way."""
+"""The motion of a joint path as it is run: all of it, or the rows of a program."""
 
 from __future__ import annotations
 
@@ -9,18 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import Issue
-from ..core.kinematics import link_rods
-from ..core.kinematics.arm_contact import ArmContact
 from ..core.kinematics.cell import PART_ON_ROBOT, Cell
-from ..core.kinematics.link_rods import Mesh
 from ..core.motion import Motion
-from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
 from ..core.planning import moving_tool
 from ..core.planning import program as programs
-from ..core.simulation.arm import ArmTouches, arm_touches, laid
 from ..core.simulation.margins import on_deposit
-from ..core.toolpath import Toolpath
 from ..posts import catalogue
 from .joint_path import Planned
 
@@ -56,19 +50,6 @@ def as_run(
     rows = programs.rows_from(motion, settings.start_at)
     motion = Motion(**{field.name: getattr(motion, field.name)[rows] for field in fields(motion)})
     return AsRun(motion, condition[rows], threshold[rows], issues)
-
-
-def arm_of(
-    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, shapes: tuple[Mesh | None, ...],
-    most: int | None = None, clearance: float = 0.0,
-) -> ArmTouches | None:
-    """What the links of a robot touch, or come nearer to than `clearance` mm, looked at in so many places at most; None for
-    machines with rotary axes, of whose links no file tells enough."""
-    if cell.machine.is_table:
-        return None
-    rods = link_rods.of_robot(cell.robot.chain, shapes)
-    deposited = laid(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
-    return arm_touches(motion, ArmContact(cell, rods, toolpath.surroundings, deposited, clearance), most)
 
 
 def _renumbered(issue: Issue, before: Motion, after: Motion, origin: NDArray[np.int64]) -> Issue:

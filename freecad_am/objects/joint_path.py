@@ -128,7 +128,7 @@ class JointPath(Stage):
             motion, rapid_issues = assemble(
                 joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height, rods
             )
-            near = () if not rods else arm_issues(motion, cell, toolpath, process, rods, (*joint_path.issues, *rapid_issues))
+            near = () if not rods else arm_issues(motion, cell, toolpath, process, (*joint_path.issues, *rapid_issues))
             issues = (*joint_path.issues, *rapid_issues, *near, *_heights_as_run(joint_path, toolpath, process))
             asked = Tried(
                 lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What comes of `cell.arm_clearance` in a document: the links with the shapes that were attached to them, and the whole
-motion looked at once more, between its points too."""
+"""What the links of a robot touch in a document, with the shapes that were attached to them, on a whole motion, between its
+points too; and what comes of `cell.arm_clearance`."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from ..core.issues import Issue
 from ..core.kinematics import link_rods
 from ..core.kinematics.arm_contact import NONE, ArmContact
 from ..core.kinematics.cell import Cell
+from ..core.kinematics.link_rods import Mesh
 from ..core.motion import Motion
 from ..core.parameters.process import ProcessParameters
 from ..core.planning import arm_kept
-from ..core.simulation.arm import arm_touches, laid
+from ..core.simulation.arm import ArmTouches, arm_touches, laid
 from ..core.toolpath import Toolpath
 from .link_meshes import meshes_of
 
@@ -25,21 +26,34 @@ def rods_of(cell: Cell) -> arm_kept.Rods:
     return () if cell.machine.is_table else link_rods.of_robot(cell.robot.chain, meshes_of(cell.machine))
 
 
+def arm_of(
+    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, shapes: tuple[Mesh | None, ...],
+    most: int | None = None, clearance: float = 0.0,
+) -> ArmTouches | None:
+    """What the links of a robot touch, or come nearer to than `clearance` mm, looked at in so many places at most; None for
+    machines with rotary axes, of whose links no file tells enough."""
+    if cell.machine.is_table:
+        return None
+    rods = link_rods.of_robot(cell.robot.chain, shapes)
+    deposited = laid(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
+    return arm_touches(motion, ArmContact(cell, rods, toolpath.surroundings, deposited, clearance), most)
+
+
 def arm_issues(
-    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, rods: arm_kept.Rods, known: Sequence[Issue]
+    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, known: Sequence[Issue]
 ) -> tuple[Issue, ...]:
     """An error for each bead that nothing known is told of, on which or on the way to which a link comes too near."""
     assert cell.arm_clearance is not None
-    deposited = laid(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
-    contact = ArmContact(cell, rods, toolpath.surroundings, deposited, cell.arm_clearance)
-    touches = arm_touches(motion, contact)
+    touches = arm_of(motion, cell, toolpath, process, meshes_of(cell.machine), clearance=cell.arm_clearance)
+    assert touches is not None
     done = {(issue.layer, issue.bead) for issue in known if issue.code == arm_kept.CODE}
     found = []
     for row in np.flatnonzero(touches.link != NONE).tolist():
         place = int(motion.layer[row]), int(motion.bead[row])
         if place not in done:
             done.add(place)
-            found.append(arm_kept.told(
-                contact, int(touches.link[row]), int(touches.what[row]), *place, on_way=not motion.deposit[row]
+            what = touches.names[touches.what[row]]
+            found.append(arm_kept.clearance_issue(
+                cell, int(touches.link[row]), what, *place, on_way=not motion.deposit[row]
             ))
     return tuple(found)

@@ -24,10 +24,11 @@ from ..core.toolpath import Array
 from ..posts import catalogue
 from ..verify import Verification
 from . import user_machines
-from .as_run import arm_of, as_run
+from .as_run import as_run
 from .findings import issues_of
 from .joint_path import Planned
 from .link_meshes import meshes_of
+from .links_clear import arm_of
 from .platforms import platforms
 from .toolpath import features_of
 

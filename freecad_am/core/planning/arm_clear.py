@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..issues import Issue
 from ..kinematics.arm_contact import NONE
 from ..toolpath import Bead
-from .arm_kept import ArmKept, told
+from .arm_kept import ArmKept, clearance_issue
 from .joint_path import BeadPath
 from .points import TURN, Points, gather
 from .search import Found
@@ -98,7 +98,8 @@ def findings(kept: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
         met = kept.contact.touches(path.joints[some], np.full(len(some), kept.moment((path.layer, path.index))))
         if met.any.any():
             first = int(np.argmax(met.link != NONE))
-            found.append(told(kept.contact, int(met.link[first]), int(met.what[first]), path.layer, path.index))
+            what = kept.contact.names[met.what[first]]
+            found.append(clearance_issue(kept.contact.cell, int(met.link[first]), what, path.layer, path.index))
     return found
 
 

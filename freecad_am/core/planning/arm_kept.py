@@ -17,6 +17,7 @@ from ..kinematics.arm_contact import ArmContact, Touches
 from ..kinematics.cell import Cell
 from ..toolpath import Bead, Toolpath
 from .points import Points
+from .rapids import evenly
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -69,19 +70,19 @@ def on_moves(contact: ArmContact, start: Array, end: Array, laid: Index) -> tupl
     of each look, and what it found. Of moves whose joints are NaN nothing."""
     steps = np.where(contact.cell.machine.chain.sliding, SLIDE, STEP)
     far = np.nan_to_num(np.abs(end - start) / steps).max(axis=1, initial=0.0)
-    count = 1 + np.ceil(far).astype(np.int64)
-    move = np.repeat(np.arange(len(count)), count + 1)
-    share = (np.arange(len(move)) - np.repeat(np.cumsum(count + 1) - count - 1, count + 1)) / count[move]
+    move, share = evenly(1 + np.ceil(far).astype(np.intp))
     joints = start[move] + share[:, None] * (end - start)[move]
     return move, contact.touches(joints, laid[move])
 
 
-def told(contact: ArmContact, link: int, what: int, layer: int, bead: int, on_way: bool = False) -> Issue:
+def clearance_issue(
+    cell: Cell, link: int, what: str, layer: int, bead: int, on_way: bool = False
+) -> Issue:
     """That a link comes too near to something at a bead, or on the rapid way to it."""
-    name = ("base", *contact.cell.machine.axes)[link]
+    name = ("base", *cell.machine.axes)[link]
     where = " on the rapid way to the bead" if on_way else ""
     return Issue(
-        ERROR, CODE, f"link {name} comes nearer than {contact.clearance:g} mm to {contact.names[what]}, or touches it"
+        ERROR, CODE, f"link {name} comes nearer than {cell.arm_clearance:g} mm to {what}, or touches it"
         f"{where}; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance",
         layer, bead,
     )

@@ -16,7 +16,7 @@ def findings(ways: RapidWays) -> tuple[Issue, ...]:
     """An error for each bead that cannot be come to or left, and notes about what was taken in place of what was asked."""
     met: list[Issue] = []
     for k in ways.met:
-        names, arm = ways.told(k), ways.arm_told(k)
+        names, arm = ways.told(k), ways.arm_issue(k)
         if names or arm is None:
             met.append(_collision(names, ways.place(k).layer, ways.place(k).index))
         if arm is not None:

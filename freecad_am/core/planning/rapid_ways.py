@@ -16,7 +16,7 @@ from ..issues import Issue
 from ..kinematics.cell import Cell
 from ..motion import APPROACH, RETRACT, TRAVEL
 from ..parameters.joints import JointParameters
-from .arm_kept import Rods, contact_of, on_moves, told
+from .arm_kept import Rods, clearance_issue, contact_of, on_moves
 from .joint_path import BeadPath, JointPath
 from .rapids import Moves, Surroundings
 from .retract_ways import DIRECTIONS, Ends, Failure, Leg
@@ -238,7 +238,7 @@ class RapidWays:
         """What the nozzle meets on way k."""
         return self.surroundings.names(self._moves(k, self.ways[k]))
 
-    def arm_told(self, k: int) -> Issue | None:
+    def arm_issue(self, k: int) -> Issue | None:
         """What a link comes too near on way k, where one does."""
         if self.arm is None:
             return None
@@ -246,4 +246,5 @@ class RapidWays:
         if not touched.any.any():
             return None
         first, path = int(np.argmax(touched.any)), self.place(k)
-        return told(self.arm, int(touched.link[first]), int(touched.what[first]), path.layer, path.index, on_way=True)
+        return clearance_issue(
+            self.cell, int(touched.link[first]), self.arm.names[touched.what[first]], path.layer, path.index, on_way=True)

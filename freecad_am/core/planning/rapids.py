@@ -154,9 +154,14 @@ def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
 
 def _evenly(cell: Cell, moves: Moves, count: Index) -> Looks:
     """One look more along each move than the count (k,)."""
+    return _looks(cell, moves, *evenly(count))
+
+
+def evenly(count: Index) -> tuple[Index, Array]:
+    """The move (l,), and the share of it, of one look more along each move than the count (k,), both ends among them."""
     move = np.repeat(np.arange(len(count)), count + 1)
     step = np.arange(len(move)) - np.repeat(np.cumsum(count + 1) - count - 1, count + 1)
-    return _looks(cell, moves, move, step / count[move])
+    return move, step / count[move]
 
 
 def _looks(cell: Cell, moves: Moves, move: Index, share: Array) -> Looks:
