@@ -440,6 +440,18 @@ def export_waypoints(obj: Any, path: str) -> str:
 
 
 @one_thread()
+def export_report(obj: Any, path: str) -> str:
+    """Write the report of a toolpath, joint path or program as a page, as the commands write report.html; the path.
+
+    `am.export_report(doc.Program, "report.html")`
+    """
+    from .interop import export as interop
+    from .report.of_document import reported
+
+    return interop.write_page(path, reported(obj), obj.Label)
+
+
+@one_thread()
 def make_cam_path(obj: Any) -> Any:
     """The path of a toolpath, joint path or program as an object of the CAM workbench, to be inspected there; it does not
     follow changes. `am.make_cam_path(doc.JointPath)`"""

@@ -50,9 +50,10 @@ OURS = {
     "brep": {"core/issues", "core/geometry", "core/one_thread", "core/collision"},
     "objects": {"core", "brep", "posts", "verify", "kdl"},
     "interop": {"core", "objects"},
-    "api": {"core", "brep", "objects", "posts", "interop"},
     "plots": {"core"},
-    "batch": {"core", "api", "objects", "posts", "kdl", "brep", "read_back", "verify", "plots"},
+    "report": {"core", "objects", "plots"},
+    "api": {"core", "brep", "objects", "posts", "interop", "report"},
+    "batch": {"core", "api", "objects", "posts", "kdl", "brep", "read_back", "verify", "report"},
     "gui": {"core", "api", "objects", "posts", "brep", "plots"},
 }
 # the foreign modules a part of the package may use besides the standard library
@@ -67,6 +68,7 @@ FOREIGN = {
     "interop": {"numpy", "FreeCAD", "Part", "Import", "Path", "Robot"},
     "api": {"numpy", "FreeCAD"},
     "plots": {"numpy", "matplotlib"},
+    "report": {"numpy"},
     "batch": {"numpy", "yaml", "FreeCAD"},
     "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }

@@ -32,8 +32,9 @@ from freecad_am.core.simulation import rapid_look, waypoints
 from freecad_am.core.simulation.margins import on_deposit
 from freecad_am.posts import catalogue
 from freecad_am.read_back import driven
+from freecad_am.report import figures
 
-from . import job, job_cell, outputs, paths, report, tree
+from . import job, job_cell, outputs, paths, tree
 
 # of the promises about joints and rapids, in their order, where one is not kept
 CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")
@@ -86,7 +87,7 @@ def check(programs: Sequence[str], cell_file: str, post: str | None, folder: str
     target = folder or os.path.join(os.path.dirname(os.path.abspath(programs[0])), "out", f"{stem}-check")
     with outputs.Outputs(target, session) as written:
         written.write(outputs.WAYPOINTS, waypoints.text(motion, cell.machine.columns, cell.machine.units))
-        written.write(outputs.REPORT, [report.text(_report(stem, name, motion, cell, promises, issues))])
+        written.write(outputs.REPORT, [figures.text(_report(stem, name, motion, cell, promises, issues))])
         earlier = {one for one in (outputs.WAYPOINTS, outputs.REPORT) if os.path.isfile(os.path.join(written.folder, one))}
         made = [os.path.join(written.folder, one) for one in written.publish(earlier)]
     return Result(made, issues, 3 if any(one.level == ERROR for one in issues) else 0)
@@ -196,7 +197,7 @@ def _report(
     shown = motion.joints[reached] / cell.machine.unit_values
     starts = motion.deposit & (motion.point == 0)
     return {
-        "version": report.VERSION, "name": name, "post": post,
+        "version": figures.VERSION, "name": name, "post": post,
         "status": "infeasible" if any(one.level == ERROR for one in issues) else "ok",
         "issues": [one.as_dict() for one in issues],
         "counts": {

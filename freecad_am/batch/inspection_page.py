@@ -11,9 +11,8 @@ import numpy as np
 from freecad_am.core.inspection import table
 from freecad_am.core.inspection.bands import band_of, bands
 from freecad_am.core.toolpath import Array
-
-from .page import STYLE
-from .svg import Plot
+from freecad_am.report.page import STYLE
+from freecad_am.report.svg import Plot
 
 _MOST = 6000  # points of a map
 _TILT = np.radians(30.0)  # from above, as the map is looked at

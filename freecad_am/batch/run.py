@@ -5,16 +5,15 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 import os
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from freecad_am.core.geometry.on_hub import SolidsOnHub
 from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
-from freecad_am.core.strategies.families import family_of
 
 from . import outputs, paths
 from .job import SECTIONS, Job
@@ -68,8 +67,7 @@ def import_all() -> None:
     """Import what a run needs, for a process that starts others."""
     paths.require_freecad()
     from freecad_am import api  # noqa: F401
-
-    from . import report  # noqa: F401
+    from freecad_am.report import made  # noqa: F401
 
 
 def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
@@ -193,114 +191,59 @@ def _write(
 ) -> Result:
     """Everything but the page, which is drawn last."""
     from freecad_am import api
-    from freecad_am.core.process import deposit_balance, spacing
-    from freecad_am.core.simulation import deposit, waypoints
+    from freecad_am.core.simulation import waypoints
+    from freecad_am.report import figures, made
 
-    from . import report
-
-    toolpath = api.result(stages.toolpath)
-    planned = None if stages.joint_path is None else api.result(stages.joint_path)
-    if planned is not None:
-        toolpath = planned.joint_path.toolpath(toolpath)
-    axes = () if cell is None else cell.machine.columns
-    motion = deposit.alone(toolpath, len(axes)) if planned is None else planned.motion
-    with stages.timed("waypoints", session):
-        files.write(outputs.WAYPOINTS, waypoints.text(motion, axes, () if cell is None else cell.machine.units))
     programs = {} if stages.program is None or has_errors(stages.issues) else api.result(stages.program).files
+    results = _results(stages, [f"{outputs.PROGRAMS}/{name}" for name in programs])
+    _, motion = made.as_run(results, cell)
+    axes, units = ((), ()) if cell is None else (cell.machine.columns, cell.machine.units)
+    with stages.timed("waypoints", session):
+        files.write(outputs.WAYPOINTS, waypoints.text(motion, axes, units))
     for name, content in programs.items():
         files.write(f"{outputs.PROGRAMS}/{name}", content)
     with stages.timed("document", session):
         _save(stages.document, files.path(job.name + outputs.DOCUMENT_ENDING))
-    with stages.timed("report", session):
-        distances = spacing.between_layers(toolpath)
-        content = report.build(job.name, toolpath, motion, distances, job.process, stages.issues)
-        if planned is not None:
-            report.add_joints(content, planned.joint_path, cell, job.joints, stages.joint_path.Seconds)
-    with stages.timed("spacing_comparison", session):
-        walls = _compared_walls(job, stages, toolpath, distances)
-        if not toolpath.features:
-            content["spacing_comparison"] = _with_motion(job, stages, walls[0], planned, cell, session)
-    with stages.timed("preflight", session):
-        content["preflight"] = [one.as_dict() for one in _preflight(stages, distances)]
-    balances = [
-        deposit_balance.of_toolpath(api.result(feature), part, one.process.bead_width)
-        for feature, one, (part, _) in zip(stages.features, job.features, toolpath.parts, strict=True)
-    ]
-    content["deposit"] = deposit_balance.as_dict(deposit_balance.together(balances))
-    if toolpath.features:
-        content["features"] = report.features(job.features, toolpath, motion, balances, [list(one.rows) for one in walls])
-    content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
-    content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
-    files.write(outputs.REPORT, [report.text(content)])
+    report = made.made(_reported(job, stages), results, cell, lambda stage: stages.timed(stage, session), session.progress)
+    report.content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
+    files.write(outputs.REPORT, [figures.text(report.content)])
     if page:
         with stages.timed("page", session):
-            alone = len(job.features) == 1 and family_of(job.strategy).filled
-            found = api.result(stages.features[0]) if alone else None
-            solids = found if isinstance(found, SolidsOnHub) else None
-            page_text = _page(job, content, toolpath, motion, walls, planned, cell, solids)
-            files.write(outputs.PAGE, [page_text])
+            files.write(outputs.PAGE, [report.page()])
     written = files.publish(outputs.earlier_outputs(files.folder))
-    return Result([os.path.join(files.folder, name) for name in written], content, 0 if content["status"] == "ok" else 3)
+    status = 0 if report.content["status"] == "ok" else 3
+    return Result([os.path.join(files.folder, name) for name in written], report.content, status)
 
 
-def _preflight(stages: Stages, distances: Any) -> Any:
-    """The promises of the stages as far as they got."""
+def _results(stages: Stages, programs: Sequence[str]) -> Any:
+    """What the stages came to, as far as they got, for the report."""
+    from freecad_am import api
     from freecad_am.objects import preflight
+    from freecad_am.report.asked import Results
 
-    return preflight.of_stages(stages.toolpath, stages.joint_path, stages.program, distances)
-
-
-def _compared_walls(job: Job, stages: Stages, toolpath: Any, distances: Any) -> list[Any]:
-    """Of each feature what the page shows, with what other spacings of a wall would be: nothing for other families.
-    distances: between all layers."""
-    from freecad_am import api
-    from freecad_am.core.process import spacing
-
-    from .of_feature import OfFeature
-
-    found = []
-    for feature, one, (part, _) in zip(stages.features, job.features, toolpath.parts, strict=True):
-        apart = spacing.between_layers(part) if toolpath.features else distances
-        shown = OfFeature(one.name if toolpath.features else "", part, apart, getattr(one.strategy, "band", None))
-        if family_of(one.strategy).kind == "surface":
-            from . import spacing_comparison  # slow to import, and only walls need it
-
-            compared = spacing_comparison.compare(api.result(feature), one)
-            shown = shown._replace(compared=compared, rows=spacing_comparison.rows(compared, one, part, apart))
-        found.append(shown)
-    return found
+    path = stages.joint_path
+    return Results(
+        api.result(stages.toolpath), None if path is None else api.result(path), 0.0 if path is None else path.Seconds,
+        stages.issues, programs,
+        lambda distances: preflight.of_stages(stages.toolpath, path, stages.program, distances),
+    )
 
 
-def _with_motion(job: Job, stages: Stages, wall: Any, planned: Any, cell: Any, session: Any) -> list[dict[str, Any]]:
-    """The rows about the wall of a single feature, with how the robot moves where that was asked for."""
+def _reported(job: Job, stages: Stages) -> Any:
+    """The job as its report tells of it."""
+    from freecad_am.report import asked
+
+    features = tuple(
+        asked.Feature(one.name, one.strategy, one.build_direction, one.process, functools.partial(_result, feature))
+        for one, feature in zip(job.features, stages.features, strict=True)
+    )
+    return asked.Job(job.name, features, job.process, job.joints, job.cell)
+
+
+def _result(obj: Any) -> Any:
     from freecad_am import api
 
-    rows: list[dict[str, Any]] = list(wall.rows)
-    if rows and planned is not None:
-        from . import spacing_comparison
-
-        rows[0]["motion"] = spacing_comparison.motion_of(planned.joint_path, planned.motion, cell, job.joints)
-        others = spacing_comparison.motions(api.result(stages.features[0]), job, session)
-        for row in rows[1:]:
-            found = others.get(row["method"])
-            row["reason" if isinstance(found, str) else "motion"] = found or row["motion"]
-    return rows
-
-
-def _page(
-    job: Job, content: dict[str, Any], toolpath: Any, motion: Any, walls: Sequence[Any], planned: Any, cell: Any, solids: Any
-) -> str:
-    from freecad_am.core.simulation.margins import on_deposit
-    from freecad_am.plots.source import Source
-
-    from . import page
-
-    source = Source(toolpath, motion, job.process)
-    if planned is not None:
-        condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
-        source = Source(toolpath, motion, job.process, cell, condition, threshold)
-    platform = job.cell.platform_diameter if job.cell else None
-    return page.render(page.Content(content, source, walls, platform, solids))
+    return api.result(obj)
 
 
 def _save(document: Any, path: str) -> None:

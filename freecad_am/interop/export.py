@@ -11,11 +11,12 @@ from typing import Any
 from ..core.issues import InputError
 from ..core.parameters.cell import CellParameters
 from ..core.simulation import waypoints
+from ..objects import hooks
 from . import cam_path, cell_file, dxf, robot_trajectory, step_wires
 from .lines import Line
 from .source import lines_of, motion_of
 
-STEP, DXF, CELL = (".step", ".stp"), (".dxf",), (".yaml", ".yml")
+STEP, DXF, CELL, PAGE = (".step", ".stp"), (".dxf",), (".yaml", ".yml"), ".html"
 
 
 def write_wires(obj: Any, path: str, rapids: bool) -> str:
@@ -43,6 +44,22 @@ def write_waypoints(obj: Any, path: str) -> str:
     def write(unfinished: str) -> None:
         with open(unfinished, "w", encoding="ascii", newline="") as stream:
             stream.writelines(waypoints.text(motion, columns, units))
+
+    return _whole(path, write)
+
+
+def write_page(path: str, page: Callable[[], str], title: str) -> str:
+    """Write a page that takes a while to make, without the document; the path. The file appears whole or not at all.
+
+    Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE; in the window Cancelled.
+    """
+    if os.path.splitext(path)[1].lower() != PAGE:
+        raise InputError("UNSUPPORTED_FILE", path, "reports are written as .html; end the name with it")
+
+    def write(unfinished: str) -> None:
+        text = hooks.carry_out(page, title, "making the report")
+        with open(unfinished, "w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
 
     return _whole(path, write)
 

@@ -2177,6 +2177,11 @@
         <translation>Exporter le programme</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
+        <source>Export report…</source>
+        <translation>Exporter le rapport…</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/program/window.py"/>
         <source>Export…</source>
         <translation>Exporter…</translation>
@@ -2510,6 +2515,11 @@
         <location filename="../../freecad_am/posts/siemens.py"/>
         <source>H words have address extensions to {0}, not {1}; use another output, or program.nc.deposit_on and deposit_off</source>
         <translation>les mots H ont des extensions d&apos;adresse jusqu&apos;à {0}, et non {1} ; utilisez une autre sortie, ou program.nc.deposit_on et deposit_off</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
+        <source>HTML page of the report</source>
+        <translation>Page HTML du rapport</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -5578,8 +5588,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Writes a path as STEP or DXF wires or as a table, or makes a CAM path or Robot trajectory of it</source>
-        <translation>Écrit une trajectoire en fils STEP ou DXF ou en tableau, ou en fait une trajectoire CAM ou Robot</translation>
+        <source>Writes a path as STEP or DXF wires, a table or a report, or makes a CAM path or Robot trajectory of it</source>
+        <translation>Écrit une trajectoire en fils STEP ou DXF, en tableau ou en rapport, ou en fait une trajectoire CAM ou Robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program/window.py"/>
@@ -6587,6 +6597,11 @@
         <translation>des virgules séparent à la fois les colonnes et les décimales ; exportez-le avec des points décimaux, ou des points-virgules entre les colonnes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/report/of_document.py"/>
+        <source>comparing the spacing of layers</source>
+        <translation>comparaison de l&apos;espacement des couches</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>condition</source>
         <translation>condition</translation>
@@ -6770,6 +6785,11 @@
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>draw it apart there, or let it overlap there and fuse it (Part, Boolean)</source>
         <translation>écartez-le à cet endroit, ou faites-le s’y recouvrir et fusionnez-le (Part, Booléen)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/report/of_document.py"/>
+        <source>drawing the page</source>
+        <translation>dessin de la page</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -8277,6 +8297,11 @@
         <translation>local : tangente à la paroi en chaque point ; layer : une direction par couche ; fixed : l&apos;axe de la pièce.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/report/of_document.py"/>
+        <source>looking at what is promised</source>
+        <translation>vérification de ce qui est promis</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/in_sequence.py"/>
         <source>looking for beads over nothing</source>
         <translation>recherche de cordons au-dessus du vide</translation>
@@ -8317,6 +8342,11 @@
         <translation>faites une trajectoire CAM</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>making the report</source>
+        <translation>établissement du rapport</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>manipulability</source>
         <translation>manipulabilité</translation>
@@ -8350,6 +8380,11 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>mean speed of each axis on each move, rapids included, against the machine file</source>
         <translation>vitesse moyenne de chaque axe sur chaque déplacement, rapides compris, comparée au fichier machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/report/of_document.py"/>
+        <source>measuring the path</source>
+        <translation>mesure de la trajectoire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/surface.py"/>
@@ -8555,6 +8590,11 @@
         <location filename="../../freecad_am/objects/program.py"/>
         <source>no program fits its inputs ({0})</source>
         <translation>aucun programme ne convient à ses entrées ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/report/of_document.py"/>
+        <source>no result fits its inputs ({0}); recompute it first</source>
+        <translation>aucun résultat ne correspond à ses entrées ({0}) ; recalculez-le d&apos;abord</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
@@ -9045,6 +9085,11 @@
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>repair the mesh (Mesh, Analyze)</source>
         <translation>réparez le maillage (Mesh, Analyser)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>reports are written as .html; end the name with it</source>
+        <translation>les rapports sont écrits en .html ; terminez le nom ainsi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -12815,8 +12860,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Writes a path as STEP or DXF wires or as a table, or makes a CAM path or Robot trajectory of it</source>
-        <translation>Écrit une trajectoire en fils STEP ou DXF ou en tableau, ou en fait une trajectoire CAM ou Robot</translation>
+        <source>Writes a path as STEP or DXF wires, a table or a report, or makes a CAM path or Robot trajectory of it</source>
+        <translation>Écrit une trajectoire en fils STEP ou DXF, en tableau ou en rapport, ou en fait une trajectoire CAM ou Robot</translation>
     </message>
 </context>
 <context>

@@ -11,9 +11,9 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.batch import run, spacing_comparison
 from freecad_am.core.parameters.strategy import RevolutionParameters, SurfaceParameters
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.report import made, spacing_comparison
 
 JOB = """\
 version: 1
@@ -83,9 +83,9 @@ def test_walls_of_several_faces_say_what_does_not_apply():
         ring[-1] = ring[0]
     layers = tuple(Layer((Bead(ring, up, up, circle, np.ones(73), True),)) for ring in points)
     toolpath = Toolpath(layers, np.eye(4), 2.0, 0.1, family="surface")
-    job = SimpleNamespace(strategy=SurfaceParameters(layer_height=2.0))
-    found = spacing_comparison.compare(object(), job)
-    first, *others = spacing_comparison.rows(found, job, toolpath, [np.full(73, 2.0)] * 2)
+    strategy = SurfaceParameters(layer_height=2.0)
+    found = spacing_comparison.compare(object(), strategy)
+    first, *others = spacing_comparison.rows(found, strategy, toolpath, [np.full(73, 2.0)] * 2)
     assert (first["method"], first["planned"], first["layers"]) == ("constant-distance", True, 3)
     assert [first["min_mm"], first["max_mm"], first["reason"]] == [2.0, 2.0, None]
     assert first["cornered_layers"] is None  # nobody told the tangents
@@ -103,16 +103,17 @@ def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
         Layer((Bead(points + [0.0, 0.0, 2.0 * k], up, up, path, np.ones(3), False, tangents=tangents),)) for k in range(3)
     )
     toolpath = Toolpath(layers, np.eye(4), 2.0, 0.1, family="surface")
-    job = SimpleNamespace(strategy=SurfaceParameters(layer_height=2.0))
-    first = spacing_comparison.rows(spacing_comparison.compare(object(), job), job, toolpath, [np.full(3, 2.0)] * 2)[0]
+    strategy = SurfaceParameters(layer_height=2.0)
+    found = spacing_comparison.compare(object(), strategy)
+    first = spacing_comparison.rows(found, strategy, toolpath, [np.full(3, 2.0)] * 2)[0]
     assert first["cornered_layers"] == 2 and first["corner_max_deg"] == pytest.approx(40.0)
 
 
 def test_parts_of_revolution_are_not_compared():
-    job = SimpleNamespace(strategy=RevolutionParameters(), name="cup")
-    of_job, made = SimpleNamespace(features=(job,)), SimpleNamespace(features=(None,))
+    one = SimpleNamespace(strategy=RevolutionParameters(), name="cup")
+    job, planned = SimpleNamespace(features=(one,)), SimpleNamespace(planned=object())
     toolpath = Toolpath((), np.eye(4), 2.0, 0.1, family="revolution")
-    (shown,) = run._compared_walls(of_job, made, toolpath, ())
+    (shown,) = made.compared_walls(job, toolpath, ())
     assert (shown.name, shown.compared, shown.rows, shown.band) == ("", (), (), None)
-    assert run._with_motion(of_job, made, shown, object(), None, None) == []
-    assert spacing_comparison.rows((), job, None, []) == []
+    assert made.with_motion(job, shown, planned, object(), None) == []
+    assert spacing_comparison.rows((), one.strategy, None, []) == []

@@ -29,12 +29,12 @@ def test_the_joint_path_and_the_report_tell_the_same_sums(doc, tmp_path):
     assert path.TotalTime == pytest.approx(path.Duration + path.WaitTime)
     assert np.isfinite(path.TotalTime)
 
-    from freecad_am.batch import report  # after FreeCAD is found
     from freecad_am.core.parameters.process import ProcessParameters
+    from freecad_am.report import figures  # after FreeCAD is found
 
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
-    told = report.build("x", api.result(toolpath), api.result(path).motion, (), process, ())
-    sums = json.loads(report.text(told))["totals"]
+    told = figures.build("x", api.result(toolpath), api.result(path).motion, (), process, ())
+    sums = json.loads(figures.text(told))["totals"]
     assert told["duration_s"] == pytest.approx(path.TotalTime)
     assert [sums[key] for key in ("time_s", "deposit_s", "wait_s", "deposit_mm", "volume_cm3", "mass_g")] == pytest.approx(
         [path.TotalTime, path.DepositTime, path.WaitTime, path.DepositLength.Value, path.DepositVolume, path.DepositMass]

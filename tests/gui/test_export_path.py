@@ -3,6 +3,8 @@
 
 import csv
 import os
+import threading
+import time
 
 import FreeCAD as App
 import numpy as np
@@ -10,6 +12,9 @@ import Part
 import pytest
 
 from freecad_am import api
+from freecad_am.gui.background import busy
+from freecad_am.objects import progress
+from freecad_am.report import made
 
 NAME = "RoboticAM_ExportPath"
 
@@ -88,6 +93,71 @@ def test_waypoints_are_a_table_of_all_points_and_axes(person, job, tmp_path):
     places = [[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows]
     np.testing.assert_allclose(places, motion.position, rtol=0, atol=1e-6)
     assert {row["kind"] for row in rows} == {"deposit", "rapid"}
+
+
+def of_menu(job, person):
+    """The panel that the entry of the context menu opens."""
+    menu = person.widgets.QMenu()
+    job.ViewObject.Proxy.setupContextMenu(job.ViewObject, menu)
+    next(action for action in menu.actions() if action.objectName() == "RoboticAM_MenuExportReport").trigger()
+    person.idle()
+    return person.panel(NAME)
+
+
+def test_the_report_of_a_joint_path_is_a_page(person, job, tmp_path):
+    """From the menu of the joint path, of a robot without a program too; what the page says is held in tests/batch."""
+    cell = api.make_cell(job.Document, machine="kuka-kr16-2", deposition_point=(1321, 0, 1621, 0, 0, 0), branch="auto")
+    path = api.make_joint_path(job.Document, job, cell)
+    panel = of_menu(path, person)
+    assert person.field(panel, "Path").currentText() == path.Label
+    assert person.field(panel, "Kind").currentText() == "HTML page of the report"
+    assert not person.field(panel, "Rapids").isVisible()
+    file = tmp_path / "none" / "page.html"
+    person.type(panel, "File", str(file))
+    refused(person)
+    note = person.field(panel, "FileNote")
+    assert note.isVisible() and note.text() == f"there is no folder {file.parent}; make it, or choose another"
+    file.parent.mkdir()
+    person.screenshot("export_report")
+    taken(person)
+    page = file.read_text(encoding="utf-8")
+    assert [entry.name for entry in file.parent.iterdir()] == ["page.html"]
+    assert page.startswith("<!DOCTYPE html>") and page.endswith("</html>\n") and "KUKA KR 16-2" in page
+    assert f">{len(api.result(path).joint_path.beads)}</b><span>beads" in page
+    of_menu(job, person)  # a path without joints has one too
+    person.press("Cancel")
+
+
+def test_a_report_is_cancelled_and_leaves_nothing(person, job, tmp_path, monkeypatch):
+    begun = []
+
+    def endless(self):
+        begun.append(True)
+        for _ in range(6000):
+            time.sleep(0.01)
+            progress.report(0.8, "drawing the page")
+        raise AssertionError("seen to the end")
+
+    def cancel():
+        for dialog in person.window.findChildren(person.widgets.QDialog, busy.NAME):
+            if begun and dialog.isVisible():
+                timer.stop()
+                person.field(dialog, "cancel").click()
+
+    monkeypatch.setattr(made.Made, "page", endless)
+    timer = person.core.QTimer()
+    timer.timeout.connect(cancel)
+    panel = of_menu(job, person)
+    person.type(panel, "File", str(tmp_path / "page.html"))
+    timer.start(50)
+    person.press("Ok")
+    assert begun and "Cancelled" in person.panel_error(panel)
+    monkeypatch.undo()
+    person.until(lambda: not any(one.name == "Robotic AM" for one in threading.enumerate()), "the work to end", 60)
+    assert not any(tmp_path.iterdir())
+    person.press("Ok")
+    person.panel_closed()
+    assert (tmp_path / "page.html").is_file()
 
 
 def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):

@@ -150,7 +150,7 @@ def register() -> list[str]:
         ),
         "ExportPath": Tool(
             "export_path", marked("Export Path…"),
-            marked("Writes a path as STEP or DXF wires or as a table, or makes a CAM path or Robot trajectory of it"),
+            marked("Writes a path as STEP or DXF wires, a table or a report, or makes a CAM path or Robot trajectory of it"),
             _export_path, needs.path,
         ),
         "Program": Tool(

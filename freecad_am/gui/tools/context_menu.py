@@ -40,6 +40,8 @@ def of_stage(menu: Any, obj: Any) -> None:
         _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(obj), bool(obj.Key))
     for tool, text in _next_tools(kind):
         _of_tool(menu, tool, text, obj, fits if tool in _MAKE_NEXT else bool(obj.Key))
+    if kind in ("toolpath", "joint path", "program"):
+        _add(menu, "ExportReport", tr("Export report…"), lambda: _report(obj), bool(obj.Key))
     _add_inputs(menu, obj)
     path = obj.JointPath if kind == "program" else obj if kind in ("toolpath", "joint path") else None
     if path is not None:
@@ -159,3 +161,12 @@ def _export(obj: Any) -> None:
     from ..program import window
 
     window.export(obj)
+
+
+def _report(obj: Any) -> None:
+    from ..panels.stage import show
+    from .export_path import REPORT, ExportPanel
+
+    Gui.Selection.clearSelection()
+    Gui.Selection.addSelection(obj.Document.Name, obj.Name)
+    show(ExportPanel(REPORT))

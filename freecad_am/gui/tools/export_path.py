@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel that writes a path for other programs, or makes an object of another workbench of it."""
+"""The panel that writes a path for other programs or its report, or makes an object of another workbench of it."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from ..texts.translation import tr, translated, translated_error
 from ..widgets.quantity import QuantityField
 from ..widgets.wheel import scrolls
 
-STEP, DXF, CSV, CAM, TRAJECTORY = "step", "dxf", "csv", "cam", "trajectory"
-_FILES = {STEP: ".step", DXF: ".dxf", CSV: ".csv"}
+STEP, DXF, CSV, REPORT, CAM, TRAJECTORY = "step", "dxf", "csv", "report", "cam", "trajectory"
+_FILES = {STEP: ".step", DXF: ".dxf", CSV: ".csv", REPORT: ".html"}
 _KINDS = ("toolpath", "joint path", "program")
 _PREFERENCES, _FOLDER = "User parameter:BaseApp/Preferences/Mod/RoboticAM", "WiresFolder"
 
 
 class ExportPanel:
-    """Chooses a path and what is made of it; nothing happens before OK."""
+    """Chooses a path and what is made of it, first of all `kind`; nothing happens before OK."""
 
-    def __init__(self) -> None:
+    def __init__(self, kind: str = STEP) -> None:
         self.document = App.ActiveDocument
         self.proposed = ""  # the file, without its ending, that the panel itself has put in
         self.paths = [obj for kind in _KINDS for obj in api.stages_of(self.document, kind) if obj.Key]
@@ -51,10 +51,11 @@ class ExportPanel:
         self.kind = self._combo("Kind", tr("What is made of the path"))
         for key, text in (
             (STEP, tr("STEP file of wires")), (DXF, tr("DXF file of polylines")),
-            (CSV, tr("CSV table of waypoints")), (CAM, tr("CAM path in this document")),
-            (TRAJECTORY, tr("Robot trajectory in this document")),
+            (CSV, tr("CSV table of waypoints")), (REPORT, tr("HTML page of the report")),
+            (CAM, tr("CAM path in this document")), (TRAJECTORY, tr("Robot trajectory in this document")),
         ):
             self.kind.addItem(text, key)
+        self.kind.setCurrentIndex(self.kind.findData(kind))
         self.file = QtGui.QLineEdit()
         self.file.setObjectName("File")
         self.file.setMinimumWidth(70)
@@ -192,8 +193,9 @@ class ExportPanel:
         return False
 
     def _call(self, kind: str) -> tuple[str, dict[str, str]]:
-        if kind == CSV:
-            return "export_waypoints", {"path": repr(self.file.text().strip())}
+        whole = {CSV: "export_waypoints", REPORT: "export_report"}
+        if kind in whole:
+            return whole[kind], {"path": repr(self.file.text().strip())}
         if kind in _FILES:
             return "export_wires", {"path": repr(self.file.text().strip()), "rapids": repr(self.rapids.isChecked())}
         if kind == CAM:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,9 +26,8 @@ from freecad_am.core.toolpath import Array, Toolpath
 from freecad_am.objects import user_machines
 from freecad_am.objects.planned import Given, planned
 
-from . import report
-from .job import Job
-from .job_features import JobFeature
+from . import figures as of_report
+from .asked import Job
 
 _MOTION = (
     "condition_min", "range_per_layer_max_deg", "speed_max_deg_s", "acceleration_max_deg_s2", "jerk_max_deg_s3",
@@ -44,23 +43,23 @@ _REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut
 }
 
 
-def compare(wall: Any, of: Job | JobFeature) -> tuple[Compared | Refused, ...]:
-    """The wall of a job or feature cut by every method; walls without one closed parameter by none."""
+def compare(wall: Any, strategy: Any) -> tuple[Compared | Refused, ...]:
+    """A wall cut by every method; walls without one closed parameter by none."""
     if isinstance(wall, SurfaceWall):
-        return wall_comparison.compare(wall, of.strategy)
-    return tuple(Refused(method, _REASONS[method]) for method in METHODS if method != of.strategy.spacing)
+        return wall_comparison.compare(wall, strategy)
+    return tuple(Refused(method, _REASONS[method]) for method in METHODS if method != strategy.spacing)
 
 
 def rows(
-    found: Sequence[Compared | Refused], of: Job | JobFeature, toolpath: Toolpath, distances: Sequence[Array]
+    found: Sequence[Compared | Refused], strategy: Any, toolpath: Toolpath, distances: Sequence[Array]
 ) -> list[dict[str, Any]]:
     """The rows of report.json without motion; that of the method planned comes first."""
     if not found:
         return []
     known = {one.method: _row(one) for one in found}
-    own = of.strategy.spacing
+    own = strategy.spacing
     if own not in known:  # a wall cut by this method alone
-        spread = report.spread(distances)
+        spread = of_report.spread(distances)
         known[own] = _empty(own) | {
             "layers": len(toolpath.layers), "min_mm": spread["min"], "mean_mm": spread["mean"], "max_mm": spread["max"],
             "length_mm": toolpath.length, **_corners(toolpath),
@@ -87,7 +86,7 @@ def motion_of(path: JointPath, motion: Motion, cell: Cell, joints: JointParamete
     axis needs."""
     figures = comparison.of_path(path, cell, joints)
     deposit = motion.deposit & (motion.point > 0)
-    share = np.nanmax(report.speed_ratio(motion, cell)[deposit], axis=1, initial=0.0)
+    share = np.nanmax(of_report.speed_ratio(motion, cell)[deposit], axis=1, initial=0.0)
     time = motion.duration[deposit]
     return {
         "feasible": path.feasible, "duration_s": motion.total_time, "deposit_s": float(time.sum()),
@@ -95,24 +94,26 @@ def motion_of(path: JointPath, motion: Motion, cell: Cell, joints: JointParamete
     }
 
 
-def motions(wall: Any, job: Job, session: Any) -> dict[str, dict[str, Any] | str]:
-    """The motion of every further spacing of strategy.compare, or why there is none."""
+def motions(job: Job, tell: Callable[[str], None]) -> dict[str, dict[str, Any] | str]:
+    """The motion of every further spacing of `strategy.compare` of the one wall of a job, or why there is none."""
     found: dict[str, dict[str, Any] | str] = {}
-    for spacing in dict.fromkeys(job.strategy.compare):
-        if spacing == job.strategy.spacing:
+    for spacing in dict.fromkeys(job.features[0].strategy.compare):
+        if spacing == job.features[0].strategy.spacing:
             continue
-        session.progress(f"spacing comparison: {spacing} ...")
+        tell(f"spacing comparison: {spacing} ...")
         try:
-            found[spacing] = _planned(wall, job, spacing)
+            found[spacing] = _planned(job, spacing)
         except AmError as error:
             found[spacing] = error.message
     return found
 
 
-def _planned(wall: Any, job: Job, spacing: str) -> dict[str, Any]:
-    strategy = replace(job.strategy, spacing=spacing, compare=())
-    toolpath = planned(Given(wall, strategy, job.build_direction, job.process, job.cell))
-    cell = cells.resolve(job.cell, toolpath.frame, toolpath.family, user_machines.folders())
+def _planned(job: Job, spacing: str) -> dict[str, Any]:
+    wall, looks = job.features[0], job.cell
+    assert looks is not None
+    strategy = replace(wall.strategy, spacing=spacing, compare=())
+    toolpath = planned(Given(wall.shape(), strategy, wall.build_direction, job.process, looks))
+    cell = cells.resolve(looks, toolpath.frame, toolpath.family, user_machines.folders())
     path = plan_joints(toolpath, cell, replace(job.joints, compare=()))
     motion, _ = assemble(path, cell, job.process, toolpath.surroundings, job.joints, toolpath.layer_height)
     return motion_of(path, motion, cell, job.joints)

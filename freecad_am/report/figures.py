@@ -25,7 +25,7 @@ from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.strategies.families import family_of
 from freecad_am.core.toolpath import Array, Toolpath
 
-from .job_features import JobFeature
+from .asked import Feature
 
 VERSION = 1
 
@@ -70,7 +70,7 @@ def build(
 
 
 def features(
-    of_job: Sequence[JobFeature], toolpath: Toolpath, motion: Motion, balances: Sequence[Balance | None],
+    of_job: Sequence[Feature], toolpath: Toolpath, motion: Motion, balances: Sequence[Balance | None],
     compared: Sequence[list[dict[str, Any]]],
 ) -> list[dict[str, Any]]:
     """The key `features`: what each of several features comes to. compared: of each, how else its wall may be cut."""

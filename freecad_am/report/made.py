@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Makes the report of a job: its figures, and the page that shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from typing import Any
+
+from freecad_am.core.geometry.on_hub import SolidsOnHub
+from freecad_am.core.kinematics.cell import Cell
+from freecad_am.core.motion import Motion
+from freecad_am.core.process import deposit_balance, spacing
+from freecad_am.core.simulation import deposit
+from freecad_am.core.simulation.margins import on_deposit
+from freecad_am.core.strategies.families import family_of
+from freecad_am.core.toolpath import Array, Toolpath
+
+from . import figures
+from .asked import Job, Results
+from .of_feature import OfFeature
+
+Timed = Callable[[str], AbstractContextManager[None]]
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Made:
+    """A report, and what its page is drawn of. content: as report.json has it."""
+
+    content: dict[str, Any]
+    job: Job
+    toolpath: Toolpath
+    motion: Motion
+    results: Results
+    shown: Sequence[OfFeature]
+    cell: Cell | None
+
+    def page(self) -> str:
+        """report.html."""
+        from freecad_am.plots.source import Source  # slow to import, and not every report has a page
+
+        from . import page
+
+        planned, process = self.results.planned, self.job.process
+        source = Source(self.toolpath, self.motion, process)
+        if planned is not None:
+            judged = planned.joint_path.judged(self.motion)
+            condition, threshold = (on_deposit(self.motion.deposit, column) for column in judged)
+            source = Source(self.toolpath, self.motion, process, self.cell, condition, threshold)
+        platform = self.job.cell.platform_diameter if self.job.cell else None
+        alone = len(self.job.features) == 1 and family_of(self.job.features[0].strategy).filled
+        found = self.job.features[0].shape() if alone else None
+        solids = found if isinstance(found, SolidsOnHub) else None
+        return page.render(page.Content(self.content, source, self.shown, platform, solids))
+
+
+def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
+    """The toolpath as it is run, and its motion: that of the deposit alone where nothing was planned."""
+    if results.planned is None:
+        return results.toolpath, deposit.alone(results.toolpath, 0 if cell is None else len(cell.machine.columns))
+    return results.planned.joint_path.toolpath(results.toolpath), results.planned.motion
+
+
+def made(job: Job, results: Results, cell: Cell | None, timed: Timed, tell: Tell) -> Made:
+    """The report of a job. timed: takes the time of a step by its name, tell: says what is done. `timing_s` stays empty."""
+    toolpath, motion = as_run(results, cell)
+    with timed("report"):
+        distances = spacing.between_layers(toolpath)
+        found = figures.build(job.name, toolpath, motion, distances, job.process, results.issues)
+        if results.planned is not None and cell is not None:
+            figures.add_joints(found, results.planned.joint_path, cell, job.joints, results.seconds)
+    with timed("spacing_comparison"):
+        shown = compared_walls(job, toolpath, distances)
+        if not toolpath.features:
+            found["spacing_comparison"] = with_motion(job, shown[0], results, cell, tell)
+    with timed("preflight"):
+        found["preflight"] = [one.as_dict() for one in results.preflight(distances)]
+    balances = [
+        deposit_balance.of_toolpath(one.shape(), part, one.process.bead_width)
+        for one, (part, _) in zip(job.features, toolpath.parts, strict=True)
+    ]
+    found["deposit"] = deposit_balance.as_dict(deposit_balance.together(balances))
+    if toolpath.features:
+        found["features"] = figures.features(job.features, toolpath, motion, balances, [list(one.rows) for one in shown])
+    found["programs"] = sorted(results.programs)
+    return Made(found, job, toolpath, motion, results, shown, cell)
+
+
+def compared_walls(job: Job, toolpath: Toolpath, distances: Sequence[Array]) -> list[OfFeature]:
+    """Of each feature what the page shows, with what other spacings of a wall would be: nothing for other families.
+    distances: between all layers."""
+    found = []
+    for one, (part, _) in zip(job.features, toolpath.parts, strict=True):
+        apart = spacing.between_layers(part) if toolpath.features else distances
+        shown = OfFeature(one.name if toolpath.features else "", part, apart, getattr(one.strategy, "band", None))
+        if family_of(one.strategy).kind == "surface":
+            from . import spacing_comparison  # slow to import, and only walls need it
+
+            compared = spacing_comparison.compare(one.shape(), one.strategy)
+            shown = shown._replace(compared=compared, rows=spacing_comparison.rows(compared, one.strategy, part, apart))
+        found.append(shown)
+    return found
+
+
+def with_motion(job: Job, wall: OfFeature, results: Results, cell: Cell | None, tell: Tell) -> list[dict[str, Any]]:
+    """The rows about the wall of a single feature, with how the robot moves where that was asked for."""
+    rows: list[dict[str, Any]] = list(wall.rows)
+    if rows and results.planned is not None and cell is not None:
+        from . import spacing_comparison
+
+        planned = results.planned
+        rows[0]["motion"] = spacing_comparison.motion_of(planned.joint_path, planned.motion, cell, job.joints)
+        others = spacing_comparison.motions(job, tell)
+        for row in rows[1:]:
+            found = others.get(row["method"])
+            row["reason" if isinstance(found, str) else "motion"] = found or row["motion"]
+    return rows

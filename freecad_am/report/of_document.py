@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The report of a document's stages, as a command writes it of a job file."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from freecad_am.core.issues import InputError, Issue
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.process.predicted import HEIGHTS
+from freecad_am.objects import preflight, progress, user_machines
+from freecad_am.objects.findings import issues_of
+from freecad_am.objects.job_group import is_group
+from freecad_am.objects.joint_path import planned_of
+from freecad_am.objects.stage import stage_of
+from freecad_am.objects.staleness import FAILED, STALE
+from freecad_am.objects.toolpath import features_of, strategy_of
+
+from .asked import Feature, Job, Results
+from .made import Made, made
+
+KINDS = ("toolpath", "joint path", "program")
+PROGRAMS = "program"  # the folder that commands write programs into
+
+
+def reported(obj: Any) -> Callable[[], str]:
+    """What makes the page of a toolpath, a joint path or a program without the document, from which all is read now. It
+    tells how far it is (`objects.progress`).
+
+    Raises InputError for any other object, for one without a result, and where that or what it is made of does not fit.
+    """
+    toolpath, path, program = _stages(obj)
+    features = features_of(toolpath)
+    stages = [one for one in (*features, toolpath, path, program) if one is not None]
+    for one in stages:
+        if one.Status in (STALE, FAILED):
+            why = one.Message or one.Status
+            raise InputError("NO_RESULT", one.Label, f"no result fits its inputs ({why}); recompute it first")
+    settings = None if program is None else program.Proxy.parameters(program, ProgramParameters)
+    read = None if program is None else preflight.read_back_of(program)
+    promised = preflight.prepared(toolpath, path, settings, read, () if program is None else issues_of(program))
+    job, folders = _job(toolpath, path), tuple(user_machines.folders())
+    results = Results(
+        toolpath.Proxy.value(toolpath), None if path is None else planned_of(path, path.Label)[0],
+        0.0 if path is None else path.Seconds, _issues(features, toolpath, path, program), _files(program),
+        lambda _: promised(),
+    )
+    spent = {one.Proxy.kind.replace(" ", "_"): one.Seconds for one in stages}
+
+    def work() -> str:
+        cell = None if job.cell is None else cells.resolve(job.cell, np.eye(4), folders=folders)
+        report = _steps(job, results, cell)
+        report.content["timing_s"] = spent
+        progress.report(0.7, "drawing the page")
+        return report.page()
+
+    return work
+
+
+def _stages(obj: Any) -> tuple[Any, Any, Any]:
+    """Toolpath, joint path and program, None where there is none."""
+    stage = stage_of(obj)
+    if stage is None or stage.kind not in KINDS:
+        label = getattr(obj, "Label", repr(obj))
+        raise InputError("BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program")
+    program = obj if stage.kind == "program" else None
+    path = obj if stage.kind == "joint path" else None if program is None else program.JointPath
+    if program is not None and path is None:
+        raise InputError("NO_INPUT", obj.Label, "its joint path is gone; choose a joint path")
+    toolpath = obj if path is None else path.Toolpath
+    if path is not None:
+        planned_of(path, obj.Label)
+    return toolpath, path, program
+
+
+def _job(toolpath: Any, path: Any) -> Job:
+    cell = toolpath.Cell if path is None else path.Cell
+    joints = JointParameters() if path is None else path.Proxy.parameters(path, JointParameters)
+    features = tuple(
+        Feature(
+            feature.Label, feature.Proxy.parameters(feature, strategy_of(feature.Proxy)),
+            feature.Proxy.parameters(feature, BuildDirectionParameters), process, feature.Proxy.reader(feature),
+        )
+        for feature, process in zip(features_of(toolpath), toolpath.Proxy.processes(toolpath), strict=True)
+    )
+    of_all = toolpath.Proxy.parameters(toolpath, ProcessParameters)
+    looks = None if cell is None or path is None else cell.Proxy.value(cell)
+    return Job(_name(toolpath), features, of_all, joints, looks)
+
+
+def _name(toolpath: Any) -> str:
+    """What the job is called: as its group, else as the document."""
+    group = next((one for one in toolpath.InList if is_group(one)), toolpath.Document)
+    return str(group.Label)
+
+
+def _files(program: Any) -> list[str]:
+    if program is None or not program.Key:
+        return []
+    return [f"{PROGRAMS}/{name}" for name in program.Proxy.value(program).files]
+
+
+def _issues(features: list[Any], toolpath: Any, path: Any, program: Any) -> list[Issue]:
+    """Those of all stages, as a command tells them: a toolpath repeats those about its wall, and what is told of heights at
+    the speeds as run stands for what was told at those asked for."""
+    found = [issue for feature in features for issue in issues_of(feature)]
+    found += [issue for issue in issues_of(toolpath) if issue not in found]
+    later = [] if path is None else list(issues_of(path))
+    if any(issue.code == HEIGHTS for issue in later):
+        found = [issue for issue in found if issue.code != HEIGHTS]
+    return [*found, *later, *(() if program is None else issues_of(program))]
+
+
+def _steps(job: Job, results: Results, cell: cells.Cell | None) -> Made:
+    """The report, telling of each of its steps."""
+
+    @contextlib.contextmanager
+    def timed(stage: str) -> Iterator[None]:
+        if stage == "spacing_comparison":
+            progress.report(0.1, "comparing the spacing of layers")
+        elif stage == "preflight":
+            progress.report(0.4, "looking at what is promised")
+        yield
+
+    progress.report(0.0, "measuring the path")
+    return made(job, results, cell, timed, lambda _: None)
