@@ -29,7 +29,9 @@ CORNER = np.radians(50.0)  # a bead that turns by more at a point has a corner t
 SLIGHT = np.radians(10.0)  # a lesser turn is a corner too where it is more than SUDDEN times the turns beside it
 SUDDEN = 3.0
 SMOOTH = 1e-3  # rad; where the tangents of a bead are known, a corner is a point at which they differ by more
+_ALL = 15_000  # pairs of points and segments that are looked at one by one: of more a tree finds the near ones sooner
 _CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
+_TIE = 1e-9  # mm; where two chords meet both are the nearest: rounding does not choose between them
 _NEAR = 8  # segments that are tried first
 _BEYOND = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
 
@@ -163,7 +165,7 @@ def distance(points: Array, curve: Curve) -> Array:
     one with the nearest chord.
     """
     bow = _bow(curve)
-    if len(points) * len(curve.start) <= _CHUNK:
+    if len(points) * len(curve.start) <= _ALL:
         return _to_cubic(points, *_nearest_of_all(points, curve, bow), curve)
     from scipy.spatial import cKDTree  # slow to import, and the beads of most jobs are short
 
@@ -202,10 +204,10 @@ def _nearest_of_all(points: Array, curve: Curve, bow: Array) -> tuple[Index, Ind
     squared += share * (share * length - 2.0 * forward)
     nearest, row = squared.argmin(axis=1), np.arange(len(points))
     apart = np.sqrt(np.maximum(squared, 0.0))
-    maybe = apart - bow <= (apart[row, nearest] + bow[nearest])[:, None]
-    maybe[row, nearest] = True
-    which, segment = np.nonzero(maybe)
-    return which, segment, segment == nearest[which]
+    least = apart[row, nearest]
+    own = apart <= (least + _TIE)[:, None]
+    which, segment = np.nonzero(own | (apart - bow <= (least + bow[nearest])[:, None]))
+    return which, segment, own[which, segment]
 
 
 def _parts(middles: Any, points: Array, radius: Array) -> int:
@@ -232,11 +234,11 @@ def _nearest_chords(
     apart = lengths(offset)
     begins = np.flatnonzero(np.diff(which, prepend=-1))
     of = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(which))))
-    hits = np.flatnonzero(apart == np.minimum.reduceat(apart, begins)[of])
+    least = np.minimum.reduceat(apart, begins)
+    hits = np.flatnonzero(apart == least[of])
     first = hits[np.unique(of[hits], return_index=True)[1]]
-    own = np.zeros(len(which), dtype=bool)
-    own[first] = True
-    maybe = own | (apart - bow[segment] <= (apart[first] + bow[segment[first]])[of])
+    own = apart <= (least + _TIE)[of]
+    maybe = own | (apart - bow[segment] <= (least + bow[segment[first]])[of])
     return which[maybe], segment[maybe], own[maybe]
 
 

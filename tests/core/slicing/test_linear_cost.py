@@ -91,7 +91,6 @@ def test_of_segments_below_only_the_near_ones_are_tried(monkeypatch):
         return share(offset, along)
 
     monkeypatch.setattr(spacing, "_share", counted)
-    monkeypatch.setattr(spacing, "_CHUNK", 10_000)
     work = []
     for points in (1000, 2000, 4000):
         angle = np.linspace(0.0, 2.0 * np.pi, points + 1)
@@ -103,3 +102,24 @@ def test_of_segments_below_only_the_near_ones_are_tried(monkeypatch):
         assert found == pytest.approx(0.02, abs=1e-6)
         work.append(tried[0])
     assert all(after < 2.2 * before for before, after in zip(work, work[1:]))
+
+
+@pytest.mark.parametrize("points", [30, 200, 700])
+def test_near_segments_from_a_tree_are_those_that_all_of_them_tell(monkeypatch, points):
+    random = np.random.default_rng(points)
+    angle = np.linspace(0.0, 2.0 * np.pi, points + 1)
+    wave = 50.0 + 3.0 * np.sin(7.0 * angle)
+    ring = np.c_[wave * np.cos(angle), wave * np.sin(angle), 0.0 * angle]
+    ring[-1] = ring[0]
+    below = spacing.Curve(*spacing._columns(ring, True))
+    places = ring + random.uniform(-1.0, 1.0, ring.shape) + [0.0, 0.0, 1.5]
+    found = []
+    for most in (0, 10**9):
+        monkeypatch.setattr(spacing, "_ALL", most)
+        found.append(spacing.distance(places, below))
+    assert (found[0] == found[1]).all()
+    # no finer way of looking finds a nearer place of the chords
+    fine = np.linspace(0.0, 1.0, 40)[:, None, None]
+    chords = (below.start + fine * (below.end - below.start)).reshape(-1, 3)
+    nearest = np.array([np.linalg.norm(chords - place, axis=1).min() for place in places])
+    assert (np.abs(found[0] - nearest) < 0.6 * (2.0 * np.pi * 53.0 / points)).all()
