@@ -7922,6 +7922,11 @@
         <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>its first axis slides and carries the six that turn, as a track does; let the machine begin with the robot, and name the track in `cell.external` with `carries: robot`</source>
+        <translation>son premier axe coulisse et porte les six qui tournent, comme un rail ; faites commencer la machine au robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur_read.py"/>
         <source>its function is called {0}</source>
         <translation>sa fonction s&apos;appelle {0}</translation>
@@ -11140,6 +11145,11 @@
         <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
         <source>{0} from {1} to {2}: {3}</source>
         <translation>{0} de {1} à {2} : {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <source>{0} from {1} to {2}: {3}; the robot begins at the link {4}</source>
+        <translation>{0} de {1} à {2} : {3} ; le robot commence au corps {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/front_tree.py"/>

@@ -7,6 +7,7 @@ import pytest
 
 from freecad_am.core.kinematics import machine, urdf_text
 from tests.batch.test_plan_command import deposit
+from tests.core.kinematics.arms import on_track
 
 JOB = """\
 part: {file: cup.step}
@@ -40,6 +41,21 @@ def test_a_job_on_a_urdf_moves_as_on_the_machine_file(planned, workshop):
     for first, second in zip(*angles, strict=True):
         assert second == pytest.approx(first, abs=1e-5)
     assert json.loads(workshop.files()["report.json"])["machine"]["title"] == "fanuc-arcmate120ic"
+
+
+def test_a_robot_with_its_track_is_refused_and_told_where_the_robot_begins(planned, workshop):
+    """It was taken for a five-axis machine, whatever else was chosen. The remedy that is told is one."""
+    (workshop.folder / "rail.urdf").write_text(on_track((workshop.folder / "arm.urdf").read_text()), encoding="utf-8")
+    for name in ("rail.urdf", "rail.urdf, setup: tool-on-robot"):
+        done = planned(name)
+        assert done.status == 2 and "error[NO_CLOSED_FORM] cup.yaml: cell.machine: rail.urdf" in done.err
+        assert "rail.urdf from base_link to tool0: this cannot be planned for: its first axis slides" in done.err
+        assert "`cell.external` with `carries: robot`; the robot begins at the link 'carriage'" in done.err
+    alone = planned("{file: rail.urdf, base: carriage}")
+    assert alone.status == 0, alone.err
+    rows = workshop.files()["waypoints.csv"]
+    assert planned("arm.urdf").status == 0
+    assert workshop.files()["waypoints.csv"] == rows
 
 
 def test_a_program_is_refused_for_a_controller_that_a_urdf_does_not_tell_of(planned):

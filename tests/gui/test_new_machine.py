@@ -10,6 +10,7 @@ import pytest
 
 from freecad_am.core.kinematics import machine, pendant, pose_figures, urdf_text
 from freecad_am.objects import preferences, user_machines
+from tests.core.kinematics.arms import on_track
 
 NAME = "RoboticAM_NewMachine"
 
@@ -309,6 +310,18 @@ def test_what_was_entered_is_not_lost_without_a_question(person, hand, wizard):
     hand.click(wizard.button(person.widgets.QWizard.CancelButton))
     person.until(lambda: not person.window.findChildren(person.widgets.QWizard), "the wizard to close")
     assert len(asked) == 1
+
+
+def test_a_robot_on_its_track_begins_with_the_robot(person, hand, wizard, tmp_path):
+    path = tmp_path / "rail.urdf"
+    path.write_text(on_track(urdf_text.text(machine.load("abb-irb140"))), encoding="utf-8")
+    hand.enter(wizard, "file", str(path))
+    base = person.field(wizard, "baseLink")
+    assert base.currentText() == "base_link"
+    assert "its first axis slides and carries the six that turn, as a track does" in refused(person, hand, wizard)
+    person.choose(wizard, "baseLink", "carriage")
+    go_on(person, hand, wizard, "LimitsPage")
+    assert person.field(wizard, "limits").rowCount() == 6
 
 
 def test_a_defective_urdf_is_called_by_its_name_and_quaternions_are_seen_whole(person, hand, wizard, tmp_path):

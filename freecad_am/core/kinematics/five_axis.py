@@ -20,6 +20,13 @@ from .chain import Chain
 
 Mask = NDArray[np.bool_]
 
+SLIDING, TURNING = 3, 2  # axes
+
+
+def is_five_axis(sliding: Mask) -> bool:
+    """Whether axes, of which `sliding` (n,) slide, are those of such a machine, in whatever order."""
+    return (int(sliding.sum()), len(sliding)) == (SLIDING, SLIDING + TURNING)
+
 
 class Solutions(NamedTuple):
     """Axis values (2, n, 5), one row per branch, rad in (-pi, pi] and mm; NaN where no turn reaches the direction.
@@ -40,7 +47,7 @@ class FiveAxis:
 
     def __post_init__(self) -> None:
         slides = self.chain.sliding
-        if slides.sum() != 3 or len(slides) != 5:
+        if not is_five_axis(slides):
             raise ValueError("a five-axis machine has three axes that slide and two that turn")
         object.__setattr__(self, "turning", tuple(np.flatnonzero(~slides).tolist()))
         object.__setattr__(self, "sliding", tuple(np.flatnonzero(slides).tolist()))

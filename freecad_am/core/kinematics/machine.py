@@ -20,6 +20,7 @@ from ..geometry.frames import Array
 from ..issues import InputError
 from . import calibration, check_poses, urdf_machine
 from .chain import Chain
+from .five_axis import is_five_axis
 from .inverse import recognition
 from .inverse.calibrated import CalibratedArm
 from .inverse.parallel_axes import ParallelAxesArm
@@ -85,8 +86,8 @@ class Machine:
 
     @property
     def is_table(self) -> bool:
-        """Whether it has axes that slide: a machine with rotary tables or heads, not a robot."""
-        return bool(self.chain.sliding[: len(self.axes) - self.external].any())
+        """Whether it is a machine with rotary tables or heads, three of whose axes slide and two turn, not a robot."""
+        return is_five_axis(self.chain.sliding[: len(self.axes) - self.external])
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -328,7 +329,7 @@ def _most(joint: Node, key: str, what: str) -> float:
 
 def _recognised(chain: Chain) -> tuple[SerialArm | None, str]:
     """The inverse of a robot whose file has no `opw`, or why there is none; that of rotary axes is in `five_axis`."""
-    if chain.sliding.any():
+    if is_five_axis(chain.sliding):
         return None, ""
     try:
         return recognition.arm_of(chain), ""

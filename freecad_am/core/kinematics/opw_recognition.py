@@ -21,6 +21,7 @@ from .opw import OpwArm
 # how far directions (rad) and lines (mm) may be off, and what the closed form may leave: those of machine files
 STRAIGHT, NEAR_MM = 1e-8, 1e-5
 POSITION, ROTATION = 1e-6, 1e-9
+ROBOT = 6  # axes of one
 FLANGE = "flange"  # where what is refused about the flange alone is
 
 
@@ -42,6 +43,11 @@ def rooted(chain: Chain) -> tuple[Chain, Array]:
                  chain.sliding), old
 
 
+def track_of(chain: Chain) -> int:
+    """How many axes a track has that a robot with six turning axes stands on; 0 of any other chain."""
+    return int(chain.axes == ROBOT + 1 and chain.sliding[0] and not chain.sliding[1:].any())
+
+
 def recognise(chain: Chain) -> OpwArm:
     """The closed form of a chain, in its own base_link.
 
@@ -50,6 +56,9 @@ def recognise(chain: Chain) -> OpwArm:
     """
     if chain.axes != 6 or chain.sliding.any():
         slides = int(chain.sliding.sum())
+        if track_of(chain):
+            raise refused("its first axis slides and carries the six that turn, as a track does; let the machine begin with "
+                          "the robot, and name the track in `cell.external` with `carries: robot`")
         raise refused(f"it has {chain.axes} axes, {slides} of which slide; a robot that can be planned has six that turn")
     at_rest = chain.frames(np.zeros(6))
     centre = _wrist_centre(at_rest)

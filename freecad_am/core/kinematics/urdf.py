@@ -108,6 +108,10 @@ class Urdf:
 
         return sorted((link for link, count in moving.items() if count), key=rank)
 
+    def moved_by(self, joint: str) -> str:
+        """The link that a joint moves; it must be there."""
+        return next(link for link, one in self.parent.items() if one.text("name") == joint)
+
     def _points_out(self, link: str) -> bool:
         """Whether the Z of a link lies along the axis of the last joint that moves it, and does not point back to the one
         before."""

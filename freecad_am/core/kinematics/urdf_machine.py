@@ -12,12 +12,11 @@ from ..geometry.frames import Array
 from ..issues import InputError
 from . import opw_recognition
 from .chain import Chain
+from .five_axis import is_five_axis
 from .inverse import recognition
 from .inverse.serial_arm import SerialArm
 from .urdf import Description, Urdf
 from .urdf_reference import Reference
-
-TABLE = (3, 2)  # sliding and turning axes of the only machines that are no robots
 
 
 def described(meant: Reference) -> tuple[Description, SerialArm | None]:
@@ -42,18 +41,17 @@ def described(meant: Reference) -> tuple[Description, SerialArm | None]:
     try:
         return found, closed_form(found.chain)
     except InputError as error:
+        track = opw_recognition.track_of(found.chain)
+        begin = f"; the robot begins at the link {robot.moved_by(found.joints[track - 1])!r}" if track else ""
         raise InputError(
-            error.code, "cell.machine", f"{path.name} from {base} to {meant.tip or tips[0]}: {error.message}"
+            error.code, "cell.machine", f"{path.name} from {base} to {meant.tip or tips[0]}: {error.message}{begin}"
         ) from None
 
 
 def closed_form(chain: Chain) -> SerialArm | None:
     """The inverse of a robot, None of a machine with three sliding and two turning axes. InputError NO_CLOSED_FORM, with
     the reason, for any other."""
-    sliding = int(chain.sliding.sum())
-    if (sliding, chain.axes - sliding) == TABLE:
-        return None
-    return recognition.arm_of(chain)
+    return None if is_five_axis(chain.sliding) else recognition.arm_of(chain)
 
 
 def grounded(found: Description) -> Description:

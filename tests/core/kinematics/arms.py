@@ -110,3 +110,10 @@ def numeric(of, pose, rng, starts):
 def apart(one, other):
     """The largest difference of two joint vectors along leading axes, whole turns aside."""
     return np.abs(np.exp(1j * np.asarray(one)) - np.exp(1j * np.asarray(other))).max(axis=-1)
+
+
+def on_track(text):
+    """The URDF of a robot whose base_link stands on a track, as one robot."""
+    return text.replace('"base_link"', '"carriage"').replace("</robot>", """<link name="base_link"/>
+<joint name="rail" type="prismatic"><parent link="base_link"/><child link="carriage"/><origin xyz="0 0 0.3"/>
+<axis xyz="1 0 0"/><limit lower="-1" upper="1" velocity="1" effort="0"/></joint></robot>""")

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Poses of the flange from points of the part, and back; the rotation about the tool axis and the paper's RZ."""
 
+import json
+
 import numpy as np
 import pytest
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import machine
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 
 SETUPS = ("part-on-robot", "tool-on-robot")
@@ -126,3 +129,28 @@ def test_what_cannot_be_resolved_is_refused(parameters, code):
     with pytest.raises(InputError) as error:
         cells.resolve(CellParameters(**parameters), np.eye(4))
     assert error.value.code == code
+
+
+@pytest.mark.parametrize("setup", [*SETUPS, "rotary-table"])
+def test_a_machine_file_of_a_robot_with_its_track_is_refused_whatever_the_setup(setup, tmp_path):
+    """It was taken for a five-axis machine, and those without five axes for an internal error."""
+    told = json.loads((machine.BUILT_IN / "kuka-kr16-2.json").read_text(encoding="utf-8"))
+    told["joints"].insert(0, {"name": "rail", "type": "prismatic", "origin": [0, 0, 0], "rpy": [0, 0, 0], "axis": [1, 0, 0],
+                              "max_speed": 1000})
+    told["controller"] |= {"matrix": np.eye(7).tolist(), "offset": [0] * 7}
+    told["limits"]["maker"]["axes"].insert(0, [-1000, 1000])
+    for pose in told["check_poses"]:
+        along = 100 if any(pose["q"]) else 0
+        pose["q"].insert(0, along)
+        pose["origin"][0] += along
+    del told["opw"], told["id"]
+    path = tmp_path / "rail.json"
+    path.write_text(json.dumps({"id": "rail", **told}), encoding="utf-8")
+    with pytest.raises(InputError) as info:
+        cells.resolve(CellParameters(machine=str(path), setup=setup), np.eye(4))
+    if setup == "rotary-table":
+        assert (info.value.code, info.value.where) == ("WRONG_SETUP", "cell.setup")
+        assert "is a robot; use part-on-robot or tool-on-robot" in info.value.message
+    else:
+        assert (info.value.code, info.value.where) == ("NO_CLOSED_FORM", "cell.machine")
+        assert "as a track does" in info.value.message and "`cell.external`" in info.value.message

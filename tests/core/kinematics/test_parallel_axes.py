@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Arms with three parallel axes: every solution, near singularities too."""
 
+import itertools
+
 import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import opw
 from freecad_am.core.kinematics.chain import Chain
+from freecad_am.core.kinematics.five_axis import is_five_axis
 from freecad_am.core.kinematics.inverse import recognition
 from freecad_am.core.kinematics.inverse.parallel_axes import CHUNK, ParallelAxesArm
 from tests.core.kinematics.arms import CROOKED_UR, UR5E, UR10E, apart, chain, numeric, second_opinion
@@ -123,3 +126,17 @@ def test_seven_axes_are_refused():
     seven = Chain(of.origins[again], of.directions[again], of.flange)
     with pytest.raises(InputError, match="it has 7 axes, 0 of which slide; a robot that can be planned has six that turn"):
         recognition.arm_of(seven)
+
+
+def test_a_sliding_axis_before_six_that_turn_is_a_track_and_five_axis_machines_are_three_and_two():
+    of = chain(UR10E)
+    again = [0, 0, 1, 2, 3, 4, 5]
+    rail = Chain(of.origins[again], of.directions[again], of.flange, np.arange(7) == 0)
+    with pytest.raises(InputError, match=r"slides and carries the six that turn, as a track does; .*`cell\.external`"):
+        recognition.arm_of(rail)
+    last = Chain(of.origins[again], of.directions[again], of.flange, np.arange(7) == 6)
+    with pytest.raises(InputError, match="it has 7 axes, 1 of which slide; a robot that can be planned has six that turn"):
+        recognition.arm_of(last)
+    for count, sliding in itertools.product(range(1, 9), repeat=2):
+        slides = np.arange(count) < sliding
+        assert is_five_axis(slides) == (count == 5 and sliding == 3) == is_five_axis(slides[::-1])
