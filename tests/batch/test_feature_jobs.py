@@ -185,6 +185,39 @@ def test_later_features_keep_clear_of_earlier_ones(workshop):
     assert report["totals"]["volume_cm3"] == pytest.approx(laid / 1000.0, rel=1e-6)
 
 
+RINGS = """\
+strategy: {kind: revolution, layer_height: 4 mm, chord_error: 0.2 mm}
+features:
+  - {name: outer, part: {file: outer.step, faces: [Face1]}, process: {bead_width: 16 mm}}
+  - {name: inner, part: {file: inner.step, faces: [Face1]}}
+"""
+
+
+def test_a_part_of_revolution_keeps_clear_of_the_flank_of_a_wider_bead_that_stands(workshop):
+    """A ring of beads of 16 mm about one of 8 mm: the upright nozzle passes the middle line of the wide beads, and cuts their
+    flank, which bulges by half of their width towards it."""
+    done, report, rows = planned(
+        workshop, RINGS, outer=Part.makeCylinder(40, 32), inner=Part.makeCylinder(25, 32)
+    )
+    assert done.status == 0, done.err
+    assert [len(one["layers"]) for one in report["features"]] == [9, 9]
+    layer = of(rows, "layer").ravel()
+    points, build, tool = of(rows, "x_mm", "y_mm", "z_mm"), of(rows, "bx", "by", "bz"), of(rows, "tx", "ty", "tz")
+    radius = np.hypot(points[:, 0], points[:, 1])
+    np.testing.assert_allclose(radius, np.where(layer < 9, 40.0, 25.0), atol=1e-6)
+    np.testing.assert_allclose(tool[layer < 9], build[layer < 9], atol=1e-9)
+    # beads are round beside: of each the half that is as wide is left
+    line, ring = (
+        Part.makeCylinder(outer, 32).cut(Part.makeCylinder(inner, 32)) for outer, inner in ((40.1, 39.9), (46.0, 34.0))
+    )
+    first = np.flatnonzero(layer == 9)
+    for k in first[:: len(first) // 8]:
+        upright = nozzle(points[k], build[k])
+        assert upright.common(line).Volume == 0.0 and upright.common(ring).Volume > 1.0
+    for k in np.flatnonzero(layer >= 9)[::11]:
+        assert nozzle(points[k], tool[k]).common(ring).Volume < 1e-6
+
+
 def test_by_height_the_lowest_layer_comes_first(workshop):
     """So that nothing stands beside what is deposited, and no tool is tilted."""
     done, report, rows = planned(workshop, TOWERS + "sequence: height\n", **TOWER_PARTS)
