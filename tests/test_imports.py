@@ -209,6 +209,15 @@ def test_imports_lead_somewhere():
     assert len(found) > 5000 and wrong == []
 
 
+def test_what_is_kept_free_beside_limits_has_one_place():
+    """docs/decisions/0009: three planners had a figure each."""
+    places = [
+        path.relative_to(PACKAGE).as_posix() for path in modules() for node in tree(path).body
+        if isinstance(node, ast.Assign) and "RESERVE" in {getattr(target, "id", "") for target in node.targets}
+    ]
+    assert places == ["core/planning/reserve.py"]
+
+
 def test_no_folder_of_the_window_is_crowded():
     """A file is found by the list of the folder it is in."""
     folders = Counter(path.parent.relative_to(PACKAGE).as_posix() for path in modules() if path.name != "__init__.py")

@@ -194,8 +194,8 @@ features:
 
 
 def test_a_part_of_revolution_keeps_clear_of_the_flank_of_a_wider_bead_that_stands(workshop):
-    """A ring of beads of 16 mm about one of 8 mm: the upright nozzle passes the middle line of the wide beads, and cuts their
-    flank, which bulges by half of their width towards it."""
+    """A ring of beads of 16 mm about one of 8 mm: the upright nozzle passes the middle line of the wide beads and cuts their
+    flank, half of their width nearer."""
     done, report, rows = planned(
         workshop, RINGS, outer=Part.makeCylinder(40, 32), inner=Part.makeCylinder(25, 32)
     )

@@ -22,6 +22,7 @@ from ..kinematics.external import ExternalAxes, tilt_from
 from ..toolpath import Bead, Toolpath
 from .joint_path import JointPath
 from .points import TURN
+from .reserve import RESERVE
 from .rotary_courses import continuous, kept
 
 Array = NDArray[np.float64]
@@ -30,7 +31,6 @@ ROUNDING = 1e-9
 # rad; a direction this near to the turning axis counts as on it, or the axis would race round to meet it
 AT_POLE = math.radians(0.1)
 STEPS = 200  # of the search for the middle of directions
-RESERVE = math.radians(0.05)  # kept free beside a limit, as for robots
 
 
 def levelled(cell: Cell, toolpath: Toolpath) -> tuple[list[Bead], list[Issue]]:

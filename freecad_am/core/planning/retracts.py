@@ -23,6 +23,7 @@ from ..kinematics.cell import Cell
 from ..kinematics.five_axis import FiveAxis
 from ..parameters.joints import JointParameters
 from . import following
+from .reserve import RESERVE
 from .retract_ways import (
     ASKED,
     LEANS_RAD,
@@ -37,7 +38,7 @@ from .retract_ways import (
     Ways,
     groups,
 )
-from .task import CONDITION_FLOOR, RESERVE
+from .task import CONDITION_FLOOR
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

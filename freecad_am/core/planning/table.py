@@ -22,6 +22,7 @@ from ..parameters.joints import JointParameters
 from ..toolpath import Bead, Toolpath
 from . import table_room
 from .joint_path import BeadPath
+from .reserve import RESERVE
 from .rotary_courses import continuous, kept
 from .turns import seam_note, split_note
 
@@ -33,7 +34,6 @@ TURN = 2.0 * np.pi
 BETWEEN = np.array([0.25, 0.5, 0.75])
 ROUNDS = 10
 ROUNDING = 1e-6  # mm, and of directions: what rounding may leave between points
-RESERVE = math.radians(0.05)  # kept free beside a limit, as for robots; and as many mm
 AT_POLE = math.radians(0.1)  # a direction this near to the pole counts as on it, or the axis would race round to meet it
 STRAY = math.radians(0.5)  # between two points the tool may lean this far from the direction asked for
 

@@ -18,6 +18,7 @@ from ..parameters.joints import JointParameters
 from . import following
 from .arm_kept import ArmKept
 from .points import TURN, Points, unwrapped
+from .reserve import RESERVE
 
 Array = NDArray[np.float64]
 
@@ -26,8 +27,6 @@ PIECE = 4096  # points whose poses and Jacobians are held together
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
 ENDLESS_STROKE = 1e6 * TURN
-# kept free beside every limit: the program's last digit must not take an axis past it, rad
-RESERVE = np.radians(0.05)
 CONDITION_FLOOR = 0.02
 CONDITION_SHARE = 0.25
 UNREACHABLE = -np.inf

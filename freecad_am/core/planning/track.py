@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..geometry import frames
 from ..kinematics.cell import Cell
 from ..toolpath import Bead
-from .task import RESERVE
+from .reserve import RESERVE
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,8 @@ from freecad_am.core.planning import comparison, constant, refine, search
 from freecad_am.core.planning import plan as planner
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.task import RESERVE, Task
+from freecad_am.core.planning.reserve import RESERVE
+from freecad_am.core.planning.task import Task
 from freecad_am.kdl import chain as kdl
 
 FLIP = opw.branch_index(("front", "up", "flip"))
