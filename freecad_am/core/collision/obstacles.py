@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -18,10 +19,9 @@ ALWAYS, NEVER = -1, np.iinfo(np.intp).max
 
 class _Level(NamedTuple):
     """Nodes (n,) of the tree: boxes by their centres and half sizes (n, 3), both also by columns (3, n), with a rounding
-    about them, balls about the same centres by their radii, and the earliest moments."""
+    about them, and the earliest moments."""
 
     centre: Array
-    radius: Array
     half: Array
     columns: tuple[Array, Array]
     rounding: Array
@@ -55,33 +55,36 @@ class Obstacles:
         self._sizes = tree.sizes(len(corners))
         each = [self.corners[:, k] for k in range(corners.shape[1])]
         low, high = (np.array(bound.reduce(each)) for bound in (np.minimum, np.maximum))
-        self._levels = [self._volumes(size, low, high) for size in self._sizes]
+        self._levels = self._boxes(low, high)
         if corners.shape[1] == 3:
             normal = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
             size = lengths(normal)
             self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
 
-    def _volumes(self, size: int, low: Array, high: Array) -> _Level:
-        """What bounds so many obstacles each, of which low and high (m, 3) are the boxes."""
-        starts = np.arange(0, len(self.corners), size)
-        if not len(starts):
-            none = np.zeros((0, 3))
-            return _Level(none, np.zeros(0), none, (none.T, none.T), np.zeros(0), np.zeros(0, dtype=np.intp))
-        low, high = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
-        centre = 0.5 * (low + high)
-        apart = self.corners.copy()
-        whole = len(apart) // size  # nodes; the last one may have fewer
-        apart[: whole * size].reshape(whole, -1, 3)[:] -= centre[:whole, None]
-        apart[whole * size :] -= centre[whole:, None]
-        squared = np.einsum("ijk,ijk->ij", apart, apart)
-        away = np.sqrt(separation.largest(squared))
-        round_ = np.zeros(len(starts))
-        if self.radius is not None:
-            away = away + self.radius
-            round_ = np.maximum.reduceat(self.radius, starts)
-        radius, since = np.maximum.reduceat(away, starts), np.minimum.reduceat(self.since, starts)
-        half = 0.5 * (high - low)
-        return _Level(centre, radius, half, (columns(centre), columns(half)), round_, since)
+    def _boxes(self, low: Array, high: Array) -> list[_Level]:
+        """The levels of the tree over obstacles with the boxes low and high (m, 3), each from the one below it."""
+        rounding, since = np.zeros(len(low)) if self.radius is None else self.radius, self.since
+        found = []
+        for size in self._sizes:
+            if size > 1:
+                starts = np.arange(0, len(low), tree.BRANCH)
+                low, high = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
+                rounding, since = np.maximum.reduceat(rounding, starts), np.minimum.reduceat(since, starts)
+            centre, half = 0.5 * (low + high), 0.5 * (high - low)
+            found.append(_Level(centre, half, (columns(centre), columns(half)), rounding, since))
+        return found
+
+    @cached_property
+    def _radii(self) -> list[Array]:
+        """Of balls about the same centres as the boxes of each level, which distances alone are looked for by."""
+        found = []
+        for size, level in zip(self._sizes, self._levels):
+            apart = self.corners - level.centre[np.arange(len(self.corners)) // size][:, None]
+            away = np.sqrt(separation.largest(np.einsum("ijk,ijk->ij", apart, apart)))
+            if self.radius is not None:
+                away += self.radius
+            found.append(np.maximum.reduceat(away, np.arange(0, len(away), size)))
+        return found
 
     def touched(
         self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
@@ -102,7 +105,7 @@ class Obstacles:
 
     def _touched(self, solid: Frustum, tip: Array, axis: Array, moment: Index, own: Index) -> Mask:
         found = np.zeros(len(tip), dtype=bool)
-        top = len(self._levels[-1].radius)
+        top = len(self._levels[-1].since)
         waiting = [(len(self._levels) - 1, *_each_with_each(len(tip), top))]
         ready: list[tuple[Index, Index]] = []
         tips, axes = columns(tip), columns(axis)
@@ -126,7 +129,7 @@ class Obstacles:
             left = np.flatnonzero(~found.take(query))
             query, node = query.take(left), node.take(left)
             if depth:
-                query, node = tree.below(query, node, len(self._levels[depth - 1].radius))
+                query, node = tree.below(query, node, len(self._levels[depth - 1].since))
                 waiting += [(depth - 1, *some) for some in tree.parts(query, node)]
                 continue
             # single ones are looked at when there are many: that costs less each
@@ -190,7 +193,7 @@ class Obstacles:
 
     def _distance(self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float) -> Array:
         low, best = np.full(len(tip), reach), np.full(len(tip), reach)  # bounds of the least distance yet
-        top = len(self._levels[-1].radius)
+        top = len(self._levels[-1].since)
         query, node = _each_with_each(len(tip), top)
         for depth in range(len(self._levels) - 1, -1, -1):
             level = self._levels[depth]
@@ -202,7 +205,7 @@ class Obstacles:
                 apart = offset - solid.rows(q).nearest(offset, axis[q])
                 gap = np.sqrt(dots(apart, apart))
                 wide = dots(np.abs(apart), level.half[n]) / np.where(gap > 0.0, gap, 1.0)
-                least = gap - np.minimum(wide + level.rounding[n], level.radius[n])
+                least = gap - np.minimum(wide + level.rounding[n], self._radii[depth][n])
                 near = least < best[q]
                 q, n, least = q[near], n[near], least[near]
                 sample = n * self._sizes[depth]
@@ -216,7 +219,7 @@ class Obstacles:
             near = away < np.maximum(best[query], CONVERGED)
             query, node, away = query[near], node[near], away[near]
             if depth:
-                query, node = tree.below(query, node, len(self._levels[depth - 1].radius))
+                query, node = tree.below(query, node, len(self._levels[depth - 1].since))
         # the nearest by their balls first: most of the others are then known to be farther
         order = np.lexsort((away, query))
         query, node, away = query[order], node[order], away[order]

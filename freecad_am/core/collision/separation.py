@@ -28,17 +28,17 @@ MOST = 64  # steps of a pair; what is not settled then is near to grazing and ke
 
 
 def bounds(
-    solid: Frustum, axis: Array, points: Array, nearer: Array | float = 0.0, farther: Array | float = np.inf
+    solid: Frustum, axis: Array, points: Array, nearer: Array | float = 0.0, farther: Array | float = np.inf,
+    start: Array | None = None,
 ) -> tuple[Array, Array]:
     """Lower and upper bounds (k,) mm of the distance between solids about unit axes (k, 3) and the hulls of points
     (k, c, 3), seen from the tips; they agree within CONVERGED, unless the distance is surely below `nearer`, or above
-    `farther`, both (k,) mm. 0 where the two meet."""
+    `farther`, both (k,) mm. 0 where the two meet. start: the ways (k, 3) `from_middles`, where they are known."""
     count = len(points)
-    low, high = np.zeros(count), np.zeros(count)
+    low = np.zeros(count)
     nearer, farther = np.broadcast_to(nearer, count), np.broadcast_to(farther, count)
-    middle = middles(points)
-    place = solid.nearest(middle, axis) - middle
-    high[:] = np.sqrt(dots(place, place))
+    place = from_middles(solid, axis, points) if start is None else start
+    high = np.sqrt(dots(place, place))
     rows = np.flatnonzero(high > np.maximum(nearer, CONVERGED))
     place = place[rows]
     simplex: Array | None = None
@@ -70,10 +70,11 @@ def bounds(
     return np.minimum(low, high), high
 
 
-def within(solid: Frustum, axis: Array, points: Array, radius: Array) -> Mask:
-    """(k,) whether hulls of points (k, c, 3) with a rounding of the radius (k,) mm about them reach into solids."""
+def within(solid: Frustum, axis: Array, points: Array, radius: Array, start: Array | None = None) -> Mask:
+    """(k,) whether hulls of points (k, c, 3) with a rounding of the radius (k,) mm about them reach into solids. start: as
+    for `bounds`."""
     deep = np.maximum(radius - CONVERGED, 0.0)
-    _, high = bounds(solid, axis, points, deep, np.maximum(deep, CONVERGED))
+    _, high = bounds(solid, axis, points, deep, np.maximum(deep, CONVERGED), start)
     found: Mask = (high < deep) | (high == 0.0)
     return found
 
@@ -82,23 +83,29 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
     """(k,) as `within`, but of the hulls asked for by one query (k,) no more than needed to know whether any does: those
     with the nearest middle are looked at first, and the others where that does not, unless there are few."""
     deep = np.maximum(radius - CONVERGED, 0.0)
-    middle = middles(points)
-    place = solid.nearest(middle, axis) - middle
+    place = from_middles(solid, axis, points)
     gap = np.sqrt(dots(place, place))
     found: Mask = (gap < deep) | (gap == 0.0)
     met = np.zeros(query.max(initial=-1) + 1, dtype=bool)
     met[query[found]] = True
     # where the point nearest to a middle is, a plane touches the solid: the hull is no nearer than its corners are to that
-    away = points - middle[:, None]
+    away = points - middles(points)[:, None]
     nearer = largest(np.einsum("kcj,kj->kc", away, place)) / np.where(gap > 0.0, gap, 1.0)
     left = np.flatnonzero(~met[query] & (gap - nearer < np.maximum(deep, CONVERGED) + ROUNDING))
     left = left[np.lexsort(((gap - deep)[left], query[left]))]
     first = np.diff(query[left], prepend=-1) != 0
     for some in (left[first], left[~first]) if len(left) > FEW else (left,):
         now = some[~met[query[some]]]
-        found[now] = within(solid.rows(now), axis[now], points[now], radius[now])
+        found[now] = within(solid.rows(now), axis[now], points[now], radius[now], place[now])
         met[query[now[found[now]]]] = True
     return found
+
+
+def from_middles(solid: Frustum, axis: Array, points: Array) -> Array:
+    """The ways (k, 3) from the middles of points (k, c, 3) to the nearest points of solids about unit axes (k, 3)."""
+    middle = middles(points)
+    ways: Array = solid.nearest(middle, axis) - middle
+    return ways
 
 
 def middles(points: Array) -> Array:
