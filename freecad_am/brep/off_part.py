@@ -45,7 +45,7 @@ def off_faces(shape: Any, names: Sequence[str], points: Array, allowed: float) -
         return np.full(len(points), np.nan)
     faces = Part.makeCompound([face.copy(False) for face in chosen])
     triangles = _Triangles(faces)
-    return _exact(faces, points, np.abs(triangles.signed(points)), allowed, triangles.deflection, False)
+    return _exact(faces, points, triangles.away(points), allowed, triangles.deflection, False)
 
 
 def off_solids(shape: Any, points: Array, allowed: float) -> Array:
@@ -75,12 +75,12 @@ def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Ar
     that. Holes count as closed, however large: which are, the feature has told."""
     whole = inside_of(Body("", vertices, triangles))
     if whole is not None:
-        return np.where(whole.holds(points), 0.0, np.abs(_signed(_searched(vertices, triangles), points)))
+        return np.where(whole.holds(points), 0.0, _away(_searched(vertices, triangles), points))
     try:
         pieces = repaired(vertices, triangles.astype(np.intp), "", np.inf, True).solids
     except InputError:  # the side of the nearest triangle is all there is
         return np.maximum(_signed(_searched(vertices, triangles), points), 0.0)
-    away = np.min([np.abs(_signed(_searched(piece.vertices, piece.triangles), points)) for piece in pieces], axis=0)
+    away = np.min([_away(_searched(piece.vertices, piece.triangles), points) for piece in pieces], axis=0)
     for piece in pieces:
         inside = inside_of(Body("", piece.vertices, piece.triangles.astype(np.int64)))
         if inside is not None:
@@ -90,7 +90,7 @@ def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Ar
 
 def off_facets(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
     """Distances (n,) mm of points (n, 3) from the triangles of a mesh, open or closed."""
-    found: Array = np.abs(_signed(_searched(vertices, triangles), points))
+    found: Array = _away(_searched(vertices, triangles), points)
     return found
 
 
@@ -127,6 +127,10 @@ class _Triangles:
         off: Array = np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=1)
         return off
 
+    def away(self, points: Array) -> Array:
+        """Distances (n,) mm of points (n, 3)."""
+        return np.full(len(points), np.nan) if self.search is None else _away(self.search, points)
+
     def signed(self, points: Array) -> Array:
         """Distances (n,) mm of points (n, 3), negative inside."""
         return np.full(len(points), np.nan) if self.search is None else _signed(self.search, points)
@@ -136,9 +140,16 @@ def _searched(vertices: Array, triangles: Any) -> Search:
     return SolidMesh(vertices, triangles).searched(0.01 * float(np.ptp(vertices, axis=0).max()))
 
 
+def _away(search: Search, points: Array) -> Array:
+    return np.concatenate([search.away(some) for some in _pieces(points)])
+
+
 def _signed(search: Search, points: Array) -> Array:
-    pieces = np.array_split(points, max(1, len(points) // PIECE))
-    return np.concatenate([search.signed(some)[0] for some in pieces])
+    return np.concatenate([search.signed(some)[0] for some in _pieces(points)])
+
+
+def _pieces(points: Array) -> list[Array]:
+    return np.array_split(points, max(1, len(points) // PIECE))
 
 
 def _exact(shape: Any, points: Array, found: Array, allowed: float, deflection: float, solid: bool) -> Array:
@@ -159,8 +170,8 @@ def _exact(shape: Any, points: Array, found: Array, allowed: float, deflection: 
             unsure.append(k)
     if unsure:
         finer = _Triangles(shape, fine=True)
-        signed = finer.signed(points[unsure])
-        exact[unsure] = np.maximum((signed if solid else np.abs(signed)) - 2.0 * finer.deflection, 0.0)
+        away = finer.signed(points[unsure]) if solid else finer.away(points[unsure])
+        exact[unsure] = np.maximum(away - 2.0 * finer.deflection, 0.0)
     return np.minimum(exact, np.fmax.reduce(exact[asked], initial=0.0))
 
 

@@ -153,16 +153,16 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     shares, value = np.zeros((7, 3, len(newest))), np.empty((7, len(newest)))
     value[0] = own
     with np.errstate(divide="ignore", invalid="ignore"):
-        part = np.clip(np.where(square > 0.0, pull / square, 0.0), 0.0, 1.0)
+        part = np.minimum(np.maximum(np.where(square > 0.0, pull / square, 0.0), 0.0), 1.0)  # np.clip takes many times that
         shares[_SIDE, _EACH] = part
         value[_SIDE] = own - 2.0 * part * pull + part * part * square
-        a, c = square[_FIRST], square[_SECOND]
-        b = np.stack([dots(edge[:, i], edge[:, j]) for i, j in zip(_FIRST, _SECOND)])
+        a, c, pull_a, pull_c = square[_FIRST], square[_SECOND], pull[_FIRST], pull[_SECOND]
+        b = np.array([dots(edge[:, i], edge[:, j]) for i, j in zip(_FIRST, _SECOND)])
         wide = a * c - b * b
-        one, two = (pull[_FIRST] * c - pull[_SECOND] * b) / wide, (pull[_SECOND] * a - pull[_FIRST] * b) / wide
+        one, two = (pull_a * c - pull_c * b) / wide, (pull_c * a - pull_a * b) / wide
         holds = (wide > 1e-12 * a * c) & (one > 0.0) & (two > 0.0) & (one + two < 1.0)
         shares[_FACE, _FIRST], shares[_FACE, _SECOND] = one, two
-        value[_FACE] = np.where(holds, own - one * pull[_FIRST] - two * pull[_SECOND], np.inf)
+        value[_FACE] = np.where(holds, own - one * pull_a - two * pull_c, np.inf)
         normal = _cross(edge[:, 1], edge[:, 2])
         volume = dots(edge[:, 0], normal)
         parts = [

@@ -144,8 +144,9 @@ def _meets(group: _Group, rods: Sequence[Rod], seen: Array, moment: Index, clear
     more = ABOUT_FACES + clearance
     for rod in rods:
         left = np.flatnonzero(~met)
-        start = seen[left, :3, :3] @ rod.start + seen[left, :3, 3]
-        axis = seen[left, :3, :3] @ ((rod.end - rod.start) / rod.length)
+        turn = seen[left, :3, :3]
+        start = turn @ rod.start + seen[left, :3, 3]
+        axis = turn @ ((rod.end - rod.start) / rod.length)
         # only rods that come near the ball are looked at closely
         along = np.clip(np.einsum("ij,ij->i", group.centre - start, axis), 0.0, rod.length)
         off = start + along[:, None] * axis - group.centre

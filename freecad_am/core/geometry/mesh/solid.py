@@ -123,23 +123,29 @@ class Search:
         vertices = solid.vertices
         sound = np.flatnonzero(np.linalg.norm(solid.normals, axis=1) > 1e-10)
         self.triangles, self.owner, self.units = solid.triangles[sound], sound, solid.units[sound]
-        corner, units = vertices[self.triangles], self.units
-        middles, self.of = _spread(corner, longest)
+        middles, self.of = _spread(vertices[self.triangles], longest)
         self.tree = cKDTree(middles)
-        at_vertex = np.zeros_like(vertices)
-        for k in range(3):
-            one, other = corner[:, (k + 1) % 3] - corner[:, k], corner[:, (k + 2) % 3] - corner[:, k]
-            angle = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
-            np.add.at(at_vertex, self.triangles[:, k], angle[:, None] * units)
-        self.at_vertex = at_vertex
-        edges = Edges(self.triangles)
-        at_edge = np.zeros((len(edges.ends), 3))
-        for k in range(3):
-            np.add.at(at_edge, edges.of[:, k], units)
-        self.at_edge, self.edge_of = at_edge, edges.of
+
+    def away(self, points: Array) -> Array:
+        """Distance (k,) of points (k, 3) from the triangles."""
+        return self._nearest(points)[0]
 
     def signed(self, points: Array) -> tuple[Array, Array, Index]:
         """Distance (k,) of points (k, 3), negative inside, the nearest points (k, 3) and triangles (k,) of the solid."""
+        distance, triangle, share = self._nearest(points)
+        foot = np.einsum("nk,nkc->nc", share, self.vertices[self.triangles[triangle]])
+        at_vertex, at_edge, edge_of = self._pseudo_normals
+        small = share < 1e-9
+        normal = self.units[triangle].copy()
+        on_edge = np.flatnonzero(small.sum(axis=1) == 1)
+        normal[on_edge] = at_edge[edge_of[triangle[on_edge], (np.argmax(small[on_edge], axis=1) + 1) % 3]]
+        on_vertex = np.flatnonzero(small.sum(axis=1) == 2)
+        normal[on_vertex] = at_vertex[self.triangles[triangle[on_vertex], np.argmin(small[on_vertex], axis=1)]]
+        side = np.where(dot(points - foot, normal) < 0.0, -1.0, 1.0)
+        return side * distance, foot, self.owner[triangle]
+
+    def _nearest(self, points: Array) -> tuple[Array, Index, Array]:
+        """Distance (k,) of points (k, 3), the nearest of the sound triangles (k,), and the shares (k, 3) of its corners."""
         count = min(NEAREST, len(self.of))
         # about the middle of something round all is equally near: far points are content with a little farther
         far = np.flatnonzero(self.tree.query(points, eps=0.3)[0] > 4.0 * self.longest)
@@ -151,16 +157,22 @@ class Search:
         corner = self.vertices[self.triangles[near]]
         distance, share = closest(corner[:, :, 0], corner[:, :, 1], corner[:, :, 2], points[:, None])
         row, best = np.arange(len(points)), np.argmin(distance, axis=1)
-        triangle, distance, share = near[row, best], distance[row, best], share[row, best]
-        foot = np.einsum("nk,nkc->nc", share, self.vertices[self.triangles[triangle]])
-        small = share < 1e-9
-        normal = self.units[triangle].copy()
-        on_edge = np.flatnonzero(small.sum(axis=1) == 1)
-        normal[on_edge] = self.at_edge[self.edge_of[triangle[on_edge], (np.argmax(small[on_edge], axis=1) + 1) % 3]]
-        on_vertex = np.flatnonzero(small.sum(axis=1) == 2)
-        normal[on_vertex] = self.at_vertex[self.triangles[triangle[on_vertex], np.argmin(small[on_vertex], axis=1)]]
-        side = np.where(dot(points - foot, normal) < 0.0, -1.0, 1.0)
-        return side * distance, foot, self.owner[triangle]
+        return distance[row, best], near[row, best], share[row, best]
+
+    @cached_property
+    def _pseudo_normals(self) -> tuple[Array, Array, Index]:
+        """At each vertex (n, 3) and edge (e, 3), and the edges (m, 3) of each sound triangle."""
+        corner = self.vertices[self.triangles]
+        at_vertex = np.zeros_like(self.vertices)
+        for k in range(3):
+            one, other = corner[:, (k + 1) % 3] - corner[:, k], corner[:, (k + 2) % 3] - corner[:, k]
+            angle = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
+            np.add.at(at_vertex, self.triangles[:, k], angle[:, None] * self.units)
+        edges = Edges(self.triangles)
+        at_edge = np.zeros((len(edges.ends), 3))
+        for k in range(3):
+            np.add.at(at_edge, edges.of[:, k], self.units)
+        return at_vertex, at_edge, edges.of
 
 
 def spread(corners: Array, longest: float) -> tuple[Array, Index]:

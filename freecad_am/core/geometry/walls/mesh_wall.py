@@ -111,7 +111,7 @@ def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) 
     smooth, _ = wall.smooth.project(samples)
     middles = wall.smooth.project(samples[wall.triangles].mean(axis=1))[0]
     pieces = np.array_split(middles, max(1, len(middles) // PIECE))
-    between = max(float(np.abs(facets.signed(some)[0]).max()) for some in pieces)
+    between = max(float(facets.away(some).max()) for some in pieces)
     return MeshWall(
         smooth, wall.triangles, wall.patch, wall.uv, (), (), wall.behind, (), label, (), read.issues, samples=samples,
         between=between,
