@@ -251,3 +251,20 @@ def test_fields_stay_in_place_while_messages_grow_and_go(person, hand, hemispher
     assert bar.maximum() > 0  # the rest can be scrolled to
     person.press("Cancel")
     person.panel_closed()
+
+
+def test_what_changes_the_deposit_is_read_as_a_panel_opens(person, hemisphere):
+    """Above all fields, without scrolling: what of the part is left out, and that directions are tilted back."""
+    document = hemisphere.Document
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=2))
+    person.open_workbench()
+    person.double_click(toolpath)
+    panel = person.panel("RoboticAM_Toolpath")
+    told, box = person.field(panel, "findings"), person.field(panel, "messages")
+    assert "directions are tilted back" in told.text() and "are not deposited" in told.text()
+    assert box.verticalScrollBar().maximum() == 0 and told.visibleRegion().boundingRect().height() == told.height()
+    person.screenshot("toolpath_panel_told")
+    below = person.field(panel, "TravelSpeed").mapTo(panel, person.core.QPoint(0, 0)).y()
+    assert box.mapTo(panel, person.core.QPoint(0, box.height())).y() <= below
+    person.press("Cancel")
+    person.panel_closed()

@@ -78,6 +78,8 @@ class StagePanel:
             self._add_section(section)
         self.column.addStretch(1)
         self._show_findings()
+        if obj is not None:
+            self.messages.hold(self.findings)
         self.later_entries = Later(self.form, self._judge_entries)
         for widget in (*(field.widget for field, _, _ in self.places.values()), *(choice.widget for choice in choices)):
             for line in _lines(widget):

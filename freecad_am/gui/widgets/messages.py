@@ -8,6 +8,7 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 MARGIN = 2  # pixels
+NARROW, MOST = 30, 12  # letters of a line in a panel as FreeCAD opens it, and lines that are held
 
 
 class Messages(QtGui.QScrollArea):
@@ -27,7 +28,7 @@ class Messages(QtGui.QScrollArea):
         self.setWidget(inner)
         inner.setAutoFillBackground(False)
         self.viewport().setAutoFillBackground(False)
-        self.setFixedHeight(lines * self.fontMetrics().lineSpacing() + 2 * MARGIN)
+        self._hold(lines)
 
     def add(self, name: str, colour: str) -> Any:
         """A label below those that are there, hidden."""
@@ -40,6 +41,17 @@ class Messages(QtGui.QScrollArea):
         label.hide()
         self.column.insertWidget(self.column.count() - 1, label)
         return label
+
+    def hold(self, label: Any) -> None:
+        """Room for all of a label in a narrow panel, up to MOST lines, and no less than there is. Before the panel is seen:
+        then fields are to stay in place."""
+        metrics = self.fontMetrics()
+        needed = label.heightForWidth(NARROW * metrics.averageCharWidth())
+        if needed + 2 * MARGIN > self.height():
+            self._hold(min(-(-needed // metrics.lineSpacing()), MOST))
+
+    def _hold(self, lines: int) -> None:
+        self.setFixedHeight(lines * self.fontMetrics().lineSpacing() + 2 * MARGIN)
 
     def to_top(self) -> None:
         """Show what stands first, such as an error."""
