@@ -104,11 +104,11 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str) 
     return one_feature(values, feature.name, path)
 
 
-def stacking(feature: JobFeature) -> tuple[float, float, float] | None:
-    """The direction in which planes would be stacked, of a feature whose family is left open; None for auto."""
+def planes_of(feature: JobFeature) -> SolidParameters:
+    """The direction in which planes would be stacked and how far apart, of a feature whose family is left open."""
     section = _with_direction(feature.sections["strategy"])
-    given = {"direction": section["direction"]} if "direction" in section else {}
-    return fields.build(SolidParameters, given, "strategy").stacking()
+    given = {key: section[key] for key in ("direction", "layer_height") if key in section}
+    return fields.build(SolidParameters, given, "strategy")
 
 
 def _beside(kind: str) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from freecad_am.core.strategies.families import NONE, family_of
 from freecad_am.objects.shapes import taken
 
 from .job import Job
-from .job_features import about_feature, chosen, stacking
+from .job_features import about_feature, chosen, planes_of
 from .part import bring
 from .part_source import PartSource
 
@@ -54,10 +54,12 @@ class Shapes:
 
         ground = next(iter(self._touched(earlier)), None) if self.substrate is None else self.substrate
         try:
+            planes = planes_of(self.of)
             found = proposed(
                 taken(self.part), self.faces, None if ground is None else taken(ground), bool(self.of.part.start_edges),
                 self.of.process.bead_width, self.job.cell is not None,
-                base=() if self.of.substrate is None else self.of.substrate.faces, direction=stacking(self.of),
+                base=() if self.of.substrate is None else self.of.substrate.faces, direction=planes.stacking(),
+                layer_height=planes.layer_height,
             )
             self.of = chosen(self.of, found.kind, found.layers, found.mend, self.job.path)
         except InputError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ from ..core.geometry.mesh.uncrossed import uncrossed
 from ..core.geometry.surroundings import Body
 from ..core.geometry.told import at_least, place
 from ..core.issues import InputError
+from ..core.layers.curved import STANDING
 from ..core.layers.stacking import best, facets, judged
 from ..core.parameters.strategy import DevelopableParameters, SolidParameters, SurfaceParameters
 from ..core.process.deposit_balance import LITTLE, MM3, of_wall
@@ -34,6 +36,7 @@ LEAST = 3  # corners of a solid that lie on what it stands on
 OVER = 0.1  # of the surface; parts of which more hangs over get layers that need no support
 HARDLY = 0.005  # of the surface; what rounds to nothing
 STEEP = float(np.radians(45.0))
+LEVEL = float(np.cos(np.radians(1.0)))
 FLAT = 0.01  # of the height, above the lowest point; what lies there stands on something
 OPEN = 0.1  # of its size; a mesh with a wider hole is a wall
 LYING = 0.95  # of its area; an open mesh of which more is less than STEEP from level is no wall that stands
@@ -43,6 +46,7 @@ UP = (0.0, 0.0, 1.0)
 PLANES, GEODESIC = "planes", "geodesic"
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -62,14 +66,23 @@ class Proposal:
         return f"kind: {self.kind}{layers}: {self.reason}"
 
 
+class _Planes(NamedTuple):
+    """How planes would be stacked: the direction, None for the best, and how far apart, mm."""
+
+    way: Sequence[float] | None
+    apart: float
+
+
 def proposed(
     part: Taken, names: Sequence[str], substrate: Taken | None, edges: bool, width: float, tilts: bool, *,
     base: Sequence[str] = (), clicked: Sequence[str] = (), direction: Sequence[float] | None = UP,
+    layer_height: float = SolidParameters.layer_height,
 ) -> Proposal:
     """What suits a part, or faces or edges of it. edges: it names edges to start from; width: mm of a bead; tilts: a machine
     is known, which can tilt; base: faces of the substrate; clicked: a face by which the whole part was chosen, maybe its
-    hub; direction: in which planes are stacked, None for the best. A part that nothing serves as a whole gets the nearest,
-    told with what that leaves out. InputError FAULTY, NO_FACES."""
+    hub; direction: in which planes are stacked, layer_height mm apart, None for the best. A part that nothing serves as a
+    whole gets the nearest, told with what that leaves out. InputError FAULTY, NO_FACES."""
+    planes = _Planes(direction, layer_height)
     shape = part.shape
     if shape is not None and (not shape.Faces or any(name.startswith("Edge") for name in names)):
         what = f"edges of {part.label} are chosen" if names else f"{part.label} has edges and no faces"
@@ -77,7 +90,7 @@ def proposed(
     if not names and substrate is not None and stands_on_hub(part, substrate, base):
         return Proposal("developable", "", f"{part.label} stands on a cylinder or cone of {substrate.label}")
     if shape is None:
-        return _of_mesh(part, substrate, edges, tilts, direction)
+        return _of_mesh(part, substrate, edges, tilts, planes)
     if edges:
         return Proposal("surface", "", f"{part.label} names the edges that it starts from")
     if substrate is not None and (names or not shape.Solids):
@@ -86,7 +99,7 @@ def proposed(
         if _own_hub(part):
             why = f"most solids of {part.label} stand on a cylinder or cone of another of them"
             return Proposal("developable", "", why)
-        return _solid(part, f"{part.label} holds {len(shape.Solids)} solids", tilts, direction)
+        return _solid(part, f"{part.label} holds {len(shape.Solids)} solids", tilts, planes)
     left = ""
     wall = _turned(part, names) if substrate is None else None
     if wall is not None:
@@ -125,11 +138,11 @@ def proposed(
         return Proposal("developable", "", f"{', '.join(clicked)} of {part.label} is chosen, which the rest of it stands on")
     if substrate is not None and _thin(part, width):
         return Proposal("surface", "", f"{part.label} is a thin shell, one bead of {width:.4g} mm, on {substrate.label}")
-    return _solid(part, f"{part.label} is a solid{left}", tilts, direction)
+    return _solid(part, f"{part.label} is a solid{left}", tilts, planes)
 
 
 def _of_mesh(
-    part: Taken, substrate: Taken | None, edges: bool, tilts: bool, direction: Sequence[float] | None
+    part: Taken, substrate: Taken | None, edges: bool, tilts: bool, planes: _Planes
 ) -> Proposal:
     """A wall where it is wide open, else filled; so is what cuts itself, as pieces of a model for display that are pushed
     into one another do: no wall of one bead is that."""
@@ -138,7 +151,7 @@ def _of_mesh(
     open_ = holes(told_apart(found.vertices, found.triangles))
     opening = max((hole.size for hole in open_), default=0.0)
     if opening <= OPEN * float(np.linalg.norm(np.ptp(body.vertices, axis=0))):
-        return _solid(part, f"{part.label} is a mesh, which is filled", tilts, direction)
+        return _solid(part, f"{part.label} is a mesh, which is filled", tilts, planes)
     crossed = crossings(found.vertices, found.triangles, WELDS[-1])
     sheet = found.vertices, found.triangles
     if len(crossed.pairs) and not edges and uncrossed(*sheet, crossed.pairs, SurfaceParameters.mend, WELDS[-1]) is None:
@@ -148,7 +161,7 @@ def _of_mesh(
             f"{part.label} is an open mesh that cuts itself at {len(crossed.pairs)} pairs of its triangles, as at {at}, "
             f"so it is no wall of one bead: it is filled, with its {len(open_)} holes of up to {size:.4g} mm closed"
         )
-        return replace(_solid(part, why, tilts, direction), mend=min(size, WIDEST))
+        return replace(_solid(part, why, tilts, planes), mend=min(size, WIDEST))
     lies = _lying(found.vertices[found.triangles])
     if substrate is None and not edges and lies >= LYING:
         return Proposal(
@@ -186,11 +199,11 @@ def _lying(corners: Array) -> float:
     return float(areas[np.abs(normals[:, 2]) > np.cos(STEEP) * areas].sum()) / max(float(areas.sum()), 1e-300)
 
 
-def _solid(part: Taken, reason: str, tilts: bool, direction: Sequence[float] | None) -> Proposal:
+def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
     """Filled in plane layers, or in ones that need no support where much hangs over and the machine can tilt."""
     bodies = [part.body()]
-    least = best(bodies, SolidParameters(max_overhang=STEEP))[0].way
-    way = least if direction is None else np.array(direction) / np.linalg.norm(direction)
+    least = best(bodies, SolidParameters(max_overhang=STEEP, layer_height=planes.apart))[0].way
+    way = least if planes.way is None else np.array(planes.way) / np.linalg.norm(planes.way)
     over = _overhang(bodies[0], way)
     along = "" if np.array_equal(way, UP) else f", stacked along {_told(way)}"
     if over < HARDLY:
@@ -200,6 +213,8 @@ def _solid(part: Taken, reason: str, tilts: bool, direction: Sequence[float] | N
         return Proposal("solid", PLANES, why)
     other = _overhang(bodies[0], least)
     hint = f"; stacked along {_told(least)} it would be {other:.0%}" if other <= OVER else ""
+    if not _stands(bodies[0], way, planes.apart):
+        return Proposal("solid", PLANES, f"{why}; curved layers need a flat face that it stands on, which it has not{hint}")
     if tilts:
         return Proposal("solid", GEODESIC, f"{why}, which layers along the way through it carry{hint}")
     what = f"a machine that tilts could lay layers: {GEODESIC}, which need no support"
@@ -213,6 +228,15 @@ def _overhang(body: Body, way: Array) -> float:
     heights = corners @ way
     found = judged(way, corners, normals, areas, float(np.sin(STEEP)), FLAT * float(np.ptp(heights)))
     return found.area / max(float(areas.sum()), 1e-300)
+
+
+def _stands(body: Body, way: Array, layer_height: float) -> bool:
+    """Whether level triangles lie on the plane through the lowest place along a direction of stacking (3,): what curved
+    layers begin on, but for those that a round bottom is made of."""
+    corners, normals, _ = facets([body], None)
+    heights = corners @ way
+    low: Mask = (heights.max(axis=1) < heights.min() + STANDING * layer_height) & (normals @ way < -LEVEL)
+    return bool(low.any())
 
 
 def _told(way: Array) -> str:

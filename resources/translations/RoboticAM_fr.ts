@@ -12303,6 +12303,16 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not</source>
+        <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg, empilée suivant {2} ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not; stacked along {3} it would be {4}</source>
+        <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg, empilée suivant {2} ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas ; empilée suivant {3} ce serait {4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0}, and {1} of its surface hang over by more than 45 deg, which layers along the way through it carry</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle</translation>
     </message>
@@ -12320,6 +12330,16 @@
         <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0}, and {1} of its surface hang over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline pourrait déposer des couches : {2}, qui se passent de support ; empilé suivant {3}, ce serait {4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg; curved layers need a flat face that it stands on, which it has not</source>
+        <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg; curved layers need a flat face that it stands on, which it has not; stacked along {2} it would be {3}</source>
+        <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas ; empilée suivant {2} ce serait {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/front_tree.py"/>

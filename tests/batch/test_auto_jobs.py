@@ -90,6 +90,31 @@ def test_overhang_counts_along_the_stacking_direction():
     assert of(tee().rotated(Vector(), Vector(1, 0, 0), 90.0), direction=(0, -1, 0)).layers == "geodesic"
 
 
+def test_what_stands_within_half_a_layer_is_that_of_the_layers_of_the_job(workshop):
+    """A pin of 2 mm lies within the lowest half of a layer of 4 mm, and over nothing where layers are 0.25 mm: it stands."""
+    pin = Part.makeCylinder(1, 8, Vector(), Vector(0.6, 0.8, 0))
+    assert "stacked along" in of(pin, direction=None, width=0.6, layer_height=0.25).reason
+    standing = of(Part.makeCylinder(1, 8), direction=None, width=0.6, layer_height=0.25)
+    assert standing.layers == "planes" and "stacked along" not in standing.reason
+    assert "stacked along" in of(Part.makeCylinder(1, 8), direction=None, width=0.6, layer_height=4.0).reason
+    Part.makeCylinder(1, 8).exportStep(str(workshop.folder / "part.step"))
+    job = AUTO.replace("kind: auto", "kind: auto, direction: auto, bead_spacing: 0.6 mm").replace("5 mm", "0.25 mm")
+    job += "process: {bead_width: 0.6 mm}\n"
+    told = {issue["code"]: issue["message"] for issue in planned(workshop, job)[0]["issues"]}
+    assert "stacked along (0, 0, 1)" in told["DIRECTION"] and told["PROPOSED"].startswith("kind: solid, layers: planes: ")
+
+
+def test_what_stands_on_no_face_gets_planes():
+    """A ball hangs over by what of its surface is steeper than 45 deg, a share of (1 - cos 45 deg) / 2; cut off flat
+    it stands."""
+    ball = Part.makeSphere(20)
+    found = of(ball, direction=None)
+    assert (found.kind, found.layers) == ("solid", "planes")
+    assert "a flat face that it stands on, which it has not" in found.told()
+    cut = of(ball.cut(Part.makeBox(40, 40, 0.5, Vector(-20, -20, -20))))
+    assert cut.layers == "geodesic", cut
+
+
 def test_edges_and_what_has_no_faces_are_curves():
     box, bent = Part.makeBox(9, 9, 9), Part.makePolygon([Vector(0, 0, 0), Vector(9, 0, 0), Vector(9, 9, 0)])
     assert (of(bent).kind, of(box, faces=("Edge1", "Edge2")).kind, of(box).kind) == ("curves", "curves", "solid")

@@ -31,6 +31,7 @@ GRID = 6  # decimals of mm that decide between points
 NEEDLESS = 0.02  # share of the chord error that a point has to matter by: offsets leave pairs of points at each node
 SHARES = 0.02  # of a bead's usual width, that points tell
 CLOSE = 2e-3  # mm; points nearer together are one: no controller tells the time of such a move
+BRIEF = 1.0001e-4  # s; no controller is told a shorter move, as narrow beads, which are laid faster, would have
 
 
 class Rolled(NamedTuple):
@@ -49,8 +50,22 @@ def rolled(
 ) -> Rolled:
     """The bead of a curve on the plane, in part coordinates; its polynomial's variable is the arc length, 2 pi in all.
 
-    lean: of the torch, by default that of the build direction.
+    lean: of the torch, by default that of the build direction. Points that come so soon after another that no controller can
+    be told of the move are left out.
     """
+    found = _rolled(curve, surface, base, strategy, build, process, model, lean)
+    index = np.flatnonzero(_sparse(found.bead.points, found.bead.speed[1:], BRIEF))
+    if len(index) == len(found.bead):
+        return found
+    clamped, tight = (None if mask is None else mask[index] for mask in (found.clamped, found.tight))
+    return Rolled(found.bead.thinned(index), clamped, tight, found.turned)
+
+
+def _rolled(
+    curve: PlaneCurve, surface: LayerSurface, base: Base, strategy: FilledParameters,
+    build: BuildDirectionParameters, process: ProcessParameters, model: BeadModel | None, lean: Lean | None,
+) -> Rolled:
+    """The bead with all of its points."""
     period = surface.period
     start = period.moved(curve.points[:1], curve.turns) if curve.turns and period is not None else curve.points[:1]
     ended = np.vstack([curve.points, start]) if curve.closed else curve.points
@@ -117,22 +132,25 @@ def _needed(flat: Array, tolerance: float, besides: Mask | None) -> Array:
     return flat[kept if besides is None else kept | besides]
 
 
-def _apart(flat: Array) -> Array:
-    """A polyline (n, 2) without points nearer than CLOSE, along it, to the one kept before; both ends stay."""
-    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(flat, axis=0), axis=1))]
-    kept = np.r_[True, np.diff(np.floor(way / CLOSE)) > 0.0]
-    kept &= (way < way[-1] - CLOSE) | (way == 0.0)
+def _sparse(points: Array, pace: Array, least: float) -> Mask:
+    """Which points (n, k) of a polyline stay where none may be less than `least` along it from the one kept before, lengths
+    divided by the pace (n-1,) of its segments; both ends stay."""
+    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1) / pace)]
+    kept: Mask = np.r_[True, np.diff(np.floor(way / least)) > 0.0]
+    kept &= (way < way[-1] - least) | (way == 0.0)
     kept[0] = kept[-1] = True
-    chosen: Array = flat[kept]
-    near = np.r_[False, np.linalg.norm(np.diff(chosen, axis=0), axis=1) < CLOSE]
+    rows = np.flatnonzero(kept)
+    near = np.r_[False, np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / pace[rows[1:] - 1] < least]
     near[-1] = False  # neighbours across a step of the count: the first of the two is enough
-    return chosen[~near] if len(chosen) - int(near.sum()) >= 2 else chosen[[0, -1]]
+    kept[rows[near]] = False
+    return kept
 
 
 def dense(flat: Array, surface: LayerSurface, chord_error: float, kept: Mask | None = None) -> Array:
     """A polyline (n, 2) on the plane with so many points that its chords, wrapped, keep within the chord error, and with the
     points (n,) `kept`."""
-    flat = _apart(_needed(flat, NEEDLESS * chord_error, kept))
+    flat = _needed(flat, NEEDLESS * chord_error, kept)
+    flat = flat[_sparse(flat, np.ones(len(flat) - 1), CLOSE)]
     edge = np.diff(flat, axis=0)
     count = surface.pieces(flat, chord_error)
     start = np.repeat(np.arange(len(edge)), count)
