@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.columns import columns, dots, lengths
-from . import separation, tree
+from . import own_layer, separation, tree
 from .frustum import Array, Frustum, Index, Mask
 from .tolerances import CONVERGED
 
@@ -26,6 +26,7 @@ class _Level(NamedTuple):
     columns: tuple[Array, Array]
     rounding: Array
     since: Index
+    lines: own_layer.Lines | None
 
 
 class Obstacles:
@@ -64,14 +65,16 @@ class Obstacles:
     def _boxes(self, low: Array, high: Array) -> list[_Level]:
         """The levels of the tree over obstacles with the boxes low and high (m, 3), each from the one below it."""
         rounding, since = np.zeros(len(low)) if self.radius is None else self.radius, self.since
+        lines = None if self.line is None or self.beside is None else own_layer.of_lines(self.line, self.beside)
         found = []
         for size in self._sizes:
             if size > 1:
                 starts = np.arange(0, len(low), tree.BRANCH)
+                lines = None if lines is None else lines.joined(starts)
                 low, high = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
                 rounding, since = np.maximum.reduceat(rounding, starts), np.minimum.reduceat(since, starts)
             centre, half = 0.5 * (low + high), 0.5 * (high - low)
-            found.append(_Level(centre, half, (columns(centre), columns(half)), rounding, since))
+            found.append(_Level(centre, half, (columns(centre), columns(half)), rounding, since, lines))
         return found
 
     @cached_property
@@ -119,6 +122,9 @@ class Obstacles:
             round_ = level.rounding.take(node)
             close = np.flatnonzero(solid.rows(query).near_box(centre, axes.take(query, axis=1), half, round_))
             query, node = query.take(close), node.take(close)
+            if level.lines is not None:
+                left = own_layer.matter(level.lines, level.since, solid, query, node, tips, axes, own)
+                query, node = query.take(left), node.take(left)
             along = axis.take(query, axis=0)
             # one corner inside settles the matter without looking at all the rest
             sample = node * self._sizes[depth]
@@ -165,18 +171,17 @@ class Obstacles:
             meets[cut] = solid.rows(cut).meets_triangles(offset[cut], axis[cut])
             return meets
         assert self.radius is not None and self.line is not None and self.beside is not None
-        beside = np.flatnonzero(self.since[node] >= own)
-        line = self.line[node[beside]] - tip[beside, None]
-        next_ = _from_origin(line) < self.beside[node[beside]]
-        rows, line = beside[next_], line[next_]
-        meets[rows] = solid.rows(rows).meets_segments(line[:, 0], line[:, 1], axis[rows])
-        # most are below the solid's lower end: a box about a piece that lies across the axes tells it less well
-        whole = separation.largest(np.einsum("kcj,kj->kc", offset, axis)) + self.radius[node] > solid.low
-        whole[rows] = False
-        rows = np.flatnonzero(whole)
-        meets[rows] = separation.any_within(
-            query[rows], solid.rows(rows), axis[rows], offset[rows], self.radius[node[rows]]
-        )
+        # most are below the solid's lower end, and so are the lines that they are laid along: a box about a piece that lies
+        # across the axes tells it less well
+        high = separation.largest(np.einsum("kcj,kj->kc", offset, axis)) + self.radius.take(node)
+        rows = np.flatnonzero(high > solid.low)
+        node = node.take(rows)
+        line = self.line.take(node, axis=0) - tip.take(rows, axis=0)[:, None]
+        as_line = (self.since.take(node) >= own.take(rows)) & (_from_origin(line) < self.beside.take(node))
+        lines, line = rows[as_line], line[as_line]
+        meets[lines] = solid.rows(lines).meets_segments(line[:, 0], line[:, 1], axis[lines])
+        rows, node = rows[~as_line], node[~as_line]
+        meets[rows] = separation.any_within(query[rows], solid.rows(rows), axis[rows], offset[rows], self.radius[node])
         return meets
 
     def distance(

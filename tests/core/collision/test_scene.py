@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import minimize
 from scipy.spatial import cKDTree
 
-from freecad_am.core.collision import deposit, separation
+from freecad_am.core.collision import deposit, obstacles, own_layer, separation
 from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.nozzle import depositing, exempt_height, travelling
 from freecad_am.core.collision.scene import scene
@@ -203,3 +203,48 @@ def test_deposit_made_part_by_part_is_touched_as_all_of_it(monkeypatch):
         made = deposit.in_parts(points, build, width, height, starts, beside=3.0)
         np.testing.assert_array_equal(made.touched(NOZZLE, tip, axis, late), expected[0])
         np.testing.assert_array_equal(made.touched(NOZZLE, tip, axis, moment, own), expected[1])
+
+
+def meander(count, turns=6.0):
+    """A bead (n, 3) that goes to and fro, beside itself."""
+    s = np.linspace(0.0, 1.0, count)
+    return np.stack([40.0 * np.sin(turns * np.pi * s), 40.0 * s, 0.3 * np.sin(9.0 * s)], axis=1)
+
+
+def test_the_layer_being_laid_is_told_the_same_with_and_without_looking_at_each_of_its_pieces(monkeypatch):
+    rng = np.random.default_rng(20)
+    below, mine = meander(600), meander(1500) + [0.0, 2.0, 1.5]
+    points = np.concatenate([below, mine])
+    laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), 4.0, 1.5, [0, len(below)], beside=3.0)
+    at = rng.integers(len(below) + 50, len(points), 6000)
+    tip = points[at] + rng.normal(size=(6000, 3)) * [0.5, 0.5, 0.1]
+    axis = units(rng, 6000)
+    axis[:, 2] = np.abs(axis[:, 2]) + 0.4
+    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    asked = NOZZLE, tip, axis, at + 1, np.full(6000, len(below))
+    found = laid.touched(*asked)
+    assert 0.2 < found.mean() < 0.8
+    monkeypatch.setattr(own_layer, "matter", lambda lines, since, solid, query, *rest: np.arange(len(query)))
+    assert (laid.touched(*asked) == found).all()
+
+
+def test_pieces_next_to_the_tip_are_not_looked_at_one_by_one(monkeypatch):
+    looked = [0]
+    meets = obstacles.Obstacles._meets
+
+    def counted(self, query, *rest):
+        looked[0] += len(query)
+        return meets(self, query, *rest)
+
+    monkeypatch.setattr(obstacles.Obstacles, "_meets", counted)
+    work = []
+    for count in (2000, 8000, 32000):
+        points = meander(count)
+        laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (count, 1)), 4.0, 1.5, [0], beside=3.0)
+        at = np.linspace(count // 2, count - 1, 200).astype(int)
+        looked[0] = 0
+        axis = np.tile([np.sin(0.3), 0.0, np.cos(0.3)], (200, 1))
+        laid.touched(NOZZLE, points[at], axis, at + 1, np.zeros(200, dtype=int))
+        work.append(looked[0])
+    # of sixteen times the pieces within reach of the nozzle; one by one those were 400 a look
+    assert work[2] < 200 * 20, work
