@@ -15,7 +15,7 @@ import numpy as np
 
 from ..brep.off_part import off_faces, off_facets, off_mesh, off_solids
 from ..core.geometry.surroundings import Body
-from ..core.issues import InputError
+from ..core.issues import InputError, Issue
 from ..core.kinematics.cell import mounted
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
@@ -223,21 +223,27 @@ def _cladding_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body],
     from ..core.strategies import wall_clearance
 
     free = dataclasses.replace(of.build, max_tilt=np.pi)
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature, _tell_tilting)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature, _tell_tilting())
 
 
-def _tell_tilting(points: int) -> None:
-    """Tell it where tilts are searched for at so many points that it takes long."""
+def _tell_tilting() -> Callable[[int, int], None]:
+    """What tells, once, where tilts are searched for at so many points, so many times, that it takes long."""
     from ..core.strategies import size
 
-    for issue in size.of_tilting(points):
-        progress.tell(issue)
+    told: list[Issue] = []
+
+    def tell(points: int, times: int) -> None:
+        for issue in () if told else size.of_tilting(points, times):
+            told.append(issue)
+            progress.tell(issue)
+
+    return tell
 
 
 def _curves_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     from ..core.strategies import wall_clearance
 
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting())
 
 
 def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
@@ -253,14 +259,14 @@ def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body
         return toolpath
     from ..core.strategies import wall_clearance
 
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting())
 
 
 def _wall_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     from ..core.strategies import surface_directions, wall_clearance
 
     plane = surface_directions.plane(of.wall, of.build)
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, plane, feature)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, plane, feature, _tell_tilting())
 
 
 def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
@@ -270,11 +276,11 @@ def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], f
 
     if not solids_plan.on_planes(of.wall):
         free = solids_plan.without_axis_limits(of.build)
-        return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature)
+        return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature, _tell_tilting())
     if feature is None and solids_plan.clear_by_itself(toolpath, of.wall):
         return toolpath
 
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting())
 
 
 @dataclass(frozen=True)

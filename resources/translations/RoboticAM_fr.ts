@@ -10892,6 +10892,11 @@
         <translation>avec les {0} chiffres de ses parties il a plus de {1} caractères</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on beads of {0} points; finding slower ones takes up to {1} min of the processor; a larger build_direction.max_turn, a slimmer nozzle, or clearance: none, saves it</source>
+        <translation>avec des inclinaisons qui dégagent la buse, l&apos;outil tourne plus vite que build_direction.max_turn sur des cordons de {0} points ; en chercher de plus lentes prend jusqu&apos;à {1} min de processeur ; un build_direction.max_turn plus grand, une buse plus fine, ou clearance: none, l&apos;évitent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
         <source>with {0} the {1} of the layers in question that were planned anew are feasible; the whole job was not tried</source>
         <translation>avec {0}, les {1} couches en cause replanifiées sont faisables ; le travail entier n’a pas été essayé</translation>

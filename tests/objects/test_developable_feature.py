@@ -11,6 +11,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
+from freecad_am.core.strategies import size
 
 UP = App.Vector(0, 0, 1)
 HUB, HEIGHT = 30.0, 120.0
@@ -77,6 +78,21 @@ def test_the_hub_is_found_and_each_blade_lies_on_its_surface(thruster):
     for index, layer in enumerate(path.layers):
         level = index - starts[int(index >= starts[1])]
         assert all(off(bead.points, level).max() < 1e-6 for bead in layer.beads)
+
+
+def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, monkeypatch):
+    """Blades grown until they meet, one after the other: the nozzle touches the one before."""
+    hub = hub_shape()
+    blades = add(doc, Part.Compound(blade_shapes(hub, (8.0,), 12)), "Blades")
+    feature = api.make_developable_feature(doc, blades, add(doc, hub, "Hub"), order="feature", margin=6, **FAST)
+    monkeypatch.setattr(size, "SECONDS_A_TILT", size.LARGE_SECONDS)  # one point takes as long as that
+
+    def told(issue):
+        assert issue.code == size.LARGE
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt), api.told_to(lambda *_: None, told):
+        api.make_toolpath(doc, feature)
 
 
 def test_contours_follow_the_exact_solid_not_its_mesh(doc):

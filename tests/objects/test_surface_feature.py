@@ -9,6 +9,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
+from freecad_am.core.strategies import size
 
 
 @pytest.fixture
@@ -110,6 +111,18 @@ def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
     assert not [issue for issue in api.issues(toolpath) if issue.code == "TILT_BACK"]
     api.change(feature, fixtures=[])
     assert len(api.result(feature).surroundings) == 1
+
+
+def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, tube, monkeypatch):
+    feature = made(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[post(doc, False)])
+    monkeypatch.setattr(size, "SECONDS_A_TILT", size.LARGE_SECONDS)  # one point takes as long as that
+
+    def told(issue):
+        assert issue.code == size.LARGE
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt), api.told_to(lambda *_: None, told):
+        api.make_toolpath(doc, feature)
 
 
 def test_fixtures_of_a_part_of_revolution_are_looked_at(doc, tube):

@@ -157,15 +157,23 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     ),)
 
 
-def of_tilting(points: int) -> tuple[Issue, ...]:
-    """A note LARGE where tilts of the nozzle are searched for at so many points of solids that it takes long."""
-    seconds = points * SECONDS_A_TILT
+def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:
+    """A note LARGE where tilts of the nozzle are searched for at so many points of beads that it takes long. times: that
+    they are searched for at most, where the tool turns too fast with those found first."""
+    seconds = points * times * SECONDS_A_TILT
     if seconds < LARGE_SECONDS:
         return ()
+    minutes = f"{at_least(seconds / 60.0):g} min of the processor"
+    if times > 1:
+        return (Issue(
+            NOTE, LARGE, "with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on "
+            f"beads of {count(points)} points; finding slower ones takes up to {minutes}; a larger "
+            "build_direction.max_turn, a slimmer nozzle, or clearance: none, saves it",
+        ),)
     return (Issue(
         NOTE, LARGE, f"with the tool axes asked for the nozzle touches beads of {count(points)} points; finding tilts that "
-        f"keep it clear takes about {at_least(seconds / 60.0):g} min of the processor, several times that where the tool "
-        "would turn too fast; a smaller build_direction.lead and build_direction.tilt, or clearance: none, saves it",
+        f"keep it clear takes about {minutes}, several times that where the tool would turn too fast; a smaller "
+        "build_direction.lead and build_direction.tilt, or clearance: none, saves it",
     ),)
 
 

@@ -41,18 +41,18 @@ HALVINGS = 3  # of a segment halfway on which the nozzle touches
 
 def kept_clear(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None = None, feature: int | None = None, told: Callable[[int], None] | None = None,
+    plane: Array | None = None, feature: int | None = None, told: Callable[[int, int], None] = lambda *_: None,
 ) -> Toolpath:
     """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
 
     bodies: all that counts, the platform too. plane: unit normal (3,) of the plane that the tool must stay in. Where no
     tilt of up to 90 deg helps, the axes stay as they come, with an issue CLEARANCE. Beads get points halfway between
     those that are clear where the nozzle would touch there. feature: of several features, the one whose beads are kept
-    clear, of what is deposited of the others by then too. told: once, before tilts are searched for, of how many points.
+    clear, of what is deposited of the others by then too. told(points, times): before tilts are searched for, at how many
+    points, and how many times at most.
     """
-    untold = [] if told is None else [told]
     for last in (False,) * HALVINGS + (True,):
-        found, between = _tilted(toolpath, bodies, nozzle, build, plane, feature, last, untold)
+        found, between = _tilted(toolpath, bodies, nozzle, build, plane, feature, last, told)
         if not between.any():
             break
         toolpath = halved(toolpath, between)
@@ -61,7 +61,7 @@ def kept_clear(
 
 def _tilted(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None, feature: int | None, last: bool, untold: list[Callable[[int], None]],
+    plane: Array | None, feature: int | None, last: bool, told: Callable[[int, int], None],
 ) -> tuple[Toolpath, Mask]:
     """The toolpath tilted clear at its points, and the points (n,) after which the nozzle touches halfway to the next; none
     at the `last` try, where an issue says so. Where it touches with the axes asked for, nothing is tilted yet."""
@@ -80,12 +80,14 @@ def _tilted(
         return toolpath, between
     rows = [np.arange(begin[k], begin[k + 1]) for k in blocked]
     closed = np.array([beads[k].closed for k in blocked])
-    while untold:
-        untold.pop()(sum(map(len, rows)))
+    told(sum(map(len, rows)), 1)
     tool, tilt, stuck = _cleared(room, rows, closed, asked, plane, free)
     lost = np.zeros(len(asked), dtype=bool)
     lost[stuck] = True
-    turned = _slowed(room, rows, closed, asked, plane, build.turn(), tool, tilt, lost)
+    fast = _too_fast(room, rows, asked, build.turn(), tool, lost)
+    if fast:
+        told(sum(len(rows[k]) for k in fast), SLOWER)
+    turned = _slowed(room, [(rows[k], bool(closed[k])) for k in fast], asked, plane, build.turn(), tool, tilt)
     # no more points for beads that are lost: they are told of at those they have
     sound = mine & ~np.repeat(np.logical_or.reduceat(lost, begin[:-1]), np.diff(begin))
     between = touched_between(room, beads, tool, sound)
@@ -128,31 +130,37 @@ def _cleared(
     return tool, tilt, np.concatenate(touching)
 
 
+def _fastest(room: Room, row: Index, axes: Array) -> float:
+    """The fastest turn (rad/mm) along the bead with the points `row`."""
+    return float(turn_rates(room.points[row], axes[row]).max(initial=0.0))
+
+
+def _too_fast(room: Room, rows: list[Index], asked: Array, most: float, tool: Array, lost: Mask) -> list[int]:
+    """The beads that turn faster than `most` rad/mm with their tilts though what was asked does not."""
+    if most == np.inf:
+        return []
+    return [
+        k for k, row in enumerate(rows)
+        if _fastest(room, row, tool) > most and _fastest(room, row, asked) <= most * (1.0 + ROUNDING) and not lost[row].any()
+    ]
+
+
 def _slowed(
-    room: Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array,
-    lost: Mask,
+    room: Room, fast: list[tuple[Index, bool]], asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array
 ) -> float:
-    """Find axes anew, in place, for beads that turn faster than `most` rad/mm with their tilts though what was asked does
-    not; comes back with the fastest turn that is left of them, 0 where none is.
+    """Find axes anew, in place, for beads that turn faster than `most` rad/mm, given by their points and whether they are
+    closed; comes back with the fastest turn that is left of them, 0 where none is.
 
     Each time what is asked turns slower, by as much as is too much, and tilts come and go over a longer way.
     """
-    if most == np.inf:
-        return 0.0
-
-    def fastest(row: Index, axes: Array) -> float:
-        return float(turn_rates(room.points[row], axes[row]).max(initial=0.0))
-
     worst = 0.0
-    for row, loop in zip(rows, closed, strict=True):
-        rate, spread, now = most, SPREAD, fastest(row, tool)
-        if now <= most or fastest(row, asked) > most * (1.0 + ROUNDING) or lost[row].any():
-            continue
+    for row, loop in fast:
+        rate, spread, now = most, SPREAD, _fastest(room, row, tool)
         for _ in range(SLOWER):
             rate, spread = 0.98 * rate * most / now, 1.5 * spread
             slower = asked.copy()
             try:
-                slower[row] = limited(room.points[row], asked[row], bool(loop), rate, most=room.max_tilt).directions
+                slower[row] = limited(room.points[row], asked[row], loop, rate, most=room.max_tilt).directions
             except InputError:
                 break
             free = np.ones(len(asked), dtype=bool)
@@ -160,12 +168,12 @@ def _slowed(
             found, stuck = slower, row[:0]
             if not free[row].all():
                 found, _, stuck = _cleared(room, [row], np.array([loop]), slower, plane, free, spread)
-            now = fastest(row, found)
-            if not len(stuck) and now < fastest(row, tool):
+            now = _fastest(room, row, found)
+            if not len(stuck) and now < _fastest(room, row, tool):
                 cross = np.linalg.norm(np.cross(asked[row], found[row]), axis=1)
                 tool[row], tilt[row] = found[row], np.arctan2(cross, dot(asked[row], found[row]))
             if now <= most:
                 break
-        left = fastest(row, tool)
+        left = _fastest(room, row, tool)
         worst = max(worst, left if left > most else 0.0)
     return worst

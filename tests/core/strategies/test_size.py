@@ -191,3 +191,8 @@ def test_tilts_that_take_long_to_find_are_told():
     (issue,) = size.of_tilting(6_812)  # 60 s of the processor for the first tilts, 174 s in all
     assert (issue.level, issue.code) == ("note", "LARGE") and "6,800 points" in issue.message
     assert "takes about 1.1 min of the processor" in issue.message
+    # a wall all of whose beads turn too fast: 6 s for its first tilts, 70 s for slower ones
+    assert size.of_tilting(1_065) == size.of_tilting(500, 6) == ()
+    (issue,) = size.of_tilting(1_065, 6)
+    assert (issue.level, issue.code) == ("note", "LARGE") and "on beads of 1,100 points" in issue.message
+    assert "takes up to 0.96 min of the processor" in issue.message

@@ -154,9 +154,9 @@ def test_a_fat_nozzle_on_the_pipe(mode):
 def test_beside_a_tall_face_the_tilt_is_the_least_that_clears_it():
     path = toolpath(bead(np.stack([np.zeros(41), np.linspace(0, 80, 41), np.zeros(41)], axis=1)))
     face = box([10, -200, -50], [30, 300, 150])
-    told: list[int] = []
-    found = kept_clear(path, [face], NOZZLE, LOCAL, told=told.append)
-    assert told == [41]  # before the work, which may be long
+    told = []
+    found = kept_clear(path, [face], NOZZLE, LOCAL, told=lambda *work: told.append(work))
+    assert told == [(41, 1)]  # before the work, which may be long
     slope = np.tan(NOZZLE.half_angle)
     needed = brentq(lambda e: (0.5 + 60 * slope) * np.cos(e) - 60 * np.sin(e) - 10.0, 0.0, 1.0)
     tool = found.layers[0].beads[0].tool
@@ -218,8 +218,9 @@ def test_only_what_is_laid_already_counts():
 
 def test_what_is_clear_stays_as_it_is_to_the_bit():
     path = toolpath(bead([[0, 0, 0], [5, 0, 0]]), bead([[0, 0, 1], [5, 0, 1]]))
-    told: list[int] = []
-    assert kept_clear(path, [box([40, 40, 0], [50, 50, 50])], NOZZLE, LOCAL, told=told.append) is path and told == []
+    told = []
+    clear = box([40, 40, 0], [50, 50, 50])
+    assert kept_clear(path, [clear], NOZZLE, LOCAL, told=lambda *work: told.append(work)) is path and told == []
     flat = box([-100, -100, -10], [100, 100, 0])
     assert kept_clear(path, [flat], NOZZLE, LOCAL) is path
 
@@ -294,15 +295,18 @@ def test_tools_that_turn_as_fast_as_they_may_stay_below_that_where_they_are_tilt
     step = np.linalg.norm(np.diff(points, axis=0), axis=1)
 
     def fastest(build):
-        found = kept_clear(path, [post], NOZZLE, build)
+        work.clear()
+        found = kept_clear(path, [post], NOZZLE, build, told=lambda *some: work.append(some))
         axes = found.layers[0].beads[0].tool
         solid = sampled(NOZZLE, left_out(NOZZLE) + ABOVE_FACES, points, axes)
         assert not ((solid > [46, 6, -20]) & (solid < [50, 12, 90])).all(axis=2).any()
         return (np.linalg.norm(np.diff(axes, axis=0), axis=1) / step).max(), codes(found)
 
+    work = []
     free, _ = fastest(BuildDirectionParameters(max_turn=np.inf, max_tilt=np.pi))
-    assert free > 1.05 * most
+    assert free > 1.05 * most and work == [(len(s), 1)]
     kept, told = fastest(BuildDirectionParameters(max_turn=most, max_tilt=np.pi))
+    assert work == [(len(s), 1), (len(s), 6)]  # each before it begins
     assert kept <= most * (1.0 + 1e-9) and "TURN_PASSED" not in told
     passed, told = fastest(BuildDirectionParameters(max_turn=most, max_tilt=0.61))  # no room, and that is told
     assert passed <= most * (1.0 + 1e-9) or "TURN_PASSED" in told

@@ -176,9 +176,11 @@ def flipped(vertices: Array, triangles: Index, owner: Index) -> Index:
     """The triangles with the edges inside of one owner's area turned where the angles beyond them are larger than pi
     together (Delaunay)."""
     triangles = triangles.copy()
+    open_ = np.ones(len(triangles), dtype=bool)  # changed, or wished for by two edges: between others nothing is new
     for _ in range(FLIPS if len(triangles) < MANY else FEW):
         edges = Edges(triangles)
         pair = np.flatnonzero((edges.count == 2) & (owner[edges.faces[:, 0]] == owner[edges.faces[:, 1]]))
+        pair = pair[open_[edges.faces[pair]].any(axis=1)]
         one, other = edges.faces[pair].T
         at, back = np.argmax(edges.of[one] == pair[:, None], axis=1), np.argmax(edges.of[other] == pair[:, None], axis=1)
         a, b = triangles[one, at], triangles[one, (at + 1) % 3]
@@ -201,6 +203,7 @@ def flipped(vertices: Array, triangles: Index, owner: Index) -> Index:
         for faces in (one[wish], other[wish]):
             np.minimum.at(rank, faces, np.arange(len(wish)))
         chosen = wish[(rank[one[wish]] == np.arange(len(wish))) & (rank[other[wish]] == np.arange(len(wish)))]
+        open_ = rank < len(wish)
         triangles[one[chosen]] = np.stack([a[chosen], d[chosen], c[chosen]], axis=1)
         triangles[other[chosen]] = np.stack([d[chosen], b[chosen], c[chosen]], axis=1)
     return triangles
