@@ -22,8 +22,8 @@ SLICER = (
     "imageio", "jsonschema", "schema", "typing_extensions",
 )
 BENCHMARKS = (
-    "collision", "filling", "kinematics", "load", "long_work", "paths", "planning", "simulation", "slicing", "surface",
-    "threads", "whole",
+    "arm", "collision", "filling", "kinematics", "load", "long_work", "paths", "planning", "simulation", "slicing",
+    "surface", "threads", "whole",
 )
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
