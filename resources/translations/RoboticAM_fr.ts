@@ -1107,6 +1107,11 @@
         <translation> ou </translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
+        <source>(empty: none)</source>
+        <translation>(vide : aucune)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>(planned)</source>
         <translation>(planifié)</translation>
@@ -5832,11 +5837,6 @@
         <translation>le nom d&apos;un programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/fields.py"/>
-        <source>a quantity in {}</source>
-        <translation>une grandeur en {}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>a quaternion is not all zeros</source>
         <translation>un quaternion n&apos;est pas tout à zéro</translation>
@@ -6212,7 +6212,7 @@
         <translation>en {0} endroits courts, {1} mm en tout, le dépôt est ralenti, ici à {2} mm/s, car les axes ne vont pas plus vite ; jusqu&apos;à {3} mm de cordon de plus que prévu s&apos;y trouvent{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>auto</source>
         <translation>auto</translation>
     </message>
@@ -8790,11 +8790,6 @@
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>of its {0} solids {1} alone turns about an axis, {2} of its surface; name the faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub</source>
         <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
-        <source>of the shape</source>
-        <translation>de la forme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -12562,11 +12557,6 @@
         <translation>{} (deg)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/fields.py"/>
-        <source>{} (empty: none)</source>
-        <translation>{} (vide : aucun)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/page.py"/>
         <source>{} (mm)</source>
         <translation>{} (mm)</translation>
@@ -12755,6 +12745,11 @@
         <location filename="../../freecad_am/gui/spin_map/figures.py"/>
         <source>{} of them past a limit only because an axis runs out of turns along its bead</source>
         <translation>dont {} au-delà d&apos;une limite seulement parce qu&apos;un axe n&apos;a plus de tours le long de son cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
+        <source>{} or empty</source>
+        <translation>{} ou vide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>

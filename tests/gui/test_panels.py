@@ -268,3 +268,31 @@ def test_what_changes_the_deposit_is_read_as_a_panel_opens(person, hemisphere):
     assert box.mapTo(panel, person.core.QPoint(0, box.height())).y() <= below
     person.press("Cancel")
     person.panel_closed()
+
+
+@pytest.mark.parametrize("command", ["Cell", "Feature", "Solid", "WallOnPart", "Toolpath", "JointPath", "Program"])
+def test_what_an_empty_field_wants_is_read_whole_in_a_narrow_panel(person, hemisphere, coarse, command):
+    if command in ("JointPath", "Program"):
+        api.make_all(hemisphere.Document, hemisphere)
+    elif command == "Toolpath":
+        api.make_feature(hemisphere.Document, hemisphere)
+    person.open_workbench()
+    if command in ("Feature", "Solid", "WallOnPart"):
+        person.select(hemisphere)
+    person.click(f"RoboticAM_{command}")
+    person.idle(0.5)
+    for fold in person.window.findChild(person.widgets.QDockWidget, "Combo View").findChildren(person.widgets.QToolButton):
+        if fold.isVisible() and fold.isCheckable() and not fold.isChecked() and fold.text():
+            fold.click()
+    person.idle(0.3)
+    cut, seen = [], 0
+    for edit in person.window.findChildren(person.widgets.QLineEdit):
+        text = edit.placeholderText()
+        if edit.isVisible() and text and not edit.text():
+            seen += 1
+            room = edit.width() - 10  # frame and margins
+            if edit.fontMetrics().boundingRect(text).width() > room:
+                cut.append((text, room))
+    assert cut == [] and (seen or command not in ("Toolpath", "WallOnPart"))
+    person.press("Cancel")
+    person.panel_closed()

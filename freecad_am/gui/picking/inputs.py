@@ -107,7 +107,7 @@ class ShapeChoice(Input):
         self.text = QtGui.QLineEdit()
         self.text.setObjectName(link.name)
         self.text.setReadOnly(True)
-        self.text.setPlaceholderText(tr("select") if link.required else tr("of the shape"))
+        self.text.setPlaceholderText(tr("select") if link.required else tr("auto"))
         button = QtGui.QPushButton(tr("Use selection"))
         button.setObjectName(f"Use{link.name}")
         button.setToolTip(tr("Takes what is selected now. {}").format(translated(link.help)))

@@ -159,10 +159,11 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
     numeric = row.spec.kind in (*_NUMBERS, f.POSE)
     text = row.text(value) if row.form in (MIXED, LENGTH_OR_POSE) else f"{row.outer(value)}"
     edit.setText(_with_point(text, ".", _point(edit)) if numeric else text)
-    wanted = ([tr("a quantity in {}").format(row.unit)] if row.unit else []) + list(row.spec.words)
-    if wanted or row.spec.optional:
+    wanted = ([row.unit] if row.unit else []) + list(row.spec.words)
+    if wanted or row.spec.optional:  # short enough for a narrow panel
         words = tr(" or ").join(wanted)
-        edit.setPlaceholderText(tr("{} (empty: none)").format(words).strip() if row.spec.optional else words)
+        none = tr("{} or empty").format(words) if words else tr("(empty: none)")
+        edit.setPlaceholderText(none if row.spec.optional else words)
     if expression:
         edit.setText(expression)
 
