@@ -107,16 +107,13 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     numbers is then not looked at."""
     if parameters.post == "none":
         return
-    post: Any = catalogue.load(parameters.post)
+    post = catalogue.load(parameters.post)
     programs.check_controller(cell.machine, parameters.post)
     programs.check_wrist(cell.machine, parameters.motion, parameters.post)
     programs.check_pulses(cell.machine, parameters.motion, parameters.post)
-    post.refuse_setup(parameters.motion, cell.setup)
-    if parameters.post in ("fanuc", "yaskawa") and cell.external is not None:
-        post.refuse_coordinated(parameters.motion)
-    carried = programs.on_table(cell, parameters)
-    if parameters.post == "linuxcnc" and parameters.motion == "cartesian" and carried is not None:
-        post.refuse_tilt(carried)
+    catalogue.refuse(
+        parameters.post, parameters.motion, cell.setup, cell.external is not None, programs.on_table(cell, parameters)
+    )
     if process.wire.feed_mode != "constant" and post.NO_WIRE and not parameters.dry_run:
         raise refusals.wire_refused(post.NO_WIRE)
 

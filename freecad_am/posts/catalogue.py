@@ -14,6 +14,8 @@ from ..core.program import Program, ReadMoves
 NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb", "kuka")  # of the modules beside this one
 # whose linear moves with the part on the robot run straight as the part sees them: their beads need no points in between
 STRAIGHT_IN_PART = ("abb",)
+_COORDINATED_IN_JOINTS = ("fanuc", "yaskawa")  # that write external axes in joint moves alone
+_LEVEL_TABLE = ("linuxcnc",)  # whose rotary tables have to stand level in Cartesian programs
 
 
 class Post(Protocol):
@@ -44,6 +46,17 @@ def load(name: str) -> Post:
     post: Any = importlib.import_module(f".{name}", __package__)
     found: Post = post
     return found
+
+
+def refuse(name: str, motion: str, setup: str, coordinated: bool, carried: tuple[float, ...] | None) -> None:
+    """InputError of a post for what it cannot say: this motion of this set-up, with external axes, or on a rotary table, its
+    `carried` frame None on others."""
+    post: Any = load(name)
+    post.refuse_setup(motion, setup)
+    if coordinated and name in _COORDINATED_IN_JOINTS:
+        post.refuse_coordinated(motion)
+    if carried is not None and motion == "cartesian" and name in _LEVEL_TABLE:
+        post.refuse_tilt(carried)
 
 
 def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:

@@ -10408,8 +10408,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/calibration.py"/>
-        <source>there is no calibration {0}</source>
-        <translation>il n&apos;y a pas d&apos;étalonnage {0}</translation>
+        <source>there is no calibration {0}; give the path of the YAML file that ur_calibration wrote of this arm</source>
+        <translation>il n&apos;y a pas d&apos;étalonnage {0} ; donner le chemin du fichier YAML que ur_calibration a écrit pour ce bras</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>

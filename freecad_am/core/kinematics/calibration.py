@@ -53,7 +53,8 @@ def read(path: Path) -> tuple[Array, str]:
     Raises InputError UNKNOWN_MACHINE without the file, BAD_CALIBRATION naming line or key.
     """
     if not path.is_file():
-        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no calibration {path}")
+        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no calibration {path}; give the path of the YAML "
+                         "file that ur_calibration wrote of this arm")
     try:
         text = content(path, LARGEST, "BAD_CALIBRATION", str(path)).decode("utf-8")
     except (OSError, ValueError) as error:
