@@ -17,7 +17,7 @@ import Part
 
 from ..core.geometry.mesh.file_unit import MESHES
 from ..core.issues import InputError
-from . import three_mf
+from . import obj_polygons, three_mf
 from .apart import apart
 
 READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -84,6 +84,10 @@ def _mesh(file: Path, where: str, scale: float) -> Any:
     try:
         with _quiet():
             mesh.read(str(file))
+        more = obj_polygons.left_out(file, mesh.CountFacets) if file.suffix.lower() == ".obj" else ()
+        if len(more):
+            mesh.addFacets([[FreeCAD.Vector(*corner) for corner in triangle] for triangle in more.tolist()])
+            mesh.removeDuplicatedPoints()
     except Exception as error:
         raise InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again") from error
     if not mesh.CountFacets:

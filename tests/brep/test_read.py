@@ -4,11 +4,12 @@
 import re
 
 import FreeCAD
+import numpy as np
 import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.brep.read import read_shape
+from freecad_am.brep.read import read_mesh, read_shape
 from freecad_am.core.issues import InputError
 
 
@@ -120,3 +121,28 @@ def test_a_folder_is_no_file(tmp_path):
     (tmp_path / "a.step").mkdir()
     with pytest.raises(InputError, match="folder"):
         read_shape(tmp_path / "a.step")
+
+
+@pytest.mark.parametrize("relative", [False, True])
+def test_faces_of_obj_files_with_many_corners_are_read(tmp_path, relative):
+    """A prism over a star of 16 corners, of two faces of 16 corners, some sides of four and some of two triangles. FreeCAD
+    leaves out the two."""
+    count, height = 16, 10.0
+    angle, radius = 2.0 * np.pi * np.arange(count) / count, np.where(np.arange(count) % 2, 12.0, 5.0)
+    ring = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
+    lines = [f"v {x!r} {y!r} {z!r}" for z in (0.0, height) for x, y in ring.tolist()]
+    faces = [list(range(count, 0, -1)), list(range(count + 1, 2 * count + 1))]
+    for i in range(count):
+        a, b, c, d = i + 1, (i + 1) % count + 1, (i + 1) % count + 1 + count, i + 1 + count
+        faces += [[a, b, c, d]] if i % 2 else [[a, b, c], [a, c, d]]
+    shift = 2 * count + 1 if relative else 0
+    lines += ["f " + " ".join(f"{corner - shift}//1" for corner in face) for face in faces]
+    (tmp_path / "star.obj").write_text("\n".join(lines) + "\n")
+    mesh = read_mesh(tmp_path / "star.obj", 2.0)
+    area = 0.5 * count * 12.0 * 5.0 * np.sin(2.0 * np.pi / count)
+    assert mesh.CountFacets == 2 * (count - 2) + 2 * count and mesh.isSolid()
+    assert mesh.Volume == pytest.approx(8.0 * area * height, rel=1e-5)
+    (tmp_path / "star.obj").write_text("\n".join([*lines, "f 1 2 3 4 99"]) + "\n")
+    with pytest.raises(InputError) as caught:
+        read_mesh(tmp_path / "star.obj")
+    assert caught.value.code == "BAD_FILE"

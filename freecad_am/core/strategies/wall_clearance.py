@@ -7,24 +7,26 @@ so is what is at or behind the tip plane.
 
 A bead on which the nozzle would touch gets tilts that are clear at every point and small and even along it (`tilt_search`).
 
-Halfway between points that are clear the nozzle is looked at too; where it touches there, the bead gets a point.
+Halfway between points that are clear the nozzle is looked at too; where it touches there, the bead gets a point, and is
+tilted anew, it alone.
 """
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.surroundings import Body
 from ..geometry.walls.surface import dot
-from ..issues import InputError
+from ..issues import InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters
 from ..slicing.wall_direction import limited, turn_rates
-from ..toolpath import Toolpath
+from ..toolpath import Bead, Toolpath
 from . import clearance_knots
 from .clearance_notes import tilt_issues, turn_issues
 from .clearance_room import Room, beads_of, halved, room_of, touched_between
@@ -51,20 +53,32 @@ def kept_clear(
     clear, of what is deposited of the others by then too. told(points, times): before tilts are searched for, at how many
     points, and how many times at most.
     """
+    known: list[_Way | None] = [None for _ in toolpath]
     for last in (False,) * HALVINGS + (True,):
-        found, between = _tilted(toolpath, bodies, nozzle, build, plane, feature, last, told)
+        found, between, ways = _tilted(toolpath, bodies, nozzle, build, plane, feature, last, told, known)
         if not between.any():
             break
+        marks = np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1])
+        known = [None if mark.any() else way for way, mark in zip(ways, marks, strict=True)]
         toolpath = halved(toolpath, between)
     return found
 
 
+class _Way(NamedTuple):
+    """What was found for a bead that is tilted: axes (n, 3), tilts (n,) rad, and which points (n,) touch even so."""
+
+    tool: Array
+    tilt: Array
+    lost: Mask
+
+
 def _tilted(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None, feature: int | None, last: bool, told: Callable[[int, int], None],
-) -> tuple[Toolpath, Mask]:
-    """The toolpath tilted clear at its points, and the points (n,) after which the nozzle touches halfway to the next; none
-    at the `last` try, where an issue says so. Where it touches with the axes asked for, nothing is tilted yet."""
+    plane: Array | None, feature: int | None, last: bool, told: Callable[[int, int], None], known: list[_Way | None],
+) -> tuple[Toolpath, Mask, list[_Way | None]]:
+    """The toolpath tilted clear at its points, the points (n,) after which the nozzle touches halfway to the next, none at
+    the `last` try, where an issue says so, and what was found bead by bead. Where it touches with the axes asked for,
+    nothing is tilted yet. known: what was found before, of beads that have the same points since."""
     beads = [bead for _, _, bead in toolpath]
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
     asked = np.concatenate([bead.tool for bead in beads])
@@ -74,36 +88,66 @@ def _tilted(
     free[mine] = room.clear(np.flatnonzero(mine), asked[mine])
     between = touched_between(room, beads, asked, free & mine)
     if between.any() and not last:
-        return toolpath, between
+        return toolpath, between, known
     blocked = [k for k in range(len(beads)) if not (free & ~between)[begin[k] : begin[k + 1]].all()]
     if not blocked:
-        return toolpath, between
-    rows = [np.arange(begin[k], begin[k + 1]) for k in blocked]
-    closed = np.array([beads[k].closed for k in blocked])
-    told(sum(map(len, rows)), 1)
-    tool, tilt, stuck = _cleared(room, rows, closed, asked, plane, free)
-    lost = np.zeros(len(asked), dtype=bool)
-    lost[stuck] = True
-    fast = _too_fast(room, rows, asked, build.turn(), tool, lost)
-    if fast:
-        told(sum(len(rows[k]) for k in fast), SLOWER)
-    turned = _slowed(room, [(rows[k], bool(closed[k])) for k in fast], asked, plane, build.turn(), tool, tilt)
+        return toolpath, between, known
+    (tool, tilt, lost), turned = _ways(room, beads, begin, blocked, asked, plane, free, build.turn(), told, known)
+    ways: list[_Way | None] = [None for _ in beads]
+    for k in blocked:
+        row = slice(begin[k], begin[k + 1])
+        ways[k] = _Way(tool[row], tilt[row], lost[row].copy())
     # no more points for beads that are lost: they are told of at those they have
     sound = mine & ~np.repeat(np.logical_or.reduceat(lost, begin[:-1]), np.diff(begin))
     between = touched_between(room, beads, tool, sound)
     if between.any() and not last:
-        return toolpath, between
+        return toolpath, between, ways
     lost |= between
-    layers = iter(np.split(tool, begin[1:-1]))
-    places = [(i, j) for i, j, _ in toolpath]
+    issues = (*tilt_issues([(i, j) for i, j, _ in toolpath], begin, tilt, lost), *turn_issues(turned, build.turn()))
+    return _with_tools(toolpath, np.split(tool, begin[1:-1]), issues), np.zeros(len(asked), dtype=bool), ways
+
+
+def _with_tools(toolpath: Toolpath, tools: Sequence[Array], issues: tuple[Issue, ...]) -> Toolpath:
+    """The toolpath with tool axes, bead by bead, and further issues."""
+    each = iter(tools)
     return dataclasses.replace(
         toolpath,
         layers=tuple(
-            dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, tool=next(layers)) for bead in layer.beads))
+            dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, tool=next(each)) for bead in layer.beads))
             for layer in toolpath.layers
         ),
-        issues=(*toolpath.issues, *tilt_issues(places, begin, tilt, lost), *turn_issues(turned, build.turn())),
-    ), np.zeros(len(asked), dtype=bool)
+        issues=(*toolpath.issues, *issues),
+    )
+
+
+def _ways(
+    room: Room, beads: Sequence[Bead], begin: Index, blocked: list[int], asked: Array, plane: Array | None, free: Mask,
+    most: float, told: Callable[[int, int], None], known: list[_Way | None],
+) -> tuple[_Way, float]:
+    """Axes, tilts and points that touch even so, of all points, and the fastest turn (rad/mm) that is left of beads that
+    turn faster than `most` with their tilts though what was asked does not. What is known of a bead stays while clear."""
+    tool, tilt, lost = asked.copy(), np.zeros(len(asked)), np.zeros(len(asked), dtype=bool)
+    kept, anew = [], []
+    for k in blocked:
+        row, way = np.arange(begin[k], begin[k + 1]), known[k]
+        if way is None or not (room.clear(row, way.tool) | way.lost).all():
+            anew.append((row, beads[k].closed))
+            continue
+        tool[row], tilt[row], lost[row] = way
+        kept.append(row)
+    turned = max((_fastest(room, kept[k], tool) for k in _too_fast(room, kept, asked, most, tool, lost)), default=0.0)
+    if not anew:
+        return _Way(tool, tilt, lost), turned
+    rows = [row for row, _ in anew]
+    flat = np.concatenate(rows)
+    told(len(flat), 1)
+    found, leant, stuck = _cleared(room, rows, np.array([loop for _, loop in anew]), asked, plane, free)
+    tool[flat], tilt[flat] = found[flat], leant[flat]
+    lost[stuck] = True
+    fast = _too_fast(room, rows, asked, most, tool, lost)
+    if fast:
+        told(sum(len(rows[k]) for k in fast), SLOWER)
+    return _Way(tool, tilt, lost), max(turned, _slowed(room, [anew[k] for k in fast], asked, plane, most, tool, tilt))
 
 
 def _cleared(

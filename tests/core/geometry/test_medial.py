@@ -4,7 +4,9 @@
 import time
 
 import numpy as np
+from scipy.spatial import QhullError
 
+from freecad_am.core.geometry.regions import medial
 from freecad_am.core.geometry.regions.medial import MANY, spine
 from freecad_am.core.geometry.regions.region import regions
 
@@ -18,3 +20,21 @@ def test_the_middle_of_a_strip_is_found_from_very_many_places_too():
     assert not closed and np.ptp(path[:, 0]) > 103.0 - 8.0 - 0.1
     between = path[(path[:, 0] > 4.0) & (path[:, 0] < 99.0)]
     assert np.abs(between[:, 1] - 4.0).max() < 1e-4
+
+
+def test_the_middle_is_found_where_places_on_lines_are_too_much_for_the_diagram(monkeypatch):
+    """As of a thin slot of a bent sheet, whose places stood for one point to Qhull (QH6347)."""
+    diagram, given = medial.Voronoi, []
+
+    def picky(places):
+        given.append(places)
+        if len(given) == 1:
+            raise QhullError("QH6347 qhull precision error (qh_mergefacet): wide merge")
+        return diagram(places)
+
+    monkeypatch.setattr(medial, "Voronoi", picky)
+    (strip,) = regions([np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 2.0], [0.0, 2.0]])])
+    path, closed = spine(strip, 0.3, 0.1)
+    assert len(given) == 2 and 0.0 < np.abs(given[1] - given[0]).max() < 1e-8
+    between = path[(path[:, 0] > 1.0) & (path[:, 0] < 29.0)]
+    assert not closed and np.ptp(path[:, 0]) > 27.5 and np.abs(between[:, 1] - 1.0).max() < 1e-4

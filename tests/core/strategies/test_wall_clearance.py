@@ -16,7 +16,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.strategies import clearance_knots, clearance_room, surface, tilt_search
+from freecad_am.core.strategies import clearance_knots, clearance_room, surface, tilt_search, wall_clearance
 from freecad_am.core.strategies.clearance_look import touched_at
 from freecad_am.core.strategies.wall_clearance import kept_clear
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
@@ -399,3 +399,35 @@ def test_looking_needs_memory_that_grows_with_the_points_alone():
     assert np.abs(tilt_search.nearest(known, s, None) - apart.min(axis=1)).max() < 1e-12
     around = np.minimum(apart, 10.0 - apart).min(axis=1)
     assert np.abs(tilt_search.nearest(known, s, 10.0) - around).max() < 1e-12
+
+
+def test_only_beads_that_get_points_are_tilted_anew(monkeypatch):
+    """The nozzle is said to touch halfway in one bead once it is tilted: that bead alone is searched again, a point more;
+    the others keep their axes to the bit, and all are clear."""
+    asked = bend_on_pipe("local")[1]
+    build = BuildDirectionParameters(mode="local", max_tilt=np.pi)
+    plain = kept_clear(asked, [pipe()], FAT, build)
+    searched, looks, (between, cleared) = [], [], (wall_clearance.touched_between, wall_clearance._cleared)
+    counts = np.array([len(one) for _, _, one in asked])
+    begin = int(counts[:2].sum())
+
+    def looked(room, beads, tool, free):
+        found = between(room, beads, tool, free)
+        looks.append(len(found))
+        if len(looks) == 2:  # the first time after tilting
+            found[begin + 7] = True  # in the third bead
+        return found
+
+    def noted(room, rows, *others):
+        searched.append([int(row[0]) for row in rows])
+        return cleared(room, rows, *others)
+
+    monkeypatch.setattr(wall_clearance, "touched_between", looked)
+    monkeypatch.setattr(wall_clearance, "_cleared", noted)
+    found = kept_clear(asked, [pipe()], FAT, build)
+    assert len(searched[0]) > 2 and searched[1:] == [[begin]] and looks[2] == looks[1] + 1
+    for number, ((_, _, one), (_, _, two)) in enumerate(zip(plain, found)):
+        assert len(two) == len(one) + (number == 2)
+        if number != 2:
+            np.testing.assert_array_equal(two.tool, one.tool)
+    assert touches_deposit(found, FAT) == [] and "CLEARANCE" not in codes(found)

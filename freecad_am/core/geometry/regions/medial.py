@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, dijkstra
-from scipy.spatial import Voronoi
+from scipy.spatial import QhullError, Voronoi
 
 from ..curves.plane_curve import Array, winding
 from .region import Region
@@ -63,9 +63,11 @@ def _axis(region: Region, least: float, step: float) -> _Axis:
     places, follows = _places(region.rings(), step)
     middle, size = places.mean(axis=0), max(region.extent, 1e-300)
     scaled = (places - middle) / size
-    if len(scaled) > MANY:
-        scaled = scaled + MOVED * np.random.default_rng(0).uniform(-1.0, 1.0, scaled.shape)
-    diagram = Voronoi(scaled)
+    moved = scaled + MOVED * np.random.default_rng(0).uniform(-1.0, 1.0, scaled.shape)
+    try:
+        diagram = Voronoi(moved if len(scaled) > MANY else scaled)
+    except QhullError:  # places exactly on lines and circles may be more than it can tell apart
+        diagram = Voronoi(moved)
     corners = diagram.vertices * size + middle
     pairs = diagram.ridge_points
     ends = np.fromiter(chain.from_iterable(diagram.ridge_vertices), dtype=np.intp, count=2 * len(pairs)).reshape(-1, 2)
