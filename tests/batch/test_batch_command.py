@@ -4,9 +4,12 @@
 import csv
 import io
 import json
+from types import SimpleNamespace
 
 import FreeCAD
 import pytest
+
+from freecad_am.batch import rows
 
 SPHERE = "part.set.Ball.Radius"
 
@@ -44,16 +47,16 @@ def test_a_row_is_what_plan_makes_of_it(workshop):
 
 
 @pytest.mark.parametrize(
-    ("rows", "statuses", "worst"),
+    ("ends", "statuses", "worst"),
     [
         (["8 mm,0", "10 mm,9000"], ["0", "3"], 3),
         (["1 kg,0", "10 mm,9000", "8 mm,0"], ["2", "3", "0"], 2),
     ],
 )
-def test_ends_with_the_worst_row(workshop, rows, statuses, worst):
+def test_ends_with_the_worst_row(workshop, ends, statuses, worst):
     workshop.change("limits: paper", "limits: paper\n  deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0]")
     table = ["strategy.layer_height,cell.deposition_point"]
-    for row in rows:
+    for row in ends:
         height, shift = row.split(",")
         table.append(f'{height},"[{1045.747 + float(shift)}, -630.155, 653.167, 0, 0, 0]"')
     (workshop.folder / "rows.csv").write_text("\n".join(table))
@@ -63,6 +66,21 @@ def test_ends_with_the_worst_row(workshop, rows, statuses, worst):
     assert [row["exit"] for row in found] == statuses
     assert all(row["message"] for row in found if row["exit"] != "0")
     assert all("row" in line for line in done.err.splitlines())
+
+
+@pytest.mark.parametrize(("ends", "worst"), [
+    ((130, 0), 130), ((130, 130), 130), ((3, 130), 130), ((2, 130), 130), ((130, 1), 1), ((0, 3), 3), ((0, 0), 0),
+])
+def test_rows_that_were_interrupted_count(workshop, monkeypatch, ends, worst):
+    """Those whose process was asked to end: a batch of them came back with 0, or with an internal error."""
+    (workshop.folder / "rows.csv").write_text("process.travel_speed\n5 mm/s\n6 mm/s\n")
+    monkeypatch.setattr(rows, "_planned", lambda waiting, *_: (
+        (row, {"exit": end, "message": ""}) for row, end in zip(waiting, ends, strict=True)
+    ))
+    told = []
+    session = SimpleNamespace(outcome="", say=told.append, progress=told.append, out=told.append)
+    assert rows.run(str(workshop.folder / "rows.csv"), str(workshop.job), None, 2, session) == worst
+    assert [line.split(",")[0] for line in told[-1].splitlines()[1:]] == ["1", "2"]
 
 
 def test_sets_properties_of_a_document(workshop):
