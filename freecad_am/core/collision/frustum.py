@@ -47,9 +47,9 @@ class Frustum:
 
     def rows(self, index: Index) -> Frustum:
         """The solids of some of the rows."""
-        if np.ndim(self.low) == 0:
+        if not isinstance(self.low, np.ndarray):
             return self
-        return Frustum(self.radius, self.slope, np.asarray(self.low)[index], self.high)
+        return Frustum(self.radius, self.slope, self.low[index], self.high)
 
     def near_box(self, offset: Array, axis: Array, half: Array, rounding: Array) -> Mask:
         """False where boxes about points, of half sizes (3, k), with a rounding (k,) mm about them, surely miss the solid:
