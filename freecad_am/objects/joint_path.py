@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +19,7 @@ from ..core.parameters.process import ProcessParameters
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
-from ..core.planning.remedies import Fixed, Tried, remedies
+from ..core.planning.remedies import Fixed, Tried, most_points, remedies
 from ..core.planning.speeds import SLOWED
 from ..core.process import bead_table, predicted
 from ..core.simulation.timeline import timeline
@@ -134,6 +134,7 @@ class JointPath(Stage):
                 lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,
                 rods=rods,
             )
+            _tell_remedies(cell, toolpath, issues)
             issues = (*remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)), *issues)
             condition = np.concatenate([bead.condition for bead in joint_path.beads])
             smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0
@@ -141,6 +142,17 @@ class JointPath(Stage):
                            (("SmallestCondition", smallest), *_sums(motion, process, toolpath)))
 
         return work
+
+
+def _tell_remedies(cell: cells.Cell, toolpath: Toolpath, issues: Sequence[Issue]) -> None:
+    """Tell it where looking for what makes a job feasible takes long: each pose of an offset wrist is solved by a search."""
+    arm = cell.machine.arm
+    if arm is None or not arm.followed:
+        return
+    from ..core.strategies import size
+
+    for issue in size.of_remedies(most_points(toolpath, issues)):
+        progress.tell(issue)
 
 
 def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:

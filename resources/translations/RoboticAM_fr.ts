@@ -6167,6 +6167,11 @@
         <translation>tel que trouvé</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>as it is this job cannot be carried out; looking for what would make it feasible takes up to {0} min of the processor</source>
+        <translation>tel quel, ce travail n&apos;est pas réalisable ; chercher ce qui le rendrait réalisable prend jusqu&apos;à {0} min de processeur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>as the axes can</source>
         <translation>selon les axes</translation>

@@ -15,6 +15,7 @@ from freecad_am.core.issues import InputError, Issue
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.strategies import size
 from freecad_am.objects import progress
 from freecad_am.objects.program import files_of
 
@@ -312,3 +313,17 @@ def test_a_new_job_puts_a_part_that_lies_about_its_origin_on_the_platform(doc):
     assert (cell.Mount, other.Mount, program.Status) == ("feature", "auto", "up to date")
     api.change(other, mount="feature")
     assert files_of(program) == files_of(above)
+
+
+@pytest.mark.parametrize(("machine", "long"), [("fanuc-crx10ia", True), ("fanuc-lrmate200id", False)])
+def test_remedies_that_take_long_are_told_before_they_are_looked_for(doc, part, monkeypatch, machine, long):
+    """On an arm with an offset wrist, each of whose poses is searched for."""
+    cell = api.make_cell(doc, machine=machine, deposition_point=(5000, 0, 0, 0, 0, 0))  # out of reach
+    toolpath = api.make_toolpath(doc, api.make_feature(doc, part, layer_height=15, chord_error=0.5), cell)
+    monkeypatch.setattr(size, "SECONDS_A_REMEDY", size.LARGE_SECONDS)  # one point takes as long as that
+    told, looked = [], []
+    monkeypatch.setattr("freecad_am.objects.joint_path.remedies", lambda *_: looked.append(list(told)) or [])
+    with api.told_to(lambda *_: None, lambda issue: told.append(issue.code)):
+        path = api.make_joint_path(doc, toolpath, cell)
+    assert any(issue.level == "error" for issue in api.issues(path))
+    assert looked == [["LARGE"] if long else []]

@@ -218,3 +218,13 @@ def test_what_has_no_inside_is_refused(doc):
         assert error.code == "SELF_CROSSING"
     if feature is not None:  # two solids that overlap are one
         assert feature.Solids == 2
+
+
+def test_a_margin_far_wider_than_the_part_is_told_before_its_layers_are_filled(doc):
+    """Forty layers of 0.6 m, each of which is another one: one and a half minutes of few points."""
+    angle = Part.makeBox(50, 40, 15).fuse(Part.makeBox(15, 40, 40)).cut(Part.makeCylinder(8, 60, App.Vector(32, 20, -5)))
+    part = doc.addObject("Part::Feature", "Bracket")
+    part.Shape = angle
+    wide = {"layer_height": 10, "bead_spacing": 10, "chord_error": 0.5}
+    told = [api.issues(api.make_solid_feature(doc, part, margin=margin, **wide)) for margin in (5, 360)]
+    assert [[issue.code for issue in issues].count("LARGE") for issues in told] == [0, 1]

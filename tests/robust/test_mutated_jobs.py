@@ -107,7 +107,7 @@ def test_every_base_is_sound(parts):
 
 
 def test_mutated_jobs(parts, tmp_path):
-    rounds.assert_sound(functools.partial(mutated_job, parts), 30, 1, tmp_path)
+    rounds.assert_sound(functools.partial(mutated_job, parts), 30, 19, tmp_path)
 
 
 @pytest.mark.long

@@ -40,7 +40,7 @@ def centre_beads(
             if not closed:
                 points = _lengthened(points, beads, inner)
             found.append(PlaneCurve(points, closed, kind, ring))
-            rest += region.without(along([(points, closed)], 0.5 * beads.spacing, beads.chord_error))
+            rest += region.without(along([(points, closed)], 0.5 * beads.spacing, beads.chord_error), beads.gap)
         left = rest
         if not left:
             break
@@ -53,7 +53,7 @@ def left_open(curves: Sequence[tuple[Array, bool]], inner: Sequence[Region], bea
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
     covered = along([(_thinned(points, closed, error), closed) for points, closed in curves], half, error)
     reached = [part for piece in inner for part in piece.grown(half, error)]
-    left = [part for piece in reached for part in (piece.without(covered) if covered else (piece,))]
+    left = [part for piece in reached for part in (piece.without(covered, beads.gap) if covered else (piece,))]
     return [part for part in left if part.grown(-0.5 * beads.gap, error)]
 
 
@@ -92,7 +92,7 @@ def _network(region: Region, beads: Beads) -> list[PlaneCurve]:
             points, closed = _middle(part, beads, 0.15 * part.width)
             if len(points) > 1 and (not found or length(points, closed) >= beads.shortest):
                 found.append(PlaneCurve(points, closed, "centre", 0))
-                rest += part.without(along([(points, closed)], beads.inset, beads.chord_error))
+                rest += part.without(along([(points, closed)], beads.inset, beads.chord_error), beads.gap)
         left = [part for part in rest if part.grown(-0.5 * beads.gap, beads.chord_error)]
         if not left:
             break

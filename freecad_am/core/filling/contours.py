@@ -13,7 +13,8 @@ from .curve import Beads, PlaneCurve, begun, long_enough
 
 @dataclass(frozen=True)
 class Levels:
-    """rings[k]: the regions whose borders are the contours k; left[k]: what stays open inside of them."""
+    """rings[k]: the regions whose borders are the contours k; left[k]: what stays open inside of them, where it has room
+    for the gap allowed."""
 
     rings: tuple[tuple[Region, ...], ...]
     left: tuple[tuple[Region, ...], ...]
@@ -38,7 +39,7 @@ def levels(region: Region, beads: Beads) -> Levels:
             if length(part.rings()[0], True) >= beads.shortest
         )
         covered = [part for piece in inner for part in piece.grown(half, error)]
-        left.append(tuple(part for piece in open_ for part in (piece.without(covered) if covered else (piece,))))
+        left.append(tuple(part for piece in open_ for part in (piece.without(covered, beads.gap) if covered else (piece,))))
         k += 1
     return Levels(tuple(rings), tuple(left), thin)
 

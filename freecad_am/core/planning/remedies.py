@@ -34,6 +34,7 @@ from .speeds import share_of_speed
 REMEDY, NO_REMEDY = "REMEDY", "NO_REMEDY"
 LAYERS = 3  # that failed, planned anew with each change
 POINTS = 12_000  # planned so in all
+CHANGES = 16  # that are tried, about
 LONGEST = 20_000  # points of a job that is planned anew as a whole
 WHOLE = 3  # times that it is
 LIFTS = (50.0, 100.0, 5.0)  # mm
@@ -76,12 +77,20 @@ class Tried:
         return found
 
 
+def most_points(toolpath: Toolpath, issues: Sequence[Issue]) -> int:
+    """How many points are planned anew at most to find what makes a job with these issues feasible, 0 of a feasible one."""
+    if not has_errors(list(issues)):
+        return 0
+    some = min(POINTS, CHANGES * _some(toolpath, _failed(issues)).point_count)
+    return some + (WHOLE * toolpath.point_count if toolpath.point_count <= LONGEST else 0)
+
+
 def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Progress) -> list[Issue]:
     """A note with the first change found that makes an infeasible job feasible, or with all that were tried; none of a
     feasible one. path: its joint path. progress may raise to cancel."""
     if not has_errors(list(issues)):
         return []
-    failed = sorted({issue.layer for issue in issues if issue.level == ERROR and issue.layer is not None})
+    failed = _failed(issues)
     points, whole, tried = POINTS, WHOLE, []
     for change in _changes(job, path, issues):
         progress(1.0, f"looking for what would make it feasible: {change.told}")
@@ -108,6 +117,11 @@ def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Pro
     if not tried:
         return []
     return [Issue(NOTE, NO_REMEDY, f"none of these makes the job feasible, each was tried: {'; '.join(tried)}")]
+
+
+def _failed(issues: Sequence[Issue]) -> list[int]:
+    """The layers that errors are in."""
+    return sorted({issue.layer for issue in issues if issue.level == ERROR and issue.layer is not None})
 
 
 def _some(toolpath: Toolpath, failed: Sequence[int]) -> Toolpath:

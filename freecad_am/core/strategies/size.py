@@ -43,6 +43,8 @@ FEWEST = 24  # points of a bead on a wall
 PLACES = 181  # at which meridians and tubes are looked at
 ASKED = 20_000  # vertices that tell how far a wall reaches
 SECONDS_A_LAYER = 0.05  # s of the processor through all stages, however few points its beads have, measured at 25
+SECONDS_A_SQUARE = 1.5e-4  # s of the processor that filling layers that differ takes by the square of the spacing, measured
+SECONDS_A_REMEDY = 8e-3  # s of the processor that a point takes with each remedy on an arm with an offset wrist, measured
 SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point of a bead that needs some, measured
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to
 # layer, and layers of cladding are laid flat to be filled
@@ -53,10 +55,12 @@ _SECONDS_A_POINT: dict[type, float] = {
 
 @dataclass(frozen=True)
 class Size:
-    """About how many layers and points a toolpath would have."""
+    """About how many layers and points a toolpath would have. squares: with sides of the bead spacing, as many as there are
+    in all layers, where each of these is filled by itself."""
 
     layers: float
     points: float
+    squares: float = 0.0
 
 
 def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
@@ -82,7 +86,7 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
     an overlap takes its place."""
     if spacing is None:
         spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
-    layers = points = 0.0
+    layers = points = squares = 0.0
     for group in solids.groups:
         deep = []
         for body in group.bodies:
@@ -95,8 +99,10 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
             extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
             around = 0.5 / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(away, extent))
             points += length * max(around, 2.0 / extent)
+            if strategy.margin > 0.0:  # rounded by it, each layer is another
+                squares += length / spacing
         layers += sum(deep) if strategy.order == "feature" else max(deep, default=0.0)
-    return Size(layers, points)
+    return Size(layers, points, squares)
 
 
 def of_cladding(faces: CladFaces, strategy: CladdingParameters) -> Size:
@@ -146,7 +152,7 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     """A note LARGE where planning takes more than LARGE_SECONDS or LARGE_GIGABYTES. Raises InputError as `refuse_absurd`."""
     refuse_absurd(size, strategy)
     a_point = next(seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind))
-    seconds = max(size.points * a_point, size.layers * SECONDS_A_LAYER)
+    seconds = max(size.points * a_point, size.layers * SECONDS_A_LAYER, size.squares * SECONDS_A_SQUARE)
     gigabytes = size.points * GIGABYTES_A_POINT
     if seconds < LARGE_SECONDS and gigabytes < LARGE_GIGABYTES:
         return ()
@@ -174,6 +180,18 @@ def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:
         NOTE, LARGE, f"with the tool axes asked for the nozzle touches beads of {count(points)} points; finding tilts that "
         f"keep it clear takes about {minutes}, several times that where the tool would turn too fast; a smaller "
         "build_direction.lead and build_direction.tilt, or clearance: none, saves it",
+    ),)
+
+
+def of_remedies(points: int) -> tuple[Issue, ...]:
+    """A note LARGE where a job on an arm with an offset wrist cannot be carried out, and planning so many points at most
+    anew, to find what would make it feasible, takes long."""
+    seconds = points * SECONDS_A_REMEDY
+    if seconds < LARGE_SECONDS:
+        return ()
+    return (Issue(
+        NOTE, LARGE, "as it is this job cannot be carried out; looking for what would make it feasible takes up to "
+        f"{at_least(seconds / 60.0):g} min of the processor",
     ),)
 
 

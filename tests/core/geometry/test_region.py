@@ -90,3 +90,18 @@ def test_without_the_library_a_filling_says_what_is_missing(monkeypatch):
     with pytest.raises(InputError, match="python3-shapely") as missing:
         regions([SQUARE])
     assert missing.value.code == "MISSING_LIBRARY"
+
+
+def test_pieces_without_room_for_a_circle_are_left_out_and_no_others():
+    """Of a square with round bites near its border: thousands of slivers, of which shrinking leaves none."""
+    rng = np.random.default_rng(3)
+    square = regions([40.0 * SQUARE])[0]
+    discs = regions([SQUARE])[0].grown(1.0, 0.05)
+    bites = [one for place in rng.uniform(0.0, 390.0, (900, 2)) for one in regions([discs[0].rings()[0] * 1.2 + place])]
+    whole = square.without(bites)
+    for wide in (0.5, 2.0, 6.0):
+        for error in (0.5, 0.001):
+            room = [one.rings()[0] for one in whole if one.grown(-0.5 * wide, error)]
+            found = [one.rings()[0] for one in square.without(bites, wide) if one.grown(-0.5 * wide, error)]
+            assert all(np.array_equal(a, b) for a, b in zip(room, found, strict=True))
+        assert len(room) < len(square.without(bites, wide)) < len(whole)

@@ -196,3 +196,19 @@ def test_tilts_that_take_long_to_find_are_told():
     (issue,) = size.of_tilting(1_065, 6)
     assert (issue.level, issue.code) == ("note", "LARGE") and "on beads of 1,100 points" in issue.message
     assert "takes up to 0.96 min of the processor" in issue.message
+
+
+def test_layers_of_a_wide_margin_are_told_by_what_filling_them_takes():
+    """Its layers, each another one, are long straight beads of few points."""
+    block = size.of_solids(solids(CYLINDER, box()), DevelopableParameters(layer_height=6.0, bead_spacing=8.0))
+    assert block.squares == 0.0
+    strategy = DevelopableParameters(layer_height=6.0, bead_spacing=8.0, margin=300.0)
+    assert size.of_solids(solids(CYLINDER, box()), strategy).squares > 200_000
+    (issue,) = size.judged(size.Size(40.0, 95_000.0, 330_000.0), strategy)
+    assert issue.code == "LARGE" and "takes about 0.83 min of the processor" in issue.message
+
+
+def test_remedies_that_take_long_to_find_are_told():
+    assert size.of_remedies(0) == size.of_remedies(3_700) == ()
+    (issue,) = size.of_remedies(15_516)
+    assert (issue.level, issue.code) == ("note", "LARGE") and "takes up to 2.1 min of the processor" in issue.message

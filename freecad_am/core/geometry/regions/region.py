@@ -26,6 +26,7 @@ SAME = 1e-12  # of the extent; points nearer together are one
 SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated
 AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
 LEAST_ARC = 8  # segments of a full turn
+EIGHT = 2.8  # times the squared radius, a hair less than the area of a regular octagon in a circle
 WIDTH = 0.005  # relative tolerance of a region's width
 FLAT = 1e-3  # slope of a curve of values, so that they count and their places do not
 FINE_SLIT, LONG_SLIT = 0.1, 20.0  # of a slit's width: chord error of what closes it; how much border it takes away
@@ -116,10 +117,11 @@ class Region:
             return (self,)
         return _parts(_buffered(self.shape, distance, chord_error), SLIVER * self.extent**2, self.sheet)
 
-    def without(self, others: Iterable[Region]) -> tuple[Region, ...]:
-        """What is left when others are taken away."""
+    def without(self, others: Iterable[Region], wide: float = 0.0) -> tuple[Region, ...]:
+        """What is left when others are taken away. wide: mm; of pieces too small for a circle of that diameter, which may be
+        very many, those are left out of which `grown` by minus half of it leaves nothing whatever its arcs."""
         away = shapely().ops.unary_union([other.shape for other in others])
-        return _parts(self.shape.difference(away), SLIVER * self.extent**2)
+        return _parts(self.shape.difference(away), max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2))
 
     def common(self, others: Iterable[Region]) -> tuple[Region, ...]:
         """What it shares with others."""
