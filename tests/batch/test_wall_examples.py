@@ -15,6 +15,7 @@ CHORD = 0.01  # mm, the chord error of the jobs
 FINE = 2e-5  # mm, at which chords stand for the curve
 TOLERANCE = 1e-4  # mm, of the local distance
 NOZZLE_TIP, NOZZLE_ANGLE = 0.5, np.radians(20.0)  # mm, rad; radius of the tip, half the cone's angle
+BEND, TUBE, PIPE = 60.0, 15.0, 32.0  # mm, radii of the bend of the paper, of its tube and of the pipe
 TURN = 30.0  # deg/mm, the largest turn of the build direction, build_direction.max_turn
 
 
@@ -172,6 +173,20 @@ def test_the_nozzle_keeps_clear_of_beads_as_wide_as_they_are_at_all_points(examp
     if without_cell is None:
         return
     assert deepest_in_deposit(example, without_cell, 400, 0.4) <= CHORD
+
+
+def test_the_bend_grows_on_the_pipe_as_in_the_paper(plans):
+    made = plans.plan("tube-on-pipe")
+    assert made.report["counts"]["layers"] == 15  # the 16th of the errata lies wholly past the end
+    assert made.report["joints"]["feasible"] is True and made.report["programs"] == ["program/TUBE_ON_PIPE.LS"]
+    x, y, z = made.points.T
+    off = np.hypot(np.hypot(x + BEND, z) - BEND, y) - TUBE
+    assert np.abs(off).max() < 0.0105  # the chord error, for planning adds points on the chords
+    first = np.concatenate([one.points for one in made.passes if one.layer == 0])
+    assert np.abs(np.hypot(first[:, 0], first[:, 2]) - PIPE).max() < 0.0105
+    assert np.arctan2(z, x + BEND).max() <= 0.5 * np.pi + 1e-6
+    tool = np.concatenate([one.tool for one in made.passes])
+    assert np.abs(tool[:, 1]).max() < 1e-9 and np.degrees(np.arccos(tool[:, 2].min())) <= 85.0 + 1e-6
 
 
 def test_the_half_shell_is_deposited_to_and_fro(plans):
