@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
+from freecad_am.gui.background import later
 from freecad_am.gui.views import preview
 
 ORANGE = (245, 120, 0)  # of first layers
@@ -135,6 +136,25 @@ def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
     assert person.screen_pixels(ORANGE) == 0
     person.gui.Selection.addSelection(part)  # nobody listens any more
     person.idle()
+
+
+def test_an_error_goes_with_its_entry_however_soon_the_next_is_typed(person, bend, monkeypatch):
+    monkeypatch.setattr(later, "WAIT", 1500)  # entries are judged so long after the last one is typed, previews are sooner
+    part, pipe = bend
+    person.select(part)
+    person.gui.Selection.addSelection(pipe)
+    person.click("RoboticAM_WallOnPart")
+    panel = person.panel(PANEL)
+    previewed(person, panel)
+    note = person.field(panel, "LayerHeightNote")
+    person.type(panel, "LayerHeight", "rubbish")
+    person.until(lambda: note.isVisible() and "not understood" in note.text(), "the note", 5)
+    person.idle(2.0)
+    person.type(panel, "LayerHeight", "0.000001 mm")
+    person.until(lambda: note.isVisible() and "cannot be worked with; give at least" in note.text(), "the note", 10)
+    person.type(panel, "LayerHeight", "5 mm")
+    previewed(person, panel)
+    person.until(lambda: not note.isVisible(), "that the note goes", 5)
 
 
 def test_errors_stand_under_the_field_they_belong_to(person, bend):

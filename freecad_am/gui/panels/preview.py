@@ -122,8 +122,10 @@ class PreviewPanel(StagePanel):
         """Begin to compute what is entered, in place of what was before."""
         self.background.cancel()
         refused = set(self.marked) if self.shown == self.refused else set()
-        for place in (self.blamed | set(self.marked)) - set(self.told) - refused:
-            self.tell(place, "")
+        for place in (self.blamed | set(self.marked)) - refused:
+            # what the entry itself is told stays; that may be of the entry before, while the next one is not judged yet
+            if self.told.get(place) != self.notes[place].text():
+                self.tell(place, "")
         self.blamed.clear()
         lacks = self._lacks()
         if lacks:
