@@ -27,7 +27,7 @@ from rows import Row
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
 CLEARANCE, TIMES = 10.0, 3.0  # mm that are kept, and times the planning may take
-BETWEEN, EVERY = 10, 7  # places from one row to the next, of which so many are left out between two that are looked at
+BETWEEN = 10  # places looked at from one row to the next, the row's own among them
 LOW, SIZE = (50.0, 108.5, -5.0), (60.0, 60.0, 400.0)  # of the post, mm in part coordinates
 ROUNDS = 5  # of both jobs in turns
 ROBOT, STATION, LEAN = "fanuc-arcmate120ic", (900.0, 0.0, -100.0), 45.0
@@ -84,7 +84,7 @@ def _nearest(table: Path) -> float | None:
         rows = [[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in csv.DictReader(file)]
     joints = np.radians(rows)
     shares = np.linspace(0.0, 1.0, BETWEEN, endpoint=False)[:, None, None]
-    joints = (joints[:-1] + shares * np.diff(joints, axis=0)).transpose(1, 0, 2).reshape(-1, 6)[::EVERY]
+    joints = (joints[:-1] + shares * np.diff(joints, axis=0)).reshape(-1, 6)
     robot = machine.load(ROBOT)
     arm, frame, least = KdlArm(robot), None, np.inf
     frame = arm.kdl.Frame()
