@@ -7,6 +7,7 @@ that cannot be understood is an `InputError`. Nothing else leaves this package f
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -57,9 +58,16 @@ class AmError(Exception):
 
 
 class InputError(AmError):
-    """The job, the part, a machine file or the usage is wrong; the message says what to do."""
+    """The job, the part, a machine file or the usage is wrong; the message says what to do.
+
+    `mended_by`: parameters by key, with values that mend it, where these are known.
+    """
 
     exit_status = 2
+
+    def __init__(self, code: str, where: str, message: str, mended_by: Mapping[str, Any] | None = None) -> None:
+        super().__init__(code, where, message)
+        self.mended_by = dict(mended_by or {})
 
 
 class InfeasibleError(AmError):

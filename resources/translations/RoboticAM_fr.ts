@@ -7677,7 +7677,7 @@
         <translation>ce n&apos;est pas un fichier zip sain ({0})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/api.py"/>
+        <location filename="../../freecad_am/macro/steps.py"/>
         <source>it is no stage of this workbench; choose one</source>
         <translation>ce n&apos;est pas une étape de cet atelier ; choisissez-en une</translation>
     </message>
@@ -12427,7 +12427,7 @@
         <translation>{0} ; choisissez un fichier que vous pouvez écrire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/api.py"/>
+        <location filename="../../freecad_am/macro/export.py"/>
         <source>{0}; choose a folder you can write to</source>
         <translation>{0} ; choisissez un dossier où vous pouvez écrire</translation>
     </message>

@@ -49,8 +49,8 @@ STAGES = (
 )
 # where messages come from that reach the window; `batch` speaks to a terminal alone
 SPEAKING = (
-    "core", "objects", "brep", "posts", "interop", "plots", "report/of_document.py", "gui", "api.py", "kdl", "read_back",
-    "verify.py",
+    "core", "objects", "brep", "posts", "interop", "plots", "report/of_document.py", "gui", "api.py", "macro", "kdl",
+    "read_back", "verify.py",
 )
 FIGURE = re.compile(r"-?\d[\d.e-]*(?: (?:mm|deg|s|%)\S*)?")  # with its unit
 TITLES = ("core/inspection/table.py",)  # where single words are told too

@@ -10,6 +10,7 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
+from freecad_am.macro import features
 from tests import plans
 from tests.gui.hand import Hand
 
@@ -307,6 +308,7 @@ def coarse(monkeypatch):
         return make(doc, kind, *others, values={**of_kind.get(kind, {}), **(values or {})}, **named)
 
     monkeypatch.setattr(api, "make_feature_of", made)
+    monkeypatch.setattr(features, "make_feature_of", made)
 
 
 @pytest.fixture

@@ -99,4 +99,5 @@ def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> N
 
 
 def _off(what: str, remedy: str) -> InputError:
-    return InputError("OFF_PLATFORM", "cell.platform_diameter", f"{what}; {remedy}")
+    mended_by = {"mount": "feature"} if remedy == MOUNT else None
+    return InputError("OFF_PLATFORM", "cell.platform_diameter", f"{what}; {remedy}", mended_by)

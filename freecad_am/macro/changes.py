@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Changes of the macro interface: a stage and all that follows it made anew."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+from ..core.issues import AmError
+from ..objects import stage as stages
+from ..objects.program import Program
+from ..objects.settings import given
+from .steps import checked_stage, in_order, one_step, renew, with_faces
+
+
+def change(obj: Any, **values: Any) -> Any:
+    """Change parameters or inputs of a stage as its `make_...` takes them, and renew it and what follows; the object.
+
+    `am.change(doc.Feature, layer_height=2)`. An error of what follows is told in its own Status. An error of the stage
+    itself is raised and takes the change back, in documents that keep undo steps (those of the window do).
+    """
+    proxy = checked_stage(obj)
+    with one_step(obj.Document, f"Edit {obj.Label}"):
+        links = {link.key: link.name for link in proxy.links}
+        if isinstance(proxy, Program):
+            links["name"] = "ProgramName"
+        if proxy.kind == "inspection":
+            links["file"] = "File"
+        if proxy.kind == "toolpath":
+            links["sequence"] = "Sequence"
+        if "source" in values:
+            values["source"] = with_faces(values["source"], values.pop("faces", ()))
+        if "start_edges" in values:
+            wall = values.get("source") or obj.Source
+            values["start_edges"] = (wall[0], list(values["start_edges"])) if wall and values["start_edges"] else None
+        if "base_faces" in values:
+            hub = values.get("substrate") or obj.Substrate
+            values["base_faces"] = (hub, list(values["base_faces"])) if hub and values["base_faces"] else None
+        chosen = {links[key]: values.pop(key) for key in links if key in values}
+        given(obj, proxy, [], values)
+        for property_name, value in chosen.items():
+            setattr(obj, property_name, value)
+        renew(obj)
+        for follower in in_order(obj.InListRecursive):
+            with contextlib.suppress(AmError):
+                renew(follower)
+    return obj
+
+
+def recompute(target: Any, force: bool = False) -> None:
+    """Renew a document, or a stage and its inputs, shapes and expressions too. Raises the first error met, at the end.
+
+    force: compute even what fits its inputs. `am.recompute(doc)`
+    """
+    document = target if hasattr(target, "Objects") else target.Document
+    with one_step(document, "Recompute"):
+        with stages.deferred():
+            document.recompute()
+        wanted = document.Objects if document is target else [target, *target.OutListRecursive]
+        errors = []
+        for obj in in_order(wanted):
+            try:
+                renew(obj, force)
+            except AmError as error:
+                errors.append(error)
+    if errors:
+        raise errors[0]

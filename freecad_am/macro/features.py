@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Features of the macro interface, one function per family."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.strategy import (
+    CladdingParameters,
+    CurvesParameters,
+    DevelopableParameters,
+    RevolutionParameters,
+    SolidParameters,
+    SurfaceParameters,
+)
+from ..objects.feature_kinds import proxy_of
+from .steps import make_stage, with_faces
+
+
+def make_feature(
+    doc: Any, source: Any, faces: Sequence[str] = (), label: str = "Feature", *, axis: Any = None,
+    fixtures: Sequence[Any] = (), strategy: RevolutionParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """A feature of revolution of an object with a shape, or of some of its faces.
+
+    `am.make_feature(doc, doc.Revolve, ["Face1"], layer_height=1.5)`; axis: (object, "Edge1") where the shape has none.
+    fixtures: objects, solids or meshes, that the nozzle must not touch.
+    """
+    links = {"Axis": axis, "Fixtures": list(fixtures)}
+    return make_feature_of(doc, "revolution", source, faces, label=label, links=links,
+                           parameters=[strategy, build_direction], values=values)
+
+
+def make_feature_of(
+    doc: Any, kind: str, source: Any, faces: Sequence[str] = (), *, label: str = "Feature",
+    links: Mapping[str, Any] | None = None, parameters: Sequence[Any] = (), values: Mapping[str, Any] | None = None,
+) -> Any:
+    """A feature of any family, by its kind. links: by property name, of which those count that the family has; `StartEdges`
+    and `BaseFaces` are names alone. parameters: dataclasses of its sections; values: single ones by key."""
+    proxy = proxy_of(kind)
+    known = {link.name for link in proxy.links}
+    given_links = {"Source": with_faces(source, faces), **(links or {})}
+    for name, owner in (("StartEdges", source), ("BaseFaces", given_links.get("Substrate"))):
+        names = list(given_links.get(name) or ())
+        given_links[name] = (owner, names) if names else None
+    start = given_links.get("StartFaces") or ()
+    given_links["StartFaces"] = (source, list(start)) if start and not isinstance(start, tuple) else start or None
+    chosen = {name: value for name, value in given_links.items() if name in known}
+    return make_stage(doc, proxy, "Feature", label, chosen, parameters, dict(values or {}))
+
+
+def make_surface_feature(
+    doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
+    start_edges: Sequence[str] = (), fixtures: Sequence[Any] = (), strategy: SurfaceParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """A wall, of an object's faces, that grows on a solid or closed mesh, or from edges of its own (start_edges).
+
+    `am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5)`; fixtures: objects, solids or meshes,
+    that the nozzle must not touch either.
+    """
+    links = {"Substrate": substrate, "Fixtures": list(fixtures), "StartEdges": start_edges}
+    return make_feature_of(doc, "surface", source, faces, label=label, links=links, parameters=[strategy, build_direction],
+                           values=values)
+
+
+def make_developable_feature(
+    doc: Any, source: Any, substrate: Any = None, base_faces: Sequence[str] = (), label: str = "Feature", *,
+    faces: Sequence[str] = (), further: Sequence[Any] = (), fixtures: Sequence[Any] = (),
+    strategy: DevelopableParameters | None = None, build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """Solids, or closed meshes, that grow on cylinders and cones of a hub (substrate), on the base_faces of it or on those
+    that they are found to stand on. `am.make_developable_feature(doc, doc.Blades, doc.Spindle, layer_height=2.5)`
+
+    faces: of the source itself, where hub and solids are one. further: more objects to deposit; fixtures: objects, solids
+    or meshes, that the nozzle must not touch either. `base_radius=60, base_height=200` gives the base by numbers.
+    """
+    links = {
+        "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures), "BaseFaces": base_faces,
+    }
+    return make_feature_of(doc, "developable", source, faces, label=label, links=links,
+                           parameters=[strategy, build_direction], values=values)
+
+
+def make_solid_feature(
+    doc: Any, source: Any, substrate: Any = None, label: str = "Feature", *, further: Sequence[Any] = (),
+    guide: Any = None, start_faces: Any = (), fixtures: Sequence[Any] = (), strategy: SolidParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """Any solids, or closed meshes, deposited in plane layers. `am.make_solid_feature(doc, doc.Bracket, layer_height=2)`
+
+    further: more objects to deposit; substrate: what they stand on, where that is no platform; guide: of layers="along", an
+    object or (object, ["Edge1"]); start_faces: of layers="geodesic" and "offset", names of the source's faces, or (object,
+    ["Face1"]), that the first layer lies on; fixtures: objects, solids or meshes, that the nozzle must not touch either.
+    """
+    links = {
+        "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures),
+        "Guide": guide if guide is None or isinstance(guide, tuple) else (guide, [""]),
+        "StartFaces": start_faces,
+    }
+    return make_feature_of(doc, "solid", source, label=label, links=links, parameters=[strategy, build_direction],
+                           values=values)
+
+
+def make_curves_feature(
+    doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
+    fixtures: Sequence[Any] = (), strategy: CurvesParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """Edges, a wire, a sketch, or a table of points that `open_part` has read, laid as beads as they are.
+
+    `am.make_curves_feature(doc, doc.Sketch, repeat=3, layer_height=2)`; faces: names of faces whose normals are the
+    directions, and of edges where not all are laid; substrate: what they are laid on.
+    """
+    return make_feature_of(doc, "curves", source, faces, label=label, parameters=[strategy, build_direction],
+                           links={"Substrate": substrate, "Fixtures": list(fixtures)}, values=values)
+
+
+def make_cladding_feature(
+    doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
+    fixtures: Sequence[Any] = (), strategy: CladdingParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """Faces of an object, all of one that is no solid, covered with layers of beads along their normals.
+
+    `am.make_cladding_feature(doc, doc.Die, ["Face3"], layers=2, layer_height=2, bead_spacing=4)`; substrate, fixtures: what
+    else the nozzle must not touch.
+    """
+    return make_feature_of(doc, "cladding", source, faces, label=label, parameters=[strategy, build_direction],
+                           links={"Substrate": substrate, "Fixtures": list(fixtures)}, values=values)

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What each function of the macro interface does with a document: one step of undo, stages made, renewed and in order."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import FreeCAD as App
+
+from ..core.issues import InputError
+from ..objects import stage as stages
+from ..objects.settings import given
+
+
+def make_stage(
+    doc: Any, proxy: type, name: str, label: str, links: dict[str, Any], parameters: Sequence[Any],
+    values: dict[str, Any],
+) -> Any:
+    """A stage with its links and parameters, computed; nothing is left of one that fails."""
+    with one_step(doc, f"Make {label}"):
+        obj = doc.addObject("App::FeaturePython", name)
+        try:
+            stage = proxy(obj)
+            obj.Label = label
+            for property_name, value in links.items():
+                if value is not None:
+                    setattr(obj, property_name, value)
+            given(obj, stage, parameters, values)
+            for other in in_order(obj.OutListRecursive):
+                other.Proxy.renew(other)
+            renew(obj)
+        except BaseException:
+            doc.removeObject(obj.Name)
+            raise
+    return obj
+
+
+def with_faces(source: Any, faces: Sequence[str]) -> Any:
+    """A link to an object, or to faces of it; None for no object."""
+    return None if source is None else (source, list(faces))
+
+
+def renew(obj: Any, force: bool = False) -> None:
+    """Compute a stage where its inputs have changed, or by force."""
+    obj.Proxy.renew(obj, force)
+    obj.purgeTouched()
+
+
+def checked_stage(obj: Any) -> stages.Stage:
+    """The proxy of a stage. InputError BAD_INPUT for any other object."""
+    proxy = stages.stage_of(obj)
+    if proxy is None:
+        raise InputError("BAD_INPUT", getattr(obj, "Label", repr(obj)), "it is no stage of this workbench; choose one")
+    return proxy
+
+
+def in_order(objects: Sequence[Any]) -> list[Any]:
+    """The stages among objects, inputs first."""
+    return sorted((obj for obj in objects if stages.stage_of(obj)), key=lambda obj: len(obj.OutListRecursive))
+
+
+@contextlib.contextmanager
+def one_step(doc: Any, name: str) -> Iterator[None]:
+    """One step of undo, taken back whole when it fails; part of the step that is open, if there is one."""
+    if App.getActiveTransaction() or not doc.UndoMode:
+        yield
+        return
+    doc.openTransaction(name)
+    try:
+        yield
+    except BaseException:
+        doc.abortTransaction()
+        raise
+    doc.commitTransaction()
