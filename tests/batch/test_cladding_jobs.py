@@ -240,3 +240,13 @@ def test_what_cannot_be_covered_is_told(planned, shape, faces, more, code, words
     done, _, _ = planned(shape, faces, more)
     assert done.status == 2 and f"error[{code}]" in done.err and words in done.err, done.err
     assert done.err.count("error[") == 1
+
+
+def test_a_worn_die_in_joint_motion_is_read_back_on_its_beads(workshop, root):
+    """Between two points the axes bend the way most at no quarter of it: points are added where any place is too far off."""
+    examples = root / "resources" / "examples"
+    job = (examples / "die.yaml").read_text(encoding="utf-8").replace("motion: cartesian", "motion: joint")
+    job = workshop.write_job(job.replace("die.step", str(examples / "die.step")))
+    done = workshop.run("plan", job.name, "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    assert list((workshop.folder / "out" / "program").iterdir())

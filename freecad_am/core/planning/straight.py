@@ -16,6 +16,7 @@ from .task import Task
 Array = NDArray[np.float64]
 
 INSIDE = np.array([0.25, 0.5, 0.75])
+MORE = np.array([1.0, 2.0, 4.0, 5.0]) / 6.0  # of segments that use up more than half of the chord error
 ROUNDS = 8
 # rounding room: beads of revolution use their chord error up by themselves, mm
 ROUNDING = 1e-6
@@ -29,27 +30,36 @@ def kept_straight(task: Task, path: BeadPath, chord_error: float) -> tuple[BeadP
     for _ in range(ROUNDS):
         if not path.reachable:
             return path, []
-        off = deviation(task, path.bead, path.joints) > chord_error + ROUNDING
+        off = deviation(task, path.bead, path.joints, chord_error) > chord_error + ROUNDING
         if not off.any():
             return path, []
         path = _halved(task, path, np.flatnonzero(off))
-    worst = int(deviation(task, path.bead, path.joints).argmax())
+    worst = int(deviation(task, path.bead, path.joints, chord_error).argmax())
     return path, [Issue(
         ERROR, "NOT_STRAIGHT", "joint motion leaves the bead between two points however many are added: near a singularity",
         path.layer, path.index, worst,
     )]
 
 
-def deviation(task: Task, bead: Bead, joints: Array) -> Array:
+def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Array:
     """(n - 1,) how far the nozzle's tip leaves each segment of the bead when the joints run straight, mm."""
-    start, end = joints[:-1], joints[1:]
-    away = task.cell.tip_at(start[:, None] + (end - start)[:, None] * INSIDE[:, None]) - bead.points[:-1, None]
-    along = np.diff(bead.points, axis=0)
+    away = _looked_at(task, bead, joints, np.arange(len(joints) - 1), INSIDE)
+    near = np.flatnonzero(away > 0.5 * chord_error)
+    if len(near):
+        away[near] = np.maximum(away[near], _looked_at(task, bead, joints, near, MORE))
+    return away
+
+
+def _looked_at(task: Task, bead: Bead, joints: Array, segments: NDArray[np.intp], shares: Array) -> Array:
+    """The same of the segments (k,), at shares of their length: (k,) mm."""
+    start, way = joints[segments], joints[segments + 1] - joints[segments]
+    away = task.cell.tip_at(start[:, None] + way[:, None] * shares[:, None]) - bead.points[segments, None]
+    along = bead.points[segments + 1] - bead.points[segments]
     length = np.maximum(np.einsum("ni,ni->n", along, along), 1e-18)
     share = np.clip(np.einsum("nki,ni->nk", away, along) / length[:, None], 0.0, 1.0)
     away -= share[..., None] * along[:, None]
     squared = np.einsum("nki,nki->nk", away, away)
-    distance: Array = np.sqrt(np.maximum.reduce([squared[:, k] for k in range(len(INSIDE))]))
+    distance: Array = np.sqrt(np.maximum.reduce([squared[:, k] for k in range(len(shares))]))
     return distance
 
 

@@ -32,6 +32,7 @@ Progress = Callable[[float, str], None]
 METHOD = "five-axis"
 TURN = 2.0 * np.pi
 BETWEEN = np.array([0.25, 0.5, 0.75])
+MORE = np.array([1.0, 2.0, 4.0, 5.0]) / 6.0  # of segments that use up more than half of the chord error
 ROUNDS = 10
 ROUNDING = 1e-6  # mm, and of directions: what rounding may leave between points
 AT_POLE = math.radians(0.1)  # a direction this near to the pole counts as on it, or the axis would race round to meet it
@@ -153,7 +154,7 @@ def _bead(task: _Task, bead: Bead, before: Array | None, place: tuple[int, int])
                 ERROR, "UNREACHABLE", f"{len(lost)} of {len(axes)} directions cannot be turned to the torch by this "
                 "machine; tilt less, or mount the part otherwise", *place, int(lost[0]),
             )])
-        away, leaning = _between(cell, bead, axes)
+        away, leaning = _between(cell, bead, axes, task.chord_error)
         # with an axis locked the tool leans anyhow; that is told once for all
         off = (away > task.chord_error + ROUNDING) | ((leaning > STRAY) & (task.lock is None))
         if not off.any():
@@ -217,17 +218,29 @@ def _turns(values: Array, start: float, lower: float, upper: float) -> float:
         (0.5 * (lower + upper) - 0.5 * (values.min() + values.max())) / TURN))
 
 
-def _between(cell: Cell, bead: Bead, axes: Array) -> tuple[Array, Array]:
+def _between(cell: Cell, bead: Bead, axes: Array, chord_error: float) -> tuple[Array, Array]:
     """How far (n - 1,) mm the tip leaves each segment and by what angle (n - 1,) rad the tool strays from the directions
     at its ends while the axes run straight."""
-    way = np.diff(axes, axis=0)[:, None]
-    flange = cell.machine.chain.forward((axes[:-1, None] + BETWEEN[:, None] * way).reshape(-1, axes.shape[1]))
-    tip, tool = (column.reshape(len(way), len(BETWEEN), 3) for column in cell.tip_in_part(flange))
-    along = np.diff(bead.points, axis=0)[:, None]
-    gap = tip - bead.points[:-1, None]
+    away, leaning = _looked_at(cell, bead, axes, np.arange(len(axes) - 1), BETWEEN)
+    near = np.flatnonzero(away > 0.5 * chord_error)
+    if len(near):
+        more = _looked_at(cell, bead, axes, near, MORE)
+        away[near], leaning[near] = np.maximum(away[near], more[0]), np.maximum(leaning[near], more[1])
+    return away, leaning
+
+
+def _looked_at(
+    cell: Cell, bead: Bead, axes: Array, segments: NDArray[np.intp], shares: Array
+) -> tuple[Array, Array]:
+    """The same of the segments (k,), at shares of their length: (k,) mm and (k,) rad."""
+    way = (axes[segments + 1] - axes[segments])[:, None]
+    flange = cell.machine.chain.forward((axes[segments, None] + shares[:, None] * way).reshape(-1, axes.shape[1]))
+    tip, tool = (column.reshape(len(way), len(shares), 3) for column in cell.tip_in_part(flange))
+    along = (bead.points[segments + 1] - bead.points[segments])[:, None]
+    gap = tip - bead.points[segments, None]
     share = np.clip((gap * along).sum(-1) / np.maximum((along * along).sum(-1), 1e-18), 0.0, 1.0)
     away = np.linalg.norm(gap - share[..., None] * along, axis=-1).max(axis=1)
-    asked = bead.tool[:-1, None] + BETWEEN[:, None] * np.diff(bead.tool, axis=0)[:, None]
+    asked = bead.tool[segments, None] + shares[:, None] * (bead.tool[segments + 1] - bead.tool[segments])[:, None]
     sine = np.linalg.norm(np.cross(asked, tool), axis=-1)
     return away, np.arctan2(sine, (asked * tool).sum(-1)).max(axis=1)
 
