@@ -16,6 +16,7 @@ from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.kdl.chain import KdlArm
+from tests.core.planning.test_random_cells import conditions
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -155,3 +156,63 @@ def test_a_limit_that_leaves_room_for_less_is_kept_and_told_and_one_that_leaves_
     bound = none.limits.lower[axis] if end == 0 else none.limits.upper[axis]
     assert all(f"{none.limits.labels[axis]} would be at" in issue.message for issue in wrong)
     assert all(f"{bound:g} mm" in issue.message and "process.between_layers.lift" in issue.message for issue in wrong)
+
+
+def off_beads(motion):
+    """Rows of retracts, travels and approaches that are not on a bead themselves."""
+    onto = np.r_[motion.deposit[1:], False]
+    return np.flatnonzero(~motion.deposit & ~((motion.role == APPROACH) & onto))
+
+
+@pytest.fixture(scope="module")
+def far_away(sliced, cell_of):
+    """A joint path whose retracts of 200 mm have rows between, and what is made of it with a cell and a least condition."""
+    toolpath = sliced("intake funnel", 15.0, chord_error=0.3)
+    cell = cell_of(toolpath)
+    path = plan_joints(toolpath, cell, JointParameters())
+
+    def made(other=None, least=0.0):
+        parameters = dataclasses.replace(JointParameters(), min_condition=least)
+        return assemble(path, other or cell, lifting(200.0), (), parameters)
+
+    return cell, made
+
+
+def retracts(motion):
+    """The rows (k,) of each retract, that of the bead it leaves before them."""
+    for start in np.flatnonzero((motion.role == RETRACT) & np.r_[False, motion.deposit[:-1]]):
+        yield np.arange(start - 1, start + int(np.argmax(np.r_[motion.role[start:] != RETRACT, True])))
+
+
+def test_rows_between_the_ends_of_a_retract_keep_within_limits_too(far_away):
+    """One axis turns back on its way: only rows between are beyond a limit that lies short of there."""
+    cell, made = far_away
+    (motion, _), found = made(), []
+    for rows in retracts(motion):
+        values = motion.joints[rows]
+        ends = values[[0, -1]].max(axis=0)
+        over = values.max(axis=0) - ends
+        found.append((over.max(), int(over.argmax()), ends[over.argmax()]))
+    over, axis, end = max(found)
+    assert over > np.radians(0.05)
+    bound, upper = end + 0.4 * over, cell.limits.upper.copy()
+    upper[axis] = bound
+    other, issues = made(dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, upper=upper)))
+    assert "RAPID_OTHER" in [issue.code for issue in issues]
+    some = [other.joints[rows, axis] for rows in retracts(other) if other.joints[rows[0], axis] <= bound]
+    assert len(some) >= 2 and max(values.max() for values in some) <= bound
+
+
+def test_rapids_keep_the_least_condition_or_it_says_so(far_away):
+    cell, made = far_away
+    arm = KdlArm(cell.machine)
+    motion, issues = made()
+    assert not issues
+    seen = conditions(arm, cell, motion.joints[off_beads(motion)])
+    least = float(seen.min() + 0.1 * np.ptp(seen))
+    motion, issues = made(least=least)
+    assert [issue.code for issue in issues] == ["RAPID_OTHER"]
+    assert conditions(arm, cell, motion.joints[off_beads(motion)]).min() >= least - 1e-6
+    _, issues = made(least=0.9)
+    wrong = [issue for issue in issues if issue.level == ERROR]
+    assert {issue.code for issue in wrong} == {"RAPID_SINGULAR"} and all(issue.layer is not None for issue in wrong)
