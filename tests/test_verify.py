@@ -276,6 +276,31 @@ def test_the_bound_holds_and_is_tight_for_random_machines():
         assert 0.2 * path.tool_bound[0] < tilt <= path.tool_bound[0]
 
 
+def short_of(cell, axis, upper):
+    """The cell with another upper limit of an axis, rad."""
+    ends = cell.limits.upper.copy()
+    ends[axis] = upper
+    return dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, upper=ends))
+
+
+@pytest.mark.parametrize("axis", range(6))
+@pytest.mark.parametrize("cartesian", [False, True], ids=["joint", "cartesian"])
+def test_a_text_that_leads_beyond_a_limit_is_caught_at_its_point(cell, motion, program, files, table, axis, cartesian):
+    """Rapids too: of what is rounded to a thousandth of a degree half of one is forgiven, of positions what they explain."""
+    if cartesian:
+        cell, motion, program = table
+        files = fanuc.write(program)
+    rows = np.flatnonzero(motion.moves)
+    most = motion.joints[rows, axis].max()
+    assert verify(short_of(cell, axis, most + 1e-6), motion, program, files).issues == ()
+    result = verify(short_of(cell, axis, most - np.radians(0.01)), motion, program, files)
+    assert codes(result) == {"VERIFY_LIMIT"}
+    (issue,) = result.issues
+    first = rows[np.argmax(motion.joints[rows, axis] > most - np.radians(0.01))]
+    assert (issue.layer, issue.bead) == (motion.layer[first], motion.bead[first])
+    assert issue.message.startswith(f"the text takes {cell.limits.labels[axis]} up to 0.0")
+
+
 @pytest.fixture(scope="module")
 def table():
     cell = cells.resolve(ON_TABLE, np.eye(4))
