@@ -11,6 +11,7 @@ from FreeCAD import Vector
 from freecad_am import api
 from freecad_am.brep import off_part
 from freecad_am.brep.off_part import off_faces, off_mesh, off_solids
+from freecad_am.objects import in_sequence
 from freecad_am.objects import toolpath as stage
 
 
@@ -129,7 +130,22 @@ def wall(doc):
     return api.make_surface_feature(doc, tube, ("Face1",), plate, layer_height=5.0, chord_error=0.1)
 
 
-@pytest.mark.parametrize("make, way", [(revolved, [1.0, 0, 0]), (on_hub, [0, 0, 9.0]), (wall, [0, 1.0, 0])])
+def in_planes(doc):
+    box = doc.addObject("Part::Feature", "Block")
+    box.Shape = Part.makeBox(40.0, 30.0, 12.0)
+    return api.make_solid_feature(doc, box, layer_height=4.0, bead_spacing=6.0, chord_error=0.1)
+
+
+def clad(doc):
+    cone = doc.addObject("Part::Feature", "Cone")
+    cone.Shape = Part.makeCone(30, 18, 40)
+    return api.make_cladding_feature(doc, cone, ["Face1"], layers=2, layer_height=2.0, bead_spacing=6.0, chord_error=0.1)
+
+
+@pytest.mark.parametrize("make, way", [
+    (revolved, [1.0, 0, 0]), (on_hub, [0, 0, 9.0]), (wall, [0, 1.0, 0]), (in_planes, [9.0, 0, 0]),
+    (clad, [0, 1.0, 0]),
+])
 def test_deposit_beside_the_part_is_refused(doc, monkeypatch, make, way):
     feature = make(doc)
     sound = api.result(api.make_toolpath(doc, feature))
@@ -141,6 +157,24 @@ def test_deposit_beside_the_part_is_refused(doc, monkeypatch, make, way):
     (issue,) = [one for one in api.issues(toolpath) if one.code == "OFF_PART"]
     assert issue.level == "error" and None not in (issue.layer, issue.bead, issue.point)
     assert api.result(toolpath).on_part[1] == pytest.approx(np.abs(way).sum(), rel=0.35)
+
+
+def test_of_several_features_the_one_beside_its_part_is_refused(doc, monkeypatch):
+    features = []
+    for name, low in (("Low", 0.0), ("High", 12.0)):
+        box = doc.addObject("Part::Feature", name)
+        box.Shape = Part.makeBox(40.0, 30.0, 12.0, Vector(0, 0, low))
+        features.append(api.make_solid_feature(doc, box, layer_height=4.0, bead_spacing=6.0, chord_error=0.1))
+    sound = api.result(api.make_toolpath(doc, features))
+    count, worst, allowed = sound.on_part
+    assert count == sound.point_count and worst <= allowed
+    lay, numbers = in_sequence.layers_of, iter((0, 1))
+    way = np.array([0, 9.0, 0])
+    monkeypatch.setattr(in_sequence, "layers_of", lambda given: moved(lay(given), next(numbers) * way))
+    toolpath = api.make_toolpath(doc, features)
+    (issue,) = [one for one in api.issues(toolpath) if one.code == "OFF_PART"]
+    assert issue.level == "error" and issue.layer >= 3 and None not in (issue.bead, issue.point)
+    assert api.result(toolpath).on_part[1] == pytest.approx(9.0, rel=0.35)
 
 
 def test_triangles_of_a_large_part_are_larger_and_no_place_is_told_farther_than_it_is():
