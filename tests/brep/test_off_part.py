@@ -144,7 +144,7 @@ def clad(doc):
 
 @pytest.mark.parametrize("make, way", [
     (revolved, [1.0, 0, 0]), (on_hub, [0, 0, 9.0]), (wall, [0, 1.0, 0]), (in_planes, [9.0, 0, 0]),
-    (clad, [0, 1.0, 0]),
+    (clad, [0, 1.0, 0]), (revolved, [0.3, 0, 0]), (wall, [0, 0.3, 0]),
 ])
 def test_deposit_beside_the_part_is_refused(doc, monkeypatch, make, way):
     feature = make(doc)

@@ -79,10 +79,11 @@ def test_the_free_end_of_a_bead_is_told_by_its_length():
     assert length == pytest.approx(30.0 - 0.5 * WIDTH, abs=0.2 * WIDTH)
     assert f"{length:.4g} mm of beads lie over nothing" in issue.message
     assert told(toolpath([rod(0, 94)], [rod(0, 100, 0.0, HEIGHT)]))[0] == 0.0
+    assert told(toolpath([rod(0, 89)], [rod(0, 100, 0.0, HEIGHT)]))[0] == pytest.approx(11.0 - 0.5 * WIDTH, abs=0.2 * WIDTH)
 
 
 def test_gaps_no_longer_than_a_width_are_bridged():
-    for gap, bridged in ((1.5 * WIDTH, True), (4.0 * WIDTH, False)):
+    for gap, bridged in ((1.5 * WIDTH, True), (2.5 * WIDTH, False), (4.0 * WIDTH, False)):
         below = [rod(0, 50 - 0.5 * gap), rod(50 + 0.5 * gap, 100)]
         length, _ = told(toolpath(below, [rod(0, 100, 0.0, HEIGHT)]))
         assert length == pytest.approx(0.0 if bridged else gap - WIDTH, abs=0.2 * WIDTH)
