@@ -80,15 +80,26 @@ def _once_more(differences: Bits) -> Bits:
 
 def _unpack(piece: bytes, bits: Bits) -> None:
     """Fill the bits of the numbers of a piece."""
-    planes = np.frombuffer(zlib.decompress(memoryview(piece)[1:]), dtype=np.uint8)
+    planes = np.frombuffer(zlib.decompress(memoryview(piece)[1:], bufsize=8 * len(bits)), dtype=np.uint8)
     if len(planes) != 8 * len(bits) or piece[0] > HIGHEST:
         raise ValueError("it is damaged")
-    differences = np.ascontiguousarray(planes.reshape(8, -1).T).view("<u8").ravel().astype(np.uint64, copy=False)
-    sign = -(differences & _ONE).view(np.int64)
-    np.bitwise_xor((differences >> _ONE).view(np.int64), sign, out=bits)
+    planes = planes.reshape(8, -1)
+    folded = np.zeros(len(bits), dtype="<u8")
+    places, used = folded.view(np.uint8).reshape(-1, 8), 8
+    while used and not planes[used - 1].any():  # of small differences the higher bytes are 0
+        used -= 1
+    for k in range(used):
+        places[:, k] = planes[k]
+    differences = folded.astype(np.uint64, copy=False)
+    sums = np.empty((len(bits), 2), dtype=np.int64)[:, 0]  # numpy sums up what stands apart in a fourth of the time
+    np.negative((differences & _ONE).view(np.int64), out=sums)
+    differences >>= _ONE
+    sums ^= differences.view(np.int64)
     for _ in range(piece[0]):
-        np.cumsum(bits, out=bits)
-    bits[:] = _turned(bits)
+        np.add.accumulate(sums, out=sums)
+    sign = np.right_shift(sums, 63, out=differences.view(np.int64))
+    sign &= _BUT_SIGN
+    np.bitwise_xor(sums, sign, out=bits)
 
 
 def _turned(bits: Bits) -> Bits:

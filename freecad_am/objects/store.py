@@ -20,7 +20,7 @@ import lzma
 import math
 import zlib
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -249,20 +249,22 @@ class _Reader:
         if first < 0 or rows < 0 or first + rows > self.tables[number][1]:
             raise ValueError("it is cut short")
         if not all_of_it:
-            return self.rows(number, first, rows)
+            return self.rows(number, first, rows, "F")
         if number not in self.whole:
-            self.whole[number] = self.rows(number, 0, self.tables[number][1])
+            self.whole[number] = self.rows(number, 0, self.tables[number][1], "C")
         return self.whole[number][first : first + rows]
 
-    def rows(self, number: int, first: int, rows: int) -> NDArray[Any]:
-        """Rows of a table, and nothing else of it."""
+    def rows(self, number: int, first: int, rows: int, order: Literal["C", "F"]) -> NDArray[Any]:
+        """Rows of a table, and nothing else of it. What views draw, and compute with nothing, stands column by column, as it
+        is kept: that is filled sooner."""
         dtype, count, *shape = self.tables[number]
         if rows * math.prod(shape) > self.numbers.size:
             raise ValueError("it is cut short")
-        table = np.empty((rows, *shape), dtype=_DTYPES[dtype])
-        columns = table.reshape(rows, int(np.prod(shape)))
+        columns = np.empty((rows, math.prod(shape)), dtype=_DTYPES[dtype], order=order)
         for k in range(columns.shape[1]):
             self.numbers.fill(self.starts[number] + k * count + first, columns[:, k])
+        columns.flags.writeable = False
+        table = columns.reshape(rows, *shape)
         table.flags.writeable = False
         return table
 

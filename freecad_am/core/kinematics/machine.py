@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -173,10 +174,11 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
 
 def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
     """The file of a machine of this id; InputError UNKNOWN_MACHINE when there is none."""
-    files = _files(folders)
-    if name not in files:
-        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{name!r} is not known; {_near(name, sorted(files))}")
-    return files[name]
+    for folder in (*folders, BUILT_IN):
+        path = Path(folder).expanduser() / f"{name}.json"
+        if path.stem == name and os.path.exists(path):  # a name may be too long for a file
+            return path
+    raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{name!r} is not known; {_near(name, sorted(_files(folders)))}")
 
 
 def parse(text: str, path: Path) -> Machine:

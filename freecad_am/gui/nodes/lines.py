@@ -149,11 +149,10 @@ def _strip(ring: Any, start: Any, end: Any, normal: Any) -> Any:
     normals = np.column_stack([normal[0] * ring, np.full(len(ring), normal[1])])
     node, coordinates, mesh = coin.SoSeparator(), coin.SoCoordinate3(), coin.SoQuadMesh()
     directions, binding = coin.SoNormal(), coin.SoNormalBinding()
-    binding.value = coin.SoNormalBinding.PER_VERTEX
+    binding.set("value PER_VERTEX")  # as a text, which Coin reads sooner than pivy finds a field
     fill(coordinates.point, points.reshape(-1, 3).astype(np.float32))
     fill(directions.vector, np.concatenate([normals, normals]).astype(np.float32))
-    mesh.verticesPerRow = len(ring)
-    mesh.verticesPerColumn = 2
+    mesh.set(f"verticesPerRow {len(ring)} verticesPerColumn 2")
     for child in (coordinates, directions, binding, mesh):
         node.addChild(child)
     return node

@@ -93,7 +93,7 @@ class JointPathView(PathView):
     def draw(self, obj: Any, value: Seen) -> None:
         self.seen, motion = value, value.course
         self.motion, self.at = motion, np.flatnonzero(motion.deposit)  # the row of the motion of each point
-        self.reachable = np.isfinite(motion.joints).all(axis=1)
+        self.reachable = np.logical_and.reduce([np.isfinite(column) for column in motion.joints.T])
         self.rapid = np.flatnonzero(~motion.deposit[1:]) + 1
         self.find_wrong(obj)
         super().draw(obj, value)
