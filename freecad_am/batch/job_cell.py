@@ -10,7 +10,7 @@ from typing import Any
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import calibration, proposed_cell, urdf_reference
-from freecad_am.core.parameters import external
+from freecad_am.core.parameters import external, obstacles
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.objects import user_machines
@@ -48,6 +48,9 @@ def _of_section(section: Any, path: str) -> CellParameters:
     external_axes = section.pop("external", None)
     if external_axes not in (None, []):
         section["external"] = _external(external_axes, path)
+    around = section.pop("obstacles", None)
+    if around not in (None, []):
+        section["obstacles"] = _obstacles(around, path)
     if isinstance(section.get("world_up"), list):
         numbers = [quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]]
         section["world_up"] = " ".join(f"{number:.15g}" for number in numbers)
@@ -116,13 +119,47 @@ def _external(value: Any, path: str) -> str:
 def _one_external(value: Any, key: str, path: str) -> external.External:
     section = fields.mapping(value, key)
     fields.known_keys(section, ("machine", "pose", "carries"), key)
-    pose = section.get("pose")
-    if not isinstance(pose, list) or len(pose) != 6:
-        raise InputError("BAD_VALUE", f"{key}.pose", f"{quantity.shown(pose)} is not a pose; give [x, y, z, RX, RY, RZ]")
-    kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
-    numbers = [quantity.read(number, kind, f"{key}.pose") for number, kind in zip(pose, kinds, strict=True)]
-    x, y, z, *angles = numbers
+    pose = _pose(section.get("pose"), f"{key}.pose")
     machine = fields.text(section.get("machine"), f"{key}.machine").strip()
     if os.sep in machine or machine.lower().endswith(".json"):
         machine = absolute(machine, path)
-    return external.External(machine, (x, y, z, *angles), section.get("carries") or external.PART)
+    return external.External(machine, pose, section.get("carries") or external.PART)
+
+
+def _pose(value: Any, key: str) -> external.Pose:
+    """Six quantities of a job file."""
+    if not isinstance(value, list) or len(value) != 6:
+        raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is not a pose; give [x, y, z, RX, RY, RZ]")
+    kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
+    x, y, z, a, b, c = (quantity.read(number, kind, key) for number, kind in zip(value, kinds, strict=True))
+    return x, y, z, a, b, c
+
+
+def _obstacles(value: Any, path: str) -> str:
+    """What `cell.obstacles` says as the text that a cell keeps, paths of files made absolute."""
+    if not isinstance(value, list):
+        raise InputError("BAD_VALUE", obstacles.WHERE, "give a list such as - {file: table.step, pose: [0, 0, "
+                         "-200, 0, 0, 0]}")
+    found = [_obstacle(one, f"{obstacles.WHERE}[{k}]", k + 1, path) for k, one in enumerate(value)]
+    return f"{obstacles.MORE} ".join(map(str, found))
+
+
+def _obstacle(value: Any, key: str, number: int, path: str) -> obstacles.Obstacle:
+    section = fields.mapping(value, key)
+    fields.known_keys(section, ("name", "file", "box", "pose"), key)
+    file, size = "", None
+    if section.get("file") is not None:
+        file = absolute(fields.text(section["file"], f"{key}.file").strip(), path)
+        if not os.path.isfile(file):
+            raise InputError("NO_FILE", f"{key}.file", f"there is no file {file}; paths are relative to the job file")
+    edges = section.get("box")
+    if edges is not None:
+        if not isinstance(edges, list) or len(edges) != 3:
+            raise InputError("BAD_VALUE", f"{key}.box", f"{quantity.shown(edges)} is no box; give its edges along x, y "
+                             "and z such as [1200, 800, 30]")
+        width, depth, height = (quantity.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
+        size = (width, depth, height)
+    name = section.get("name")
+    called = obstacles.usual_name(file, number) if name is None else fields.text(name, f"{key}.name").strip()
+    pose = _pose(section["pose"], f"{key}.pose") if section.get("pose") is not None else (0.0,) * 6
+    return obstacles.Obstacle(called, pose, file, size)

@@ -10,11 +10,11 @@ import os
 from typing import Any
 
 from ..core.kinematics import calibration, urdf_reference
-from ..core.parameters import external
+from ..core.parameters import external, obstacles
 from ..core.parameters import field as f
 from ..core.parameters.cell import CellParameters
 
-SHOWN_APART = ("machine", "nozzle", "external", "world_up")
+SHOWN_APART = ("machine", "nozzle", "external", "world_up", "obstacles")
 PROPOSED = ("deposition_point", "branch")  # where a job file leaves them out
 
 
@@ -43,6 +43,12 @@ def text(cell: CellParameters, folder: str) -> str:
             f"- {{machine: {_machine(one.machine, folder)}, pose: {_shown(one.pose, f.POSE)}, carries: {one.carries}}}"
             for one in beside
         ]
+    around = obstacles.obstacles(cell.obstacles)
+    lines += ["obstacles:"] if around else []
+    for body in around:
+        what = f"file: {_file(body.file, folder)}" if body.size is None else f"box: {_shown(body.size, f.LENGTH)}"
+        name = json.dumps(body.name, ensure_ascii=False)
+        lines.append(f"- {{name: {name}, {what}, pose: {_shown(body.pose, f.POSE)}}}")
     if cell.world_up != usual.world_up:
         lines.append(f"world_up: {_shown(cell.upward(), f.NUMBER)}")
     return "\n".join(lines) + "\n"

@@ -12,7 +12,7 @@ import numpy as np
 from ..core.kinematics import cell as cells
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.external import externals
-from . import user_machines
+from . import cell_obstacles, user_machines
 from .stage import Outcome, Section, Stage, Work
 
 
@@ -28,12 +28,14 @@ class Cell(Stage):
 
         def work() -> Outcome:
             resolved = cells.resolve(parameters, np.eye(4), folders=folders)
+            cell_obstacles.bodies_of(parameters)  # whether they can be read
             return Outcome(parameters, figures=(("MachineTitle", resolved.machine.title),))
 
         return work
 
     def further_inputs(self, obj: Any) -> list[str]:
         named = [obj.Machine, *(one.machine for one in externals(obj.External))]
-        return [
+        files = [
             hashlib.sha256(Path(path).read_bytes()).hexdigest() for name in named for path in user_machines.files_of(name)
         ]
+        return [*files, *cell_obstacles.hashes_of(obj.Obstacles)]

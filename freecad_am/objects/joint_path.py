@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.issues import AmError, InputError, Issue
+from ..core.issues import NOTE, AmError, InputError, Issue
 from ..core.kinematics import cell as cells
 from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
@@ -25,7 +25,7 @@ from ..core.process import bead_table, predicted
 from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
-from . import progress, user_machines
+from . import cell_obstacles, progress, user_machines
 from .links_clear import arm_issues, rods_of
 from .stage import Link, Outcome, Section, Stage, Work, stage_of
 from .staleness import UP_TO_DATE
@@ -119,7 +119,7 @@ class JointPath(Stage):
 
         def work() -> Outcome:
             toolpath, process = job.toolpath(), job.process
-            cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
+            cell = cell_obstacles.resolved(job.settings, toolpath, job.folders)
             rods = () if cell.arm_clearance is None else rods_of(cell)
             joint_path = plan_joints(
                 toolpath, cell, job.parameters, lambda fraction, text: progress.report(JOINTS * fraction, text), rods
@@ -129,10 +129,11 @@ class JointPath(Stage):
                 joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height, rods
             )
             near = () if not rods else arm_issues(motion, cell, toolpath, process, (*joint_path.issues, *rapid_issues))
-            issues = (*joint_path.issues, *rapid_issues, *near, *_heights_as_run(joint_path, toolpath, process))
+            issues = (*joint_path.issues, *rapid_issues, *near, *_not_kept(cell))
+            issues = (*issues, *_heights_as_run(joint_path, toolpath, process))
             asked = Tried(
                 lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,
-                rods=rods,
+                rods=rods, obstacles=cell.obstacles,
             )
             _tell_remedies(cell, toolpath, issues)
             issues = (*remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)), *issues)
@@ -153,6 +154,15 @@ def _tell_remedies(cell: cells.Cell, toolpath: Toolpath, issues: Sequence[Issue]
 
     for issue in size.of_remedies(most_points(toolpath, issues)):
         progress.tell(issue)
+
+
+def _not_kept(cell: cells.Cell) -> list[Issue]:
+    """A note where there are obstacles that planning was not asked to keep links clear of."""
+    if not cell.obstacles or cell.arm_clearance is not None or cell.machine.is_table:
+        return []
+    names = ", ".join(one.name for one in cell.obstacles)
+    return [Issue(NOTE, "OBSTACLES_NOT_KEPT", f"{names}: looked at for the nozzle on rapids, and in simulation and "
+                  "preflight; give cell.arm_clearance so that links, part and nozzle are kept clear of it while planning")]
 
 
 def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:

@@ -53,7 +53,6 @@ def arm_issues(
         if place not in done:
             done.add(place)
             what = touches.names[touches.what[row]]
-            found.append(arm_kept.clearance_issue(
-                cell, int(touches.link[row]), what, *place, on_way=not motion.deposit[row]
-            ))
+            link = touches.links[touches.link[row]]
+            found.append(arm_kept.clearance_issue(cell, link, what, *place, on_way=not motion.deposit[row]))
     return tuple(found)

@@ -9,7 +9,6 @@ from dataclasses import replace
 from typing import Any
 
 from ..core.issues import Issue, has_errors
-from ..core.kinematics import cell as cells
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
@@ -25,6 +24,7 @@ from ..posts import catalogue
 from ..verify import Verification
 from . import user_machines
 from .as_run import as_run
+from .cell_obstacles import resolved
 from .findings import issues_of
 from .joint_path import Planned
 from .link_meshes import meshes_of
@@ -104,7 +104,7 @@ def of_motion(
     """The preflight of a joint path, or of the program that is written of it with `settings`; known: of its toolpath. read:
     None where that was not read back."""
     toolpath = known.toolpath
-    cell = cells.resolve(looks, toolpath.frame, toolpath.family, folders)
+    cell = resolved(looks, toolpath, folders)
     settings = None if settings is None or settings.post == "none" else settings
     shapes = meshes_of(cell.machine)
     run = as_run(planned, cell, toolpath.chord_error, settings, known.issues)

@@ -640,6 +640,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the file&apos;s origin, or of the middle of the box, in the maker&apos;s base frame.</source>
+        <translation>Robots : ce qui se trouve dans la cellule et que la buse, la pièce et les segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du milieu de la boîte, dans le repère de base du constructeur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. In the maker&apos;s base frame.</source>
         <translation>Robots : là où sort le dépôt, son Z pointant vers l&apos;outil ; avec l&apos;outil sur le robot, le plateau fixe. Dans le repère de base du constructeur.</translation>
     </message>
@@ -3462,6 +3467,11 @@
         <translation>Objectif</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Obstacles</source>
+        <translation>Obstacles</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Of paths, from the least to the greatest</source>
         <translation>Des trajectoires, de la plus petite à la plus grande valeur</translation>
@@ -4025,6 +4035,11 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: shoulder, elbow and wrist, or auto to search all eight.</source>
         <translation>Robots : épaule, coude et poignet, ou auto pour chercher parmi les huit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the file&apos;s origin, or of the middle of the box, in the maker&apos;s base frame.</source>
+        <translation>Robots : ce qui se trouve dans la cellule et que la buse, la pièce et les segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du milieu de la boîte, dans le repère de base du constructeur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -7852,6 +7867,11 @@
         <translation>il repose sur un point et n&apos;a pas d&apos;extrémité ouverte où commencer ; donnez un substrat, ou tournez-le pour qu&apos;une extrémité repose sur le plateau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/cell_obstacles.py"/>
+        <source>it touches the nozzle at the first point of the job already, however the arm stands; its pose is that in the maker&apos;s base frame, and files are in mm: move it, or the deposition point</source>
+        <translation>il touche déjà la buse au premier point du travail, quelle que soit la posture du bras ; sa pose est donnée dans le repère de base du constructeur, et les fichiers sont en mm : déplacez-le, ou le point de dépôt</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/layers/guide_edges.py"/>
         <source>it turns back by {0} deg at {1}: layers would go through what was deposited; choose edges that lead on</source>
         <translation>il fait demi-tour de {0} deg en {1} : les couches traverseraient ce qui est déposé ; choisissez des arêtes qui mènent plus loin</translation>
@@ -9882,6 +9902,21 @@
         <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <source>the nozzle touches {0} on the rapid way to the bead; move it in cell.obstacles, the part or cell.deposition_point</source>
+        <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <source>the nozzle touches {0}; move it in cell.obstacles, the part or cell.deposition_point</source>
+        <translation>la buse touche {0} ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <source>the nozzle touches {what}</source>
+        <translation>la buse touche {what}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka.py"/>
         <source>the number of its MACHINE_DEF, 2 to 16</source>
         <translation>le numéro de son MACHINE_DEF, de 2 à 16</translation>
@@ -9890,6 +9925,21 @@
         <location filename="../../freecad_am/core/inspection/registration.py"/>
         <source>the pairs of points lie in one line, about which the part can turn; choose others</source>
         <translation>les paires de points sont sur une ligne, autour de laquelle la pièce peut tourner ; choisissez-en d&apos;autres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <source>the part comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <source>the part touches {what}</source>
+        <translation>la pièce touche {what}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/verify.py"/>
@@ -10937,6 +10987,11 @@
         <translation>écrivez par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>write such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0</source>
+        <translation>écrivez par exemple : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
         <source>zigzag</source>
         <translation>zigzag</translation>
@@ -10995,6 +11050,11 @@
         <location filename="../../freecad_am/brep/wall_checks.py"/>
         <source>{0} and {1} meet at an angle of {2} deg at {3}; a wall&apos;s faces must run on smoothly, within {4} deg: round the edge, or deposit the faces one after the other</source>
         <translation>{0} et {1} se rencontrent sous un angle de {2} deg en {3} ; les faces d&apos;une paroi doivent se prolonger sans cassure, à {4} deg près : arrondissez l&apos;arête, ou déposez les faces l&apos;une après l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0} are not {1} numbers; {2}</source>
+        <translation>{0} ne sont pas {1} nombres ; {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/front_tree.py"/>
@@ -11397,6 +11457,11 @@
         <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0} is neither a file nor a box, or both; give one of them</source>
+        <translation>{0} n&apos;est ni un fichier ni une boîte, ou les deux ; donnez l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>{0} is neither a length nor six numbers</source>
         <translation>{0} n&apos;est ni une longueur ni six nombres</translation>
@@ -11460,6 +11525,16 @@
         <location filename="../../freecad_am/posts/staubli_read.py"/>
         <source>{0} is no library of the project</source>
         <translation>{0} n&apos;est pas une bibliothèque du projet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0} is no name; use words without = and ;</source>
+        <translation>{0} n&apos;est pas un nom ; utilisez des mots sans = ni ;</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0} is no obstacle; {1}</source>
+        <translation>{0} n&apos;est pas un obstacle ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -12017,6 +12092,11 @@
         <translation>{0} des points laissés de côté ; attendu : 0 ou plus et moins de 0.5</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0} of them are called {1}; give each its own name</source>
+        <translation>{0} d&apos;entre eux s&apos;appellent {1} ; donnez à chacun son propre nom</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/table.py"/>
         <source>{0} of {1} directions cannot be turned to the torch by this machine; tilt less, or mount the part otherwise</source>
         <translation>{0} de {1} directions ne peuvent pas être tournées vers la torche par cette machine ; inclinez moins, ou montez la pièce autrement</translation>
@@ -12392,6 +12472,11 @@
         <translation>{0} : donnez source, et au besoin {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>{0}: looked at for the nozzle on rapids, and in simulation and preflight; give cell.arm_clearance so that links, part and nozzle are kept clear of it while planning</source>
+        <translation>{0} : vérifié pour la buse pendant les déplacements rapides, et dans la simulation et le contrôle préalable ; donnez cell.arm_clearance pour que les segments, la pièce et la buse l&apos;évitent dès la planification</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
         <source>{0}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool to choose; leave out what is meant for robots</source>
         <translation>{0} : sans effet sur une machine à deux axes rotatifs, qui ne laisse pas de rotation autour de l&apos;outil à choisir ; retirez ce qui est fait pour les robots</translation>
@@ -12410,6 +12495,16 @@
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>{0}: {1} edges, the first at {2}; {3}</source>
         <translation>{0} : {1} arêtes, la première en {2} ; {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0}: {1} is not a pose; give six numbers x y z RX RY RZ</source>
+        <translation>{0} : {1} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0}: {1} mm is no box; give three lengths of more than 0 mm, at most {2} mm</source>
+        <translation>{0} : {1} mm n&apos;est pas une boîte ; donnez trois longueurs de plus de 0 mm, au plus {2} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution.py"/>

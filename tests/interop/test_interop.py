@@ -245,10 +245,13 @@ def test_a_saved_cell_is_the_cell_again_where_jobs_name_it(tmp_path):
     """Written from the document, read by the commands; files beside it are named from there, so that the folder can move."""
     doc = App.newDocument("SavedCell")
     (tmp_path / "robot 1.yaml").write_text(calibrated_robot, encoding="utf-8")
+    Part.makeBox(1200, 800, 30).exportStep(str(tmp_path / "a table.step"))
     given = CellParameters(
         machine=f"ur-ur10e calibration={tmp_path / 'robot 1.yaml'}", setup="tool-on-robot", branch="auto",
         platform=(1.0, 2.0, 3.0, 0.1, -0.2, 0.3), platform_diameter=250.0, mount="part", world_up="0 0.5 1",
         arm_clearance=12.5,
+        obstacles=f"table = {tmp_path / 'a table.step'} at 300 -400 -230 0 0 15; "
+        "le post = box 60 50.5 400 at 900 -200 0 0 0 0",
         nozzle=NozzleParameters(half_angle=0.3, tool=(1.5, 0.0, 210.0, 0.0, 0.4, 0.0)),
         external="motoman-motopos-d500 at 900 10.5 -200 0 0 30 carries part",
     )

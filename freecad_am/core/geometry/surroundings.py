@@ -29,6 +29,17 @@ class Body:
         corners: Array = self.vertices[self.triangles]
         return corners
 
+    def moved(self, pose: Array) -> Body:
+        """The body moved by a pose (4, 4), mm."""
+        return Body(self.name, self.vertices @ pose[:3, :3].T + pose[:3, 3], self.triangles)
+
+
+def box(size: tuple[float, float, float], pose: Array, name: str) -> Body:
+    """A box of `size` mm about the origin of a pose (4, 4), its edges along the pose's axes."""
+    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
+    faces = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+    return Body(name, corners, np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])).moved(pose)
+
 
 def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
     """A flat disc in the plane z = 0 of the frame (4, 4), as a polygon about its circle."""

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether the links of a robot meet what is in its cell: nozzle, platform, bodies, and what has been deposited before.
+"""Whether the links of a robot meet what is in its cell: nozzle, platform, bodies, obstacles, and what has been deposited
+before; and whether nozzle or part meet the obstacles.
 
 Links are rods that hold what is drawn of them; bodies are their triangles and, where closed, their inside; beads are as
 wide and high as they are. So what is not told to touch does not touch, as far as links are what is drawn. What the flange
 carries is not looked at against the last two links, which hold it and can hardly move against it, nor what stands still
-against the base. Links against each other, the floor, cables and what holds the nozzle are not looked at at all.
+against the base. A part that moves is all there from the beginning: rods about its bodies and beads. The nozzle is looked
+at as it is against bodies, without clearance: it deposits next to them. Links against each other, the floor, cables and
+what holds the nozzle are not looked at at all.
 """
 
 from __future__ import annotations
@@ -17,11 +20,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..collision.bodies import of_bodies
 from ..collision.frustum import Frustum
+from ..collision.nozzle import depositing
 from ..collision.obstacles import Obstacles
 from ..collision.scene import Scene
 from ..collision.tolerances import ABOUT_FACES
 from ..geometry import frames
-from ..geometry.rods import Rod
+from ..geometry.rods import Rod, about, row
 from ..geometry.surroundings import Body, disc
 from .cell import PART_ON_ROBOT, Cell
 
@@ -29,16 +33,18 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-NOZZLE, PLATFORM, DEPOSIT = "nozzle", "platform", "deposit"
+NOZZLE, PLATFORM, DEPOSIT, PART = "nozzle", "platform", "deposit", "part"
+WORLD = "world"
 NONE = -1
 PIECE = 4096  # joint vectors done together
 SIDES = 24  # of a nozzle
+SLICES = 8  # rods about a deposit that moves
 
 
 @dataclass(frozen=True)
 class Touches:
     """With k joint vectors. what: (k,) number in `ArmContact.names` of the first of those that a link touches; link: (k,)
-    number of the link nearest to the base, 0, that touches it; NONE in both where nothing touches."""
+    number in `ArmContact.links` of the link nearest to the base, 0, that touches it; NONE in both where nothing touches."""
 
     link: Index
     what: Index
@@ -51,13 +57,25 @@ class Touches:
 
 @dataclass(frozen=True)
 class _Group:
-    """What links (numbers) are looked at against, within a ball, seen from the part or from the nozzle."""
+    """What links (numbers) are looked at against, within a ball, as it is seen from the part, the nozzle or the world."""
 
     scene: Scene
-    links: range
+    links: Sequence[int]
     centre: Array
     radius: float
-    by_nozzle: bool = False
+    seen_from: str = PART
+
+
+@dataclass(frozen=True)
+class _Solid:
+    """A solid of revolution that a link is, or a piece of it: tip and unit axis (3,) in the frame of the link, and the ball
+    about it."""
+
+    solid: Frustum
+    tip: Array
+    axis: Array
+    centre: Array
+    radius: float
 
 
 @dataclass(frozen=True)
@@ -65,7 +83,7 @@ class ArmContact:
     """A robot in its cell. rods: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
     deposit: in part coordinates. clearance: mm, links that are nearer touch.
 
-    names: what can be touched, as messages call it.
+    names: what can be touched, links: what touches it, as messages call them: base, axes, then part and nozzle.
     """
 
     cell: Cell
@@ -74,6 +92,8 @@ class ArmContact:
     deposit: Obstacles | None = None
     clearance: float = 0.0
     names: tuple[str, ...] = field(init=False)
+    links: tuple[str, ...] = field(init=False)
+    _solids: tuple[tuple[_Solid, ...], ...] = field(init=False, repr=False)
     _groups: tuple[_Group, ...] = field(init=False, repr=False)
     _balls: tuple[tuple[Array, float], ...] = field(init=False, repr=False)
 
@@ -82,17 +102,24 @@ class ArmContact:
         if self.cell.platform_diameter > 0.0:
             around.append(disc(self.cell.platform_diameter, self.cell.mount, PLATFORM))
         part, holder = self._links(self._carries_part), self._links(not self._carries_part)
-        groups = [_of_body(_nozzle(self.cell), holder, by_nozzle=True), *(_of_body(body, part) for body in around)]
+        groups = [_of_body(_nozzle(self.cell), holder, NOZZLE), *(_of_body(body, part) for body in around)]
         names = [NOZZLE, *(body.name for body in around)]
+        more = ABOUT_FACES + self.clearance
+        solids = [[_of_rod(rod, more) for rod in link] for link in self.rods]
+        solids += [[_of_rod(rod, more) for rod in self._part_rods(around)], [_of_nozzle(self.cell)]]
         if self.deposit is not None:
             names.append(DEPOSIT)
             points = self.deposit.corners.reshape(-1, 3)
             centre, radius = _ball(points)
-            about = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
-            groups.append(_Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + about))
+            wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
+            groups.append(_Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide))
+        groups += [_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
+        names += [body.name for body in self.cell.obstacles]
         object.__setattr__(self, "names", tuple(names))
+        object.__setattr__(self, "links", ("base", *self.cell.robot.axes, PART, NOZZLE))
         object.__setattr__(self, "_groups", tuple(groups))
-        object.__setattr__(self, "_balls", tuple(_about(link) for link in self.rods))
+        object.__setattr__(self, "_solids", tuple(map(tuple, solids)))
+        object.__setattr__(self, "_balls", tuple(_about(link) for link in solids))
 
     @property
     def _carries_part(self) -> bool:
@@ -102,6 +129,24 @@ class ArmContact:
         """The links that are looked at against what is carried, or what stands still."""
         axes = self.cell.robot.chain.axes
         return range(axes - 1) if carried else range(1, axes + 1)
+
+    @property
+    def _movers(self) -> list[int]:
+        """What moves in the world: links, with a track the base too, and part or nozzle."""
+        axes, cell = self.cell.robot.chain.axes, self.cell
+        on_track = cell.external is not None and cell.external.slides is not None
+        found = list(range(0 if on_track else 1, axes + 1))
+        return [*found, *([axes + 1] if cell.part_moves else []), *([] if cell.torch_stands else [axes + 2])]
+
+    def _part_rods(self, around: Sequence[Body]) -> list[Rod]:
+        """Rods that hold the part with what it stands on, where it may meet obstacles."""
+        if not self.cell.obstacles or not self.cell.part_moves:
+            return []
+        found = [rod for body in around for rod in row(body.vertices, body.triangles)]
+        if self.deposit is not None:
+            wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
+            found += [Rod(rod.start, rod.end, rod.radius + wide) for rod in _slices(self.deposit.corners)]
+        return found
 
     def touches(self, joints: ArrayLike, moment: Index | None = None) -> Touches:
         """What the links meet with joints (k, axes); NaN meets nothing. moment: (k,) how many points of the deposit are
@@ -122,39 +167,61 @@ class ArmContact:
         still = np.broadcast_to(self.cell.station, carried.shape)
         platform, nozzle = (carried, still) if self._carries_part else (still, carried @ _TURNED)
         part = platform @ frames.inverse(self.cell.mount)
+        seen_from = {PART: part, NOZZLE: nozzle, WORLD: self.cell.world(joints) if self.cell.obstacles else part}
+        links = np.concatenate([links, part[:, None], nozzle[:, None]], axis=1)
         link, what = np.full(len(joints), NONE, dtype=np.int64), np.full(len(joints), NONE, dtype=np.int64)
         for place, group in enumerate(self._groups):
-            frame = nozzle if group.by_nozzle else part
+            frame = seen_from[group.seen_from]
             centre = frame[:, :3, :3] @ group.centre + frame[:, :3, 3]
             for number in group.links:
                 middle, size = self._balls[number]
                 away = links[:, number, :3, :3] @ middle + links[:, number, :3, 3] - centre
-                within = size + group.radius + self.clearance + 2.0 * ABOUT_FACES
+                within = size + group.radius + ABOUT_FACES
                 rows = np.flatnonzero((link == NONE) & (np.einsum("ij,ij->i", away, away) < within**2))
                 if len(rows):
                     seen = frames.inverse(frame[rows]) @ links[rows, number]
-                    met = rows[_meets(group, self.rods[number], seen, moment[rows], self.clearance)]
+                    met = rows[_meets(group, self._solids[number], seen, moment[rows])]
                     link[met], what[met] = number, place
         return link, what
 
 
-def _meets(group: _Group, rods: Sequence[Rod], seen: Array, moment: Index, clearance: float) -> Mask:
-    """(k,) whether rods of a link, whose frame is seen as (k, 4, 4), meet a group, or come nearer."""
+def _meets(group: _Group, solids: Sequence[_Solid], seen: Array, moment: Index) -> Mask:
+    """(k,) whether solids of a link, whose frame is seen as (k, 4, 4), meet a group."""
     met = np.zeros(len(seen), dtype=bool)
-    more = ABOUT_FACES + clearance
-    for rod in rods:
+    for one in solids:
         left = np.flatnonzero(~met)
         turn = seen[left, :3, :3]
-        start = turn @ rod.start + seen[left, :3, 3]
-        axis = turn @ ((rod.end - rod.start) / rod.length)
-        # only rods that come near the ball are looked at closely
-        along = np.clip(np.einsum("ij,ij->i", group.centre - start, axis), 0.0, rod.length)
-        off = start + along[:, None] * axis - group.centre
-        within = group.radius + rod.radius + ABOUT_FACES + more
+        tip = turn @ one.tip + seen[left, :3, 3]
+        axis = turn @ one.axis
+        # only those that come near the ball are looked at closely
+        low, high = float(np.min(one.solid.low)), one.solid.high
+        along = np.clip(np.einsum("ij,ij->i", group.centre - tip, axis), low, high)
+        off = tip + along[:, None] * axis - group.centre
+        within = group.radius + one.solid.radius + one.solid.slope * high + ABOUT_FACES
         near = np.flatnonzero(np.einsum("ij,ij->i", off, off) < within**2)
-        solid = Frustum(rod.radius + more, 0.0, -more, rod.length + more)
-        met[left[near]] = group.scene.touched(solid, start[near], axis[near], moment[left[near]])
+        met[left[near]] = group.scene.touched(one.solid, tip[near], axis[near], moment[left[near]])
     return met
+
+
+def _of_rod(rod: Rod, more: float) -> _Solid:
+    """A rod, larger by so many mm on all sides."""
+    centre, axis = 0.5 * (rod.start + rod.end), (rod.end - rod.start) / rod.length
+    solid = Frustum(rod.radius + more, 0.0, -more, rod.length + more)
+    return _Solid(solid, rod.start, axis, centre, float(np.hypot(0.5 * rod.length + more, rod.radius + more)))
+
+
+def _of_nozzle(cell: Cell) -> _Solid:
+    """The nozzle in the frame of its tip, as it is looked at against bodies it deposits next to."""
+    nozzle = cell.nozzle
+    solid = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, 0.0).bodies
+    return _Solid(solid, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.zeros(3), solid.reach)
+
+
+def _slices(corners: Array) -> list[Rod]:
+    """Rods that hold the hulls of corners (m, c, 3), of those next to each other along the longest side of all."""
+    middle = corners.mean(axis=1)
+    order = np.argsort(middle[:, int(np.ptp(middle, axis=0).argmax())], kind="stable")
+    return [about(corners[some].reshape(-1, 3)) for some in np.array_split(order, min(SLICES, len(order)))]
 
 
 # the tip's Z points out of the nozzle that is carried, that of the deposition point into the one that stands
@@ -181,16 +248,16 @@ def _nozzle(cell: Cell) -> Body:
     return Body(NOZZLE, vertices, triangles.astype(np.int64))
 
 
-def _of_body(body: Body, links: range, by_nozzle: bool = False) -> _Group:
-    return _Group(Scene(of_bodies([body], body.vertices, 0.0)), links, *_ball(body.vertices), by_nozzle)
+def _of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> _Group:
+    return _Group(Scene(of_bodies([body], body.vertices, 0.0)), links, *_ball(body.vertices), seen_from)
 
 
-def _about(link: Sequence[Rod]) -> tuple[Array, float]:
-    """Centre and radius of a ball about the rods of a link."""
+def _about(link: Sequence[_Solid]) -> tuple[Array, float]:
+    """Centre and radius of a ball about the solids of a link."""
     if not link:
         return np.zeros(3), 0.0
-    centre, radius = _ball(np.concatenate([[rod.start, rod.end] for rod in link]))
-    return centre, radius + max(rod.radius for rod in link)
+    centre, _ = _ball(np.array([one.centre for one in link]))
+    return centre, max(float(np.linalg.norm(one.centre - centre)) + one.radius for one in link)
 
 
 def _ball(points: Array) -> tuple[Array, float]:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..geometry.columns import columns
+from ..geometry.surroundings import Body
 from ..issues import InputError
 from ..parameters.cell import CellParameters, NozzleParameters
 from ..parameters.external import externals
@@ -48,6 +49,7 @@ class Cell:
     branch: index of the branch (opw.branch_index), or None when all are to be searched.
     external: axes beside the robot; the machine then is the robot together with them, and what stands for base_link in its
     chain is the face that carries the part, or the world where only the robot is carried.
+    obstacles: what stands in the world, the maker's base frame, in its coordinates.
     """
 
     machine: Machine
@@ -61,6 +63,7 @@ class Cell:
     platform_diameter: float = 0.0
     external: ExternalAxes | None = None
     arm_clearance: float | None = None
+    obstacles: tuple[Body, ...] = ()
 
     @property
     def robot(self) -> Machine:
@@ -80,6 +83,31 @@ class Cell:
         own = self.robot.chain
         moved: Array = self.external.base(external)[..., None, :, :] @ own.links(joints[..., : own.axes])
         return moved
+
+    def world(self, joints: Array) -> Array:
+        """(n, 4, 4) the world, which is the maker's base frame, seen from where the machine's chain begins, mm, for joints
+        (n, axes)."""
+        if self.external is None:
+            return np.broadcast_to(self.machine.base, (len(joints), 4, 4))
+        values = np.array(joints[..., self.robot.chain.axes :])
+        if self.external.slides is not None:  # where its track is at zero the robot stands in the world as it does without
+            values[:, self.external.slides] = 0.0
+        found: Array = self.external.base(values) @ self.robot.base
+        return found
+
+    @property
+    def part_moves(self) -> bool:
+        """Whether the part moves in the world."""
+        turns = self.external is not None and bool(self.external.turning)
+        return self.setup != TOOL_ON_ROBOT or turns
+
+    def in_part(self) -> tuple[Body, ...]:
+        """The obstacles in part coordinates; none where the part moves in the world."""
+        if self.part_moves or not self.obstacles:
+            return ()
+        world = self.world(np.zeros((1, self.machine.chain.axes)))[0]
+        to_part = self.mount @ frames.inverse(self.station) @ world
+        return tuple(body.moved(to_part) for body in self.obstacles)
 
     def pose_frames(self, position: Array, tool: Array, external: Array | None = None) -> PoseFrames:
         """What is constant in the flange poses of n points, in base_link, while the rotation varies.

@@ -10,6 +10,8 @@ from ..issues import InputError
 from . import field as f
 from .external import NONE as NO_AXES
 from .external import externals
+from .obstacles import NONE as NO_OBSTACLES
+from .obstacles import obstacles
 
 Pose = tuple[float, float, float, float, float, float]
 
@@ -75,6 +77,11 @@ class CellParameters:
         None, f.LENGTH, "Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; "
         "left out, planning does not look at them.", low=0.0, high=1000.0, optional=True,
     )
+    obstacles: str = f.parameter(
+        NO_OBSTACLES, f.TEXT, "Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: "
+        "table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the "
+        "file's origin, or of the middle of the box, in the maker's base frame.", advanced=True,
+    )
 
     def upward(self) -> tuple[float, float, float]:
         """`world_up` as three numbers, not of unit length. InputError BAD_VALUE for what is no direction."""
@@ -82,6 +89,7 @@ class CellParameters:
 
     def __post_init__(self) -> None:
         externals(self.external)
+        obstacles(self.obstacles)
         self.upward()
         if isinstance(self.platform, (tuple, list)):
             if len(self.platform) != 6:

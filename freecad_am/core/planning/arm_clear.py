@@ -98,8 +98,8 @@ def findings(kept: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
         met = kept.contact.touches(path.joints[some], np.full(len(some), kept.moment((path.layer, path.index))))
         if met.any.any():
             first = int(np.argmax(met.link != NONE))
-            what = kept.contact.names[met.what[first]]
-            found.append(clearance_issue(kept.contact.cell, int(met.link[first]), what, path.layer, path.index))
+            link, what = kept.contact.links[met.link[first]], kept.contact.names[met.what[first]]
+            found.append(clearance_issue(kept.contact.cell, link, what, path.layer, path.index))
     return found
 
 

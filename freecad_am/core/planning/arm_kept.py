@@ -13,7 +13,7 @@ from ..collision.bead_ends import LINK_GRAIN, Beads
 from ..geometry.rods import Rod
 from ..geometry.surroundings import Body
 from ..issues import ERROR, Issue
-from ..kinematics.arm_contact import ArmContact, Touches
+from ..kinematics.arm_contact import NOZZLE, PART, ArmContact, Touches
 from ..kinematics.cell import Cell
 from ..toolpath import Bead, Toolpath
 from .points import Points
@@ -76,13 +76,16 @@ def on_moves(contact: ArmContact, start: Array, end: Array, laid: Index) -> tupl
 
 
 def clearance_issue(
-    cell: Cell, link: int, what: str, layer: int, bead: int, on_way: bool = False
+    cell: Cell, link: str, what: str, layer: int, bead: int, on_way: bool = False
 ) -> Issue:
-    """That a link comes too near to something at a bead, or on the rapid way to it."""
-    name = ("base", *cell.machine.axes)[link]
+    """That a link, as `ArmContact.links` calls it, comes too near to something at a bead, or on the rapid way to it."""
     where = " on the rapid way to the bead" if on_way else ""
+    if link == NOZZLE:
+        return Issue(ERROR, CODE, f"the nozzle touches {what}{where}; move it in cell.obstacles, the part or "
+                     "cell.deposition_point", layer, bead)
+    name = "the part" if link == PART else f"link {link}"
     return Issue(
-        ERROR, CODE, f"link {name} comes nearer than {cell.arm_clearance:g} mm to {what}, or touches it"
+        ERROR, CODE, f"{name} comes nearer than {cell.arm_clearance:g} mm to {what}, or touches it"
         f"{where}; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance",
         layer, bead,
     )

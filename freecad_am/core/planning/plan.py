@@ -143,6 +143,7 @@ def _not_used(cell: Cell, parameters: JointParameters) -> list[Issue]:
     usual = JointParameters()
     chosen = [f"joints.{name}" for name in OF_ROBOTS if getattr(parameters, name) != getattr(usual, name)]
     chosen += [] if cell.arm_clearance is None else ["cell.arm_clearance"]
+    chosen += ["cell.obstacles"] if cell.obstacles else []
     if not chosen:
         return []
     return [Issue(

@@ -217,7 +217,8 @@ class RapidWays:
         radius = 0.5 * cell.platform_diameter
         x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
         platform = [origin + radius * (a * x + b * y) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
-        points = np.vstack([*(path.bead.points for path in self.beads), platform, *(body.vertices for body in bodies)])
+        all_ = (*bodies, *cell.in_part())
+        points = np.vstack([*(path.bead.points for path in self.beads), platform, *(body.vertices for body in all_)])
         # from anywhere inside, a way of the diameter along any direction leads out of it
         furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
         base = self.lift or FIRST_LIFT
@@ -246,5 +247,5 @@ class RapidWays:
         if not touched.any.any():
             return None
         first, path = int(np.argmax(touched.any)), self.place(k)
-        return clearance_issue(
-            self.cell, int(touched.link[first]), self.arm.names[touched.what[first]], path.layer, path.index, on_way=True)
+        link, what = self.arm.links[touched.link[first]], self.arm.names[touched.what[first]]
+        return clearance_issue(self.cell, link, what, path.layer, path.index, on_way=True)

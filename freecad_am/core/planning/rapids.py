@@ -66,7 +66,7 @@ class Surroundings:
     def __init__(self, cell: Cell, deposit: Beads, bodies: Sequence[Body]) -> None:
         self.cell = cell
         platform = [disc(cell.platform_diameter, cell.mount, "the platform")] if cell.platform_diameter > 0.0 else []
-        self.bodies = (*bodies, *platform)
+        self.bodies = (*bodies, *platform, *cell.in_part())
         self.laid = deposit.solid()
         nozzle = cell.nozzle
         self._size = Size(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length)

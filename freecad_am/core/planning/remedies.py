@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.surroundings import Body
 from ..issues import ERROR, NOTE, AmError, Issue, has_errors
 from ..kinematics import cell as cells
 from ..kinematics import opw, proposed_cell
@@ -64,10 +65,16 @@ class Tried:
     told: str = field(default="")
     own_speed: tuple[bool, ...] = ()
     rods: Rods = ()
+    obstacles: tuple[Body, ...] = ()
+
+    def cell(self, toolpath: Toolpath) -> cells.Cell:
+        """The cell of a toolpath of it."""
+        found = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
+        return dataclasses.replace(found, obstacles=self.obstacles)
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
         """What is wrong with it; rapids only of a whole one."""
-        cell = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
+        cell = self.cell(toolpath)
         joints = dataclasses.replace(self.joints, compare=())
         path = plan_joints(toolpath, cell, joints, progress, self.rods)
         found = (*toolpath.issues, *path.issues)

@@ -57,7 +57,7 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
     if len(rows):
         place = row_place(motion, int(rows[0]))
         link, other = touches.link[rows[0]], touches.names[touches.what[rows[0]]]
-        met = f"{other} with {('base', *cell.machine.axes)[link]}"
+        met = f"{other} with {touches.links[link]}"
     step = number(math.degrees(touches.step))
     near = f"come nearer than {cell.arm_clearance:g} mm to" if cell.arm_clearance else "touch"
     if not true_shapes:

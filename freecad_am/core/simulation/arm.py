@@ -25,12 +25,14 @@ STEP, SLIDE, MOST = float(np.radians(1.0)), 10.0, 40_000
 @dataclass(frozen=True)
 class ArmTouches:
     """link: (n,) of the n rows of a motion the link that touches something on the segment that ends there, or at the row,
-    NONE where none does. what: (n,) number of `names`, what it touches. step: rad between two places looked at."""
+    NONE where none does: number of `links`. what: (n,) number of `names`, what it touches. step: rad between two places
+    looked at."""
 
     link: Index
     what: Index
     names: tuple[str, ...]
     step: float
+    links: tuple[str, ...]
 
 
 def laid(motion: Motion, width: float, height: float) -> Obstacles | None:
@@ -61,7 +63,7 @@ def arm_touches(motion: Motion, arm: ArmContact, most: int | None = None) -> Arm
     # and of the places of a row the first one that touches counts
     rows, first = np.unique(row[found.any], return_index=True)
     link[rows], what[rows] = found.link[found.any][first], found.what[found.any][first]
-    return ArmTouches(link, what, arm.names, step)
+    return ArmTouches(link, what, arm.names, step, arm.links)
 
 
 def places(joints: Array, most: int | None = None, sliding: Mask | None = None) -> tuple[Array, Index, float]:

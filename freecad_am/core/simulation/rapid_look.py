@@ -67,7 +67,7 @@ def looked_at(
     ends = BeadEnds(columns, deposit, size)
     platform = [disc(cell.platform_diameter, cell.mount)] if cell.platform_diameter > 0.0 else []
     reach = float(np.hypot(size.length, size.radius + size.slope * size.length))
-    around = scene([*bodies, *platform], np.concatenate(corners), reach, deposit) if len(rows) else None
+    around = scene([*bodies, *platform, *cell.in_part()], np.concatenate(corners), reach, deposit) if len(rows) else None
     laid = np.cumsum(motion.deposit)[rows]
     met = np.zeros(len(rows), dtype=bool)
     for some in _pieces(len(move)):

@@ -97,8 +97,10 @@ def bad_links(
     for coefficients in cell.limits.coefficients[close[axes:]]:
         bad[1:] |= coefficients != 0.0
     bad[1:] |= singular or not reachable
-    if touching != NONE:
-        bad[touching] = True
+    if touching != NONE:  # what is carried, part or nozzle, counts as what carries it
+        own = cell.robot.chain.axes
+        on_positioner = touching == own + 1 and not cell.torch_stands
+        bad[touching if touching <= own else -1 if on_positioner else own] = True
     return bad
 
 
@@ -129,19 +131,18 @@ def watch(
         for row, worst in _runs(kept.slowed, share)
     ]
     if arm is not None:
-        found += _touching(arm, axes)
+        found += _touching(arm)
     found += [Finding(_row_of(motion, issue), ISSUE, issue.message) for issue in issues
               if issue.level != NOTE and issue.layer is not None]
     found.sort(key=lambda finding: finding.row)
     return replace(seen, findings=tuple(found))
 
 
-def _touching(arm: ArmTouches, axes: Sequence[str]) -> list[Finding]:
+def _touching(arm: ArmTouches) -> list[Finding]:
     """A finding for every run of rows on which one link touches one thing."""
-    links = ("base", *axes)
     pair = np.where(arm.link == NONE, -1, arm.link * len(arm.names) + arm.what)
     starts = np.flatnonzero((pair != -1) & (np.diff(pair, prepend=-1) != 0))
-    return [Finding(int(row), TOUCHES, links[arm.link[row]], other=arm.names[arm.what[row]]) for row in starts]
+    return [Finding(int(row), TOUCHES, arm.links[arm.link[row]], other=arm.names[arm.what[row]]) for row in starts]
 
 
 def _runs(mask: NDArray[np.bool_], values: Array) -> list[tuple[int, int]]:

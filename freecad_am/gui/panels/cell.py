@@ -33,9 +33,9 @@ from ..widgets import suggestions
 from .preview import PreviewPanel
 
 MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
-ARM = "cell_arm_clearance"
+ARM, OBSTACLES = "cell_arm_clearance", "cell_obstacles"
 TOOL = "cell_nozzle_tool"
-_OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, ARM)
+_OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, ARM, OBSTACLES)
 
 
 class CellPanel(PreviewPanel):

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...core.issues import InputError
-from ...core.kinematics import cell as cells
 from ...core.kinematics.cell import Cell
 from ...core.motion import Motion
 from ...core.parameters.cell import CellParameters
@@ -21,6 +20,7 @@ from ...core.simulation.watch import Watch, watch
 from ...core.toolpath import Toolpath
 from ...objects import user_machines
 from ...objects.as_run import as_run
+from ...objects.cell_obstacles import resolved
 from ...objects.findings import issues_of
 from ...objects.joint_path import planned_of
 from ...objects.link_meshes import meshes_of
@@ -70,7 +70,7 @@ def prepared(obj: Any) -> Callable[[], Run]:
     names = tuple(dict.fromkeys((obj.Name, path.Name, path.Toolpath.Name, path.Cell.Name)))
     document = obj.Document.Name
     settings = obj.Proxy.parameters(obj, ProgramParameters) if stage.kind == "program" else None
-    cell = cells.resolve(looks, toolpath.frame, toolpath.family, folders)
+    cell = resolved(looks, toolpath, folders)
     shapes = meshes_of(cell.machine)
 
     def work() -> Run:

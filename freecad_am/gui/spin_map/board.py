@@ -214,4 +214,4 @@ class Board:
         found = arm.touches(joints[None], self.moment[[column]])
         if not found.any[0]:
             return None
-        return ("base", *self.source.cell.machine.axes)[found.link[0]], arm.names[found.what[0]]
+        return arm.links[found.link[0]], arm.names[found.what[0]]

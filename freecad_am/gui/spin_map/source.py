@@ -12,7 +12,6 @@ import numpy as np
 
 from ...core.collision.bead_ends import LINK_GRAIN, Beads
 from ...core.issues import InputError
-from ...core.kinematics import cell as cells
 from ...core.kinematics import link_rods, opw
 from ...core.kinematics.arm_contact import ArmContact
 from ...core.kinematics.cell import Cell
@@ -24,6 +23,7 @@ from ...core.planning.plan import REVOLUTION
 from ...core.planning.task import Task
 from ...core.toolpath import Bead, Toolpath
 from ...objects import user_machines
+from ...objects.cell_obstacles import resolved
 from ...objects.joint_path import planned_of
 from ...objects.link_meshes import meshes_of
 from ...objects.stage import stage_of
@@ -77,7 +77,7 @@ def source_of(obj: Any) -> Source:
     if stage is None or stage.kind != "joint path":
         raise InputError("NO_MAP", getattr(obj, "Label", "?"), "it is no joint path; select one")
     value, toolpath, looks = planned_of(obj, obj.Label)
-    cell = cells.resolve(looks, toolpath.frame, toolpath.family, user_machines.folders())
+    cell = resolved(looks, toolpath, user_machines.folders())
     if cell.machine.is_table or not value.joint_path.branch:
         raise InputError(
             "NO_MAP", obj.Label, "its machine has two rotary axes, which leave no rotation about the tool to choose; a map "

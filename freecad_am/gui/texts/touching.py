@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
-from ...core.kinematics.arm_contact import DEPOSIT, NOZZLE, PLATFORM
+from ...core.kinematics.arm_contact import DEPOSIT, NOZZLE, PART, PLATFORM
 from .translation import tr
 
 
 def link_touches(link: str, what: str) -> str:
-    """link: 'base', or the axis that moves it; what: as `ArmContact.names` has it, a body by its own name."""
+    """link: as `ArmContact.links` has it; what: as `ArmContact.names` has it, a body by its own name."""
     names = {NOZZLE: tr("the nozzle"), PLATFORM: tr("the platform"), DEPOSIT: tr("the deposit")}
     if link == "base":
         return tr("the base touches {what}").format(what=names.get(what, what))
+    if link == PART:
+        return tr("the part touches {what}").format(what=names.get(what, what))
+    if link == NOZZLE:
+        return tr("the nozzle touches {what}").format(what=names.get(what, what))
     return tr("the link of {axis} touches {what}").format(axis=link, what=names.get(what, what))

@@ -21,6 +21,7 @@ from freecad_am.core.simulation.rapid_look import looked_at
 from freecad_am.core.strategies import clearance_look
 
 WIDTH, HEIGHT = 3.0, 10.0
+LINKS = ("base", "q1", "q2", "q3", "q4", "q5", "q6", "part", "nozzle")
 ROW = 300  # of the deposit, of which something is changed
 
 
@@ -38,7 +39,8 @@ def sound(sliced, cell_of):
     fed = WIDTH * HEIGHT * process.travel_speed / process.wire.section
     return cell, path, Evidence(
         dataclasses.replace(toolpath, wire_feed=fed), process, (), cell, motion, np.full(n, 0.3), np.full(n, 0.1),
-        ArmTouches(np.full(n, -1), np.full(n, -1), ("platform",), 0.02), True, ReadBack(True, 1e-3, 0.01, 2e-3, 0.05, 2),
+        ArmTouches(np.full(n, -1), np.full(n, -1), ("platform",), 0.02, LINKS), True,
+        ReadBack(True, 1e-3, 0.01, 2e-3, 0.05, 2),
         ("UFRAME 1",), None, Balance("Part", 1e5, 0.0, 1e5, 0.0), clearance_look.Looked(100, 0, None),
         driven(cell, path, motion),
     )
@@ -163,7 +165,7 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
             np.arange(len(e.condition)) == 40, 0.05, e.condition)}),
         ("The arm stays clear of part, deposit, platform and nozzle", lambda e: {"arm": ArmTouches(
             np.where(np.arange(len(e.motion)) == 40, 3, -1), np.where(np.arange(len(e.motion)) == 40, 0, -1),
-            ("platform",), 0.02)}),
+            ("platform",), 0.02, LINKS)}),
         ("The text takes the tool to the planned points", lambda e: {"read": dataclasses.replace(e.read, at_points=3e-3)}),
         ("Between its points the text keeps to the planned path", lambda e: {"read": dataclasses.replace(
             e.read, between=0.06)}),

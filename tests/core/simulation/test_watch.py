@@ -14,6 +14,8 @@ from freecad_am.core.simulation.arm import ArmTouches
 from freecad_am.core.simulation.pace import pace
 from freecad_am.core.simulation.watch import bad_links, shown_margins, watch
 
+LINKS = ("base", "q1", "q2", "q3", "q4", "q5", "q6", "part", "nozzle")
+
 
 @pytest.fixture(scope="module")
 def cell():
@@ -93,7 +95,7 @@ def test_runs_of_rows_on_which_a_link_touches_one_thing_are_one_finding(calm, ce
     link[4:9], what[4:9] = 5, 1
     link[9:11], what[9:11] = 5, 0
     link[30], what[30] = 0, 2
-    arm = ArmTouches(link, what, ("nozzle", "platform", "fixture"), 0.01)
+    arm = ArmTouches(link, what, ("nozzle", "platform", "fixture"), 0.01, LINKS)
     unknown = np.full(n, np.nan)
     found = watch(calm, cell, pace(calm, cell.machine.max_speed), unknown, unknown, arm=arm)
     assert [(one.row, one.kind, one.label, one.other) for one in found.findings] == [

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What stands in a cell besides part and machine, as a cell names it: files or boxes, and where they are."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..issues import InputError
+
+Pose = tuple[float, float, float, float, float, float]
+Size = tuple[float, float, float]
+
+NONE = "none"
+WHERE = "cell.obstacles"
+MORE = ";"  # between two of them
+LARGEST = 1e5  # mm, of a box
+_BOX = re.compile(r"box\s+(?P<size>[-+\d.,eE\s]+)")
+_TEXT = re.compile(r"(?:(?P<name>[^=;]+?)\s+=\s+)?(?P<what>.+?)\s+at\s+(?P<pose>[^;]+)")
+_FORM = "write such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0"
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """One of them. file: its path, '' for a box of `size` mm about its pose's origin. pose: of the file's origin, or of the
+    middle of the box, in the world, which is the maker's base frame, mm and rad (Bryant). Its text has degrees. name: what
+    messages call it."""
+
+    name: str
+    pose: Pose
+    file: str = ""
+    size: Size | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.pose) != 6 or not all(math.isfinite(number) for number in self.pose):
+            raise InputError("BAD_VALUE", WHERE, f"{self.name}: {self.pose!r} is not a pose; give six numbers x y z "
+                             "RX RY RZ")
+        if (self.size is None) == (not self.file):
+            raise InputError("BAD_VALUE", WHERE, f"{self.name} is neither a file nor a box, or both; give one of them")
+        if self.size is not None and not all(0.0 < edge <= LARGEST for edge in self.size):
+            edges = " ".join(f"{edge:g}" for edge in self.size)
+            raise InputError("BAD_VALUE", WHERE, f"{self.name}: {edges} mm is no box; give three lengths of more than 0 mm, "
+                             f"at most {LARGEST:g} mm")
+        if any(sign in self.name for sign in "=;") or not self.name.strip():
+            raise InputError("BAD_VALUE", WHERE, f"{self.name!r} is no name; use words without = and ;")
+
+    def __str__(self) -> str:
+        what = self.file if self.size is None else "box " + " ".join(f"{edge:.12g}" for edge in self.size)
+        numbers = (*self.pose[:3], *(math.degrees(angle) for angle in self.pose[3:]))
+        return f"{self.name} = {what} at {' '.join(f'{number:.12g}' for number in numbers)}"
+
+
+def obstacles(text: str) -> tuple[Obstacle, ...]:
+    """What a text says, in its order; nothing for none. Raises InputError BAD_VALUE."""
+    if text.strip() == NONE:
+        return ()
+    found = tuple(_obstacle(part.strip(), k) for k, part in enumerate(text.split(MORE), 1) if part.strip())
+    names = [one.name for one in found]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError("BAD_VALUE", WHERE, f"{names.count(name)} of them are called {name!r}; give each its own name")
+    return found
+
+
+def usual_name(file: str, number: int) -> str:
+    """What the obstacle of this number, from 1, is called that has no name: as its file is, or box and its number."""
+    return Path(file).stem.replace("=", "-") if file else f"box {number}"
+
+
+def _obstacle(text: str, number: int) -> Obstacle:
+    found = _TEXT.fullmatch(text)
+    if found is None:
+        raise InputError("BAD_VALUE", WHERE, f"{text!r} is no obstacle; {_FORM}")
+    pose = _numbers(found["pose"], 6)
+    x, y, z, *angles = pose
+    a, b, c = (math.radians(angle) for angle in angles)
+    box = _BOX.fullmatch(found["what"])
+    if box is None:
+        file = found["what"].strip()
+        return Obstacle(found["name"] or usual_name(file, number), (x, y, z, a, b, c), file)
+    width, depth, height = _numbers(box["size"], 3)
+    return Obstacle(found["name"] or usual_name("", number), (x, y, z, a, b, c), size=(width, depth, height))
+
+
+def _numbers(text: str, count: int) -> list[float]:
+    try:
+        numbers = [float(word) for word in text.replace(",", " ").split()]
+    except ValueError:
+        numbers = []
+    if len(numbers) != count:
+        raise InputError("BAD_VALUE", WHERE, f"{text.strip()!r} are not {count} numbers; {_FORM}")
+    return numbers

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What stands in a cell besides part and machine: `cell.obstacles` as bodies, those of files read."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from ..brep.read import read_mesh, read_shape
+from ..brep.tessellate import body
+from ..core.collision.nozzle import depositing
+from ..core.collision.scene import scene
+from ..core.geometry import frames
+from ..core.geometry.mesh.file_unit import MESHES
+from ..core.geometry.surroundings import Body, box
+from ..core.issues import InputError
+from ..core.kinematics import cell as cells
+from ..core.kinematics.cell import Cell
+from ..core.parameters.cell import CellParameters
+from ..core.parameters.obstacles import WHERE, Obstacle, obstacles
+from ..core.toolpath import Toolpath
+
+CODE = "OBSTACLE"
+
+
+def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str]) -> Cell:
+    """The cell of a toolpath, with what stands in it. Raises InputError as `cells.resolve` does, NO_FILE and the like of
+    files of obstacles, and OBSTACLE where one is at the first point of the job already."""
+    cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
+    bodies = bodies_of(settings)
+    if not bodies or cell.machine.is_table:
+        return cell
+    cell = dataclasses.replace(cell, obstacles=bodies)
+    _refuse_at_start(cell, toolpath)
+    return cell
+
+
+def bodies_of(settings: CellParameters) -> tuple[Body, ...]:
+    """The obstacles of a cell in the world, mm. Raises InputError naming the obstacle and its file."""
+    return tuple(_body(one) for one in obstacles(settings.obstacles))
+
+
+def hashes_of(text: str) -> list[str]:
+    """Of the files that a text of obstacles names, those that are there."""
+    files = [Path(one.file) for one in obstacles(text) if one.file]
+    return [hashlib.sha256(file.read_bytes()).hexdigest() for file in files if file.is_file()]
+
+
+def _body(one: Obstacle) -> Body:
+    pose = frames.bryant(one.pose)
+    if one.size is not None:
+        return box(one.size, pose, one.name)
+    try:
+        found = _read(Path(one.file))
+    except InputError as error:
+        raise InputError(error.code, f"{WHERE} {one.name}", error.message) from None
+    return dataclasses.replace(found, name=one.name).moved(pose)
+
+
+def _read(file: Path) -> Body:
+    """The triangles of a file; it is read again only where it has changed."""
+    try:
+        now = file.stat()
+    except OSError:
+        return _triangles(file)  # which tells what is wrong
+    return _known(file, now.st_mtime_ns, now.st_size)
+
+
+@lru_cache(maxsize=16)
+def _known(file: Path, changed: int, size: int) -> Body:
+    return _triangles(file)
+
+
+def _triangles(file: Path) -> Body:
+    source = read_mesh(file) if file.suffix.lower() in MESHES else read_shape(file)
+    return body(source, file.name)
+
+
+def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
+    """Raises InputError OBSTACLE where one is about the nozzle as it lays the first point, whatever carries it."""
+    bead = next(bead for _, _, bead in toolpath)
+    point, axis = bead.points[:1], bead.tool[:1]
+    if cell.torch_stands:
+        to_world = frames.inverse(cell.machine.base) @ cell.station
+        point, axis, bodies = to_world[None, :3, 3], to_world[None, :3, 2], cell.obstacles
+    else:
+        bodies = cell.in_part()
+    nozzle = depositing(0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length, 0.0)
+    for one in bodies:
+        if scene((one,), point, nozzle.reach).touched(nozzle, point, axis).any():
+            raise InputError(CODE, f"{WHERE} {one.name}", "it touches the nozzle at the first point of the job already, "
+                             "however the arm stands; its pose is that in the maker's base frame, and files are in mm: "
+                             "move it, or the deposition point")

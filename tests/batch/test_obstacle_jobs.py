@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`cell.obstacles` in a job file: a table and a post that a plan without them drives links into, read from files; judged on
+the rows that are written, by PyKDL's frames of the links. What of them is refused, and how it is told."""
+
+import csv
+import json
+import shutil
+
+import numpy as np
+import Part
+import PyKDL
+import pytest
+import yaml
+
+from freecad_am.core.kinematics import link_rods, machine
+from freecad_am.kdl.chain import KdlArm
+from tests.core.planning.test_arm_clearance import on_rods
+from tests.core.planning.test_obstacles import kdl_pose
+
+ROBOT, CLEARANCE = "fanuc-arcmate120ic", 10.0
+POST, TABLE = (60.0, 60.0, 400.0), (1000.0, 800.0, 30.0)
+POST_AT, TABLE_AT = (980.0, 138.564, 95.0), (1000.0, 0.0, -116.0)  # their middles, mm in the robot's base
+
+
+@pytest.fixture
+def job(workshop, root):
+    """What plans a dome beside a post that is a file; changed by what is given. Its end, and its folder of outputs."""
+    shutil.copy(root / "resources" / "examples" / "hemisphere.step", workshop.folder)
+    solid = Part.makeBox(*POST)
+    solid.exportStep(str(workshop.folder / "a post.step"))
+
+    def plan(height="15 mm", **cell):
+        corner = [middle - 0.5 * edge for middle, edge in zip(POST_AT, POST)]
+        told = {
+            "machine": ROBOT, "limits": "paper", "setup": "tool-on-robot", "deposition_point": [900, 0, -100, 0, 0, 0],
+            "nozzle": {"length": "60 mm", "tool": [120, 0, 200, 0, 45, 0]}, "branch": ["front", "down", "noflip"],
+            "obstacles": [{"name": "post", "file": "a post.step", "pose": [*corner, 0, 0, 0]}], **cell,
+        }
+        text = {
+            "version": 1, "name": "dome", "part": {"file": "hemisphere.step"},
+            "strategy": {"kind": "revolution", "layer_height": height, "chord_error": "0.2 mm"},
+            "build_direction": {"mode": "fixed"}, "cell": told, "program": {"post": "fanuc"},
+        }
+        (workshop.folder / "dome.yaml").write_text(yaml.safe_dump(text), encoding="utf-8")
+        return workshop.run("plan", "dome.yaml", "-o", "out", "--no-page"), workshop.folder / "out"
+
+    return plan
+
+
+def nearest(folder, middle, size):
+    """mm between links and a box along the rows that were written, ten places to each."""
+    with open(folder / "waypoints.csv", encoding="utf-8", newline="") as file:
+        rows = np.radians([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in csv.DictReader(file)])
+    robot = machine.load(ROBOT)
+    arm, frame, best = KdlArm(robot), PyKDL.Frame(), np.inf
+    links = [(k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(robot.chain)) if k and rods]
+    dense = np.concatenate([rows[:-1] + share * np.diff(rows, axis=0) for share in np.linspace(0.1, 1.0, 10)])[::17]
+    place = robot.base[:3, :3] @ np.array(middle) + robot.base[:3, 3]
+    for q in dense:
+        angles = arm.angles(q)
+        for number, points in links:
+            arm._forward.JntToCart(angles, frame, 2 * number)
+            pose = kdl_pose(frame)
+            seen = points @ pose[:3, :3].T + pose[:3, 3] - place
+            best = min(best, np.linalg.norm(np.maximum(np.abs(seen) - 0.5 * np.array(size), 0.0), axis=1).min())
+    return best
+
+
+def notes(folder):
+    told = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    return {issue["code"]: issue["message"] for issue in told["issues"]}
+
+
+def test_links_of_a_written_path_keep_clear_of_a_post_that_is_a_file(job):
+    done, folder = job()
+    assert done.status == 0, done.err
+    assert nearest(folder, POST_AT, POST) < CLEARANCE
+    assert notes(folder)["OBSTACLES_NOT_KEPT"].startswith("post: ")
+    told = json.loads((folder / "report.json").read_text(encoding="utf-8"))["preflight"]
+    assert any("post with q" in entry["how"] for entry in told)
+    done, folder = job(arm_clearance="10 mm")
+    assert done.status == 0, done.err
+    assert nearest(folder, POST_AT, POST) >= CLEARANCE
+    assert "OBSTACLES_NOT_KEPT" not in notes(folder)
+
+
+def test_what_cannot_be_cleared_is_named_with_link_body_and_layer(job):
+    screen = {"name": "screen", "box": [40, 3000, 3000], "pose": [450, 0, 0, 0, 0, 0]}
+    done, _ = job("40 mm", arm_clearance="10 mm", obstacles=[screen])
+    assert done.status == 3
+    assert "error[ARM_CLEARANCE] layer 0 bead 0: link q" in done.err and "to screen" in done.err
+
+
+@pytest.mark.parametrize(("obstacle", "told"), [
+    ({"box": [200, 200, 400], "pose": [945, 0, 0, 0, 0, 0]}, "cell.obstacles box 1: it touches the nozzle"),
+    ({"file": "none.step"}, "error[NO_FILE] dome.yaml: cell.obstacles[0].file"),
+    ({"file": "dome.yaml"}, "error[UNSUPPORTED_FILE] dome.yaml: cell.obstacles dome"),
+    ({"box": [1, 2], "pose": [0, 0, 0, 0, 0, 0]}, "error[BAD_VALUE] dome.yaml: cell.obstacles[0].box"),
+    ({"box": [1, 2, 0]}, "1 2 0 mm is no box"),
+    ({"box": [1, 2, 3], "pose": [0, 0, 0]}, "error[BAD_VALUE] dome.yaml: cell.obstacles[0].pose"),
+    ({"pose": [0, 0, 0, 0, 0, 0]}, "neither a file nor a box"),
+    ({"box": [1, 2, 3], "at": 3}, "error[UNKNOWN_KEY] dome.yaml: cell.obstacles[0].at"),
+    ("post.step", "error[BAD_VALUE] dome.yaml: cell.obstacles[0]"),
+])  # fmt: skip
+def test_what_says_nothing_is_refused(job, obstacle, told):
+    done, folder = job(obstacles=[obstacle])
+    assert done.status == 2 and told in done.err, done.err
+    assert not (folder / "program").exists()

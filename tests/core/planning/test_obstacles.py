@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`cell.obstacles`: what stands in the cell is kept clear of by links, part and nozzle. Judged by PyKDL's frames of links
+and by how far points on links, part and nozzle are from a box, at ten times as many places as there are rows."""
+
+import dataclasses
+
+import numpy as np
+import PyKDL
+import pytest
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.geometry.surroundings import box
+from freecad_am.core.issues import InputError, has_errors
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import link_rods
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.obstacles import Obstacle, obstacles
+from freecad_am.kdl.chain import KdlArm
+from tests.core.planning.test_arm_clearance import CELL, CLEARANCE, DOWN, SIZE, dome, on_rods, planned
+
+__all__ = ["dome"]  # a fixture
+
+CARRIED = {"limits": "paper", "platform": 150.0, "platform_diameter": 0.0,
+           "deposition_point": (1045.0, -630.0, 653.0, 0.0, 0.0, 0.0)}
+
+
+def cell_with(dome, pose, name="post", size=SIZE, **values):
+    cell = cells.resolve(CellParameters(**values), dome.frame)
+    return dataclasses.replace(cell, obstacles=(box(tuple(size), pose, name),))
+
+
+def kdl_pose(frame):
+    pose = np.eye(4)
+    pose[:3, :3] = [[frame.M[i, j] for j in range(3)] for i in range(3)]
+    pose[:3, 3] = [frame.p.x(), frame.p.y(), frame.p.z()]
+    return pose
+
+
+def nearest(motion, cell, pose, carried, size=SIZE, every=23):
+    """(n,) mm between a box at a pose in the maker's base frame and the links, by PyKDL, or points (k, 3) carried on the
+    flange, at places of a motion ten times as dense as its rows."""
+    arm, frame, found = KdlArm(cell.machine), PyKDL.Frame(), []
+    joints = motion.joints
+    dense = np.concatenate([joints[:-1] + share * np.diff(joints, axis=0) for share in np.linspace(0.1, 1.0, 10)])
+    links = [(k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if k and rods]
+    to_box = np.linalg.inv(cell.machine.base @ pose)
+    half = 0.5 * np.asarray(size)
+    for q in dense[::every]:
+        angles, best = arm.angles(q), np.inf
+        for number, points in [*links, (None, carried)]:
+            arm._forward.JntToCart(angles, frame, *(() if number is None else (2 * number,)))
+            place = to_box @ kdl_pose(frame)
+            seen = points @ place[:3, :3].T + place[:3, 3]
+            best = min(best, np.linalg.norm(np.maximum(np.abs(seen) - half, 0.0), axis=1).min())
+        found.append(best)
+    return np.array(found)
+
+
+def nozzle_points(cell):
+    """Points on the cone of a nozzle that the flange carries, from its tip on."""
+    nozzle, turn = cell.nozzle, np.linspace(0.0, 2.0 * np.pi, 48)
+    height = np.linspace(0.0, nozzle.length, 30)[:, None]
+    radius = 0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle)
+    points = np.stack([radius * np.cos(turn), radius * np.sin(turn), -height + 0.0 * turn], axis=-1).reshape(-1, 3)
+    return points @ cell.carried[:3, :3].T + cell.carried[:3, 3]
+
+
+def part_points(dome, cell):
+    """Points about all beads of a part that the flange carries, by half their width and height."""
+    points = np.concatenate([bead.points for _, _, bead in dome])
+    seen = cell.carried @ np.linalg.inv(cell.mount)
+    around = [points + [0.5 * dome.layer_height * a, 0.5 * dome.layer_height * b, 0.0] for a in (-1, 1) for b in (-1, 1)]
+    return np.concatenate(around) @ seen[:3, :3].T + seen[:3, 3]
+
+
+def test_links_keep_clear_of_an_obstacle_in_a_cell_that_is_turned(dome):
+    """Part and post of a job that meets it without, both turned about the robot's first axis."""
+    turned = frames.bryant((0.0, 0.0, 0.0, 0.0, 0.0, np.radians(40.0)))
+    turn = np.radians(60.0)
+    middle = frames.pose(np.eye(3), np.array([900.0 + 160.0 * np.cos(turn), 160.0 * np.sin(turn), 95.0]))
+    pose = turned @ middle
+    x, y, z = (turned @ frames.bryant(CELL["deposition_point"]))[:3, 3]
+    values = {**CELL, "deposition_point": (x, y, z, 0.0, 0.0, np.radians(40.0)), "branch": DOWN}
+    without = cell_with(dome, pose, **values)
+    motion, issues = planned(dome, without)
+    assert not has_errors(issues) and nearest(motion, without, pose, nozzle_points(without)).min() < CLEARANCE
+    kept = cell_with(dome, pose, **values, arm_clearance=CLEARANCE)
+    motion, issues = planned(dome, kept)
+    assert not has_errors(issues)
+    found = nearest(motion, kept, pose, on_rods(link_rods.of_robot(kept.robot.chain)[-1]))
+    assert found.min() >= CLEARANCE
+    assert nearest(motion, kept, pose, nozzle_points(kept)).min() > 0.0
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 330.0])
+def test_a_part_that_the_robot_carries_keeps_clear_of_an_obstacle(dome, azimuth):
+    turn = np.radians(azimuth)
+    pose = frames.pose(np.eye(3), np.array([1045.0 + 100.0 * np.cos(turn), -630.0 + 100.0 * np.sin(turn), 900.0]))
+    without = cell_with(dome, pose, **CARRIED)
+    part = part_points(dome, without)
+    motion, issues = planned(dome, without)
+    assert not has_errors(issues) and nearest(motion, without, pose, part).min() < CLEARANCE
+    kept = cell_with(dome, pose, **CARRIED, arm_clearance=CLEARANCE)
+    motion, issues = planned(dome, kept)
+    assert not has_errors(issues)
+    assert nearest(motion, kept, pose, part).min() >= CLEARANCE
+
+
+def test_rapids_of_a_carried_nozzle_go_over_an_obstacle_that_links_are_not_kept_clear_of(dome):
+    """Between beads that begin on opposite sides of a low bar the straight way would take the nozzle through it."""
+    first = dome.layers[0].beads[0]
+    half = len(first) // 2
+    ends = [dataclasses.replace(first, **{
+        name: getattr(first, name)[some] for name in ("points", "build", "tool", "parameter", "speed")
+    }, tangents=None, closed=False) for some in (slice(0, 4), slice(half, half + 4))]
+    job = dataclasses.replace(dome, layers=(dataclasses.replace(dome.layers[0], beads=tuple(ends)),))
+    size = (20.0, 60.0, 60.0)
+    pose = frames.pose(np.eye(3), np.array([900.0, 0.0, -60.0]))
+    values = {**CELL, "branch": DOWN}
+    for obstacles_, low in (((), 0.0), (cell_with(dome, pose, size=size, **values).obstacles, 1e-3)):
+        cell = dataclasses.replace(cells.resolve(CellParameters(**values), dome.frame), obstacles=obstacles_)
+        motion, issues = planned(job, cell)
+        assert not has_errors(issues)
+        near = nearest(motion, cell, pose, nozzle_points(cell)[48:], size, every=1).min()
+        assert near == 0.0 if not obstacles_ else near > low
+
+
+def test_an_impossible_one_is_refused_by_name(dome):
+    pose = frames.pose(np.eye(3), np.array([450.0, 0.0, 0.0]))
+    cell = cell_with(dome, pose, "screen", (40.0, 3000.0, 3000.0), **CELL, branch=DOWN, arm_clearance=CLEARANCE)
+    _, issues = planned(dome, cell)
+    told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
+    assert {issue.layer for issue in told} == set(range(len(dome.layers)))
+    assert all(issue.message.startswith("link q") and "10 mm to screen" in issue.message for issue in told)
+
+
+def test_texts_of_obstacles_say_what_they_are():
+    text = "table = /a b/table.step at 0 0 -200 0 0 90; box 60 60 400 at 900, 200, 0, 0, 0, 0; post.stl at 1 2 3 0 0 0"
+    table, beam, post = found = obstacles(text)
+    assert (table.name, table.file, table.pose) == ("table", "/a b/table.step", (0, 0, -200, 0, 0, np.radians(90.0)))
+    assert (beam.name, beam.file, beam.size) == ("box 2", "", (60.0, 60.0, 400.0))
+    assert (post.name, post.file) == ("post", "post.stl")
+    assert obstacles("; ".join(map(str, found))) == found and obstacles("none") == obstacles("") == ()
+
+
+@pytest.mark.parametrize(("text", "told"), [
+    ("table.step", "'table.step' is no obstacle; write such as"),
+    ("table.step at 0 0 0", "'0 0 0' are not 6 numbers"),
+    ("table.step at 0 0 zero 0 0 0", "are not 6 numbers"),
+    ("box 1 2 at 0 0 0 0 0 0", "'1 2' are not 3 numbers"),
+    ("box 1 2 0 at 0 0 0 0 0 0", "1 2 0 mm is no box"),
+    ("a.stl at 0 0 0 0 0 0; b/a.stl at 0 0 0 0 0 0", "2 of them are called 'a'"),
+])  # fmt: skip
+def test_texts_that_say_nothing_are_refused(text, told):
+    with pytest.raises(InputError, match=r"cell\.obstacles") as error:
+        obstacles(text)
+    assert told in error.value.message
+    with pytest.raises(InputError):
+        CellParameters(obstacles=text)
+
+
+def test_an_obstacle_is_a_file_or_a_box():
+    for more in ({}, {"file": "a.step", "size": (1.0, 1.0, 1.0)}):
+        with pytest.raises(InputError, match="neither a file nor a box"):
+            Obstacle("a", (0.0,) * 6, **more)
