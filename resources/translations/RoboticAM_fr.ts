@@ -641,7 +641,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the file&apos;s origin, or of the middle of the box, in the maker&apos;s base frame.</source>
-        <translation>Robots : ce qui se trouve dans la cellule et que la buse, la pièce et les segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du milieu de la boîte, dans le repère de base du constructeur.</translation>
+        <translation>Robots : ce qui se trouve dans la cellule et que la buse, la pièce et les segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du milieu de la boîte, dans le repère de base du constructeur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -4039,7 +4039,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: what stands in the cell, which nozzle, part and links are kept clear of, such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg of the file&apos;s origin, or of the middle of the box, in the maker&apos;s base frame.</source>
-        <translation>Robots : ce qui se trouve dans la cellule et que la buse, la pièce et les segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du milieu de la boîte, dans le repère de base du constructeur.</translation>
+        <translation>Robots : ce qui se trouve dans la cellule et que la buse, la pièce et les segments évitent, par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0. x y z mm, RX RY RZ deg de l&apos;origine du fichier, ou du milieu de la boîte, dans le repère de base du constructeur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -10989,7 +10989,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>write such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0</source>
-        <translation>écrivez par exemple : table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0</translation>
+        <translation>écrivez par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
