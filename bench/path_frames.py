@@ -57,7 +57,7 @@ def frames(saved: str) -> list[dict[str, object]]:
     spin = coin.SbRotation(coin.SbVec3f(0, 0, 1), 0.05)
     plain = Lines()
     view.getSceneGraph().addChild(plain.node)
-    slider = dock._dock.to.slider
+    slider = dock._dock.form.to.slider
 
     def turn() -> None:
         camera.orientation = spin * camera.orientation.getValue()

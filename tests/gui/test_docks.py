@@ -10,7 +10,9 @@ from freecad_am import api
 from freecad_am.gui.path import dock as paths
 from freecad_am.gui.plots import dock as plots
 from freecad_am.gui.simulation import dock as simulations
+from freecad_am.gui.simulation import fields
 from freecad_am.gui.spin_map import dock as maps
+from freecad_am.gui.spin_map import draft
 from freecad_am.gui.tools.commands import GROUPS
 
 BELOW = {"RoboticAM_Path": paths.NAME, "RoboticAM_Plots": plots.NAME, "RoboticAM_SpinMap": maps.NAME}
@@ -238,7 +240,7 @@ def test_docks_that_are_open_follow_the_language(person, path, speak):
     person.field(map_dock, "curve").setCurrentIndex(1)
     person.field(map_dock, "curve").activated.emit(1)
     one.figures.hide_curve("planned")
-    simulation.factor.setCurrentIndex(1)
+    simulation.fields.factor.setCurrentIndex(1)
     simulation.player.go(0.4 * simulation.run.times.total)
     simulation.show()
     person.idle(0.5)
@@ -263,8 +265,8 @@ def test_docks_that_are_open_follow_the_language(person, path, speak):
     assert not person.field(map_dock, "together").isChecked() and person.field(map_dock, "curve").currentIndex() == 1
     assert person.field(map_dock, "curve").currentText() == "RZ constant"
     assert not one.figures.shows("planned")
-    assert simulation.player.factor == simulations.FACTORS[1] == simulations.FACTORS[simulation.factor.currentIndex()]
-    assert abs(simulation.slider.value() / simulations.STEPS - 0.4) < 0.01
+    assert simulation.player.factor == fields.FACTORS[1] == fields.FACTORS[simulation.fields.factor.currentIndex()]
+    assert abs(simulation.fields.slider.value() / fields.STEPS - 0.4) < 0.01
     person.screenshot("docks-french")
     speak("English")
     settled(person)
@@ -276,7 +278,7 @@ def test_docks_that_are_open_follow_the_language(person, path, speak):
     assert path.ViewObject.Proxy.shown is None
     person.field(map_dock, "again").click()
     person.idle()
-    assert one.draft.kind != maps.CONSTANT
+    assert one.draft.kind != draft.CONSTANT
 
 
 def test_legends_follow_the_language(person, path, speak):

@@ -126,12 +126,12 @@ def test_all_that_a_simulation_tells_has_room_from_the_start(person, joint_path)
     tool.show(joint_path)
     simulation = simulations._open[0]
     person.idle(0.3)
-    labels, run = simulation.told, simulation.run
+    labels, run = simulation.fields.told, simulation.run
     sizes = {name: (label.width(), label.height()) for name, label in labels.items()}
     texts = {name: set() for name in labels}
     for row in range(0, len(run.motion), 3):
         simulation.player.go_to_row(row)
-        simulation._tell(simulation.player.moment())
+        simulation.fields.tell(simulation.player.moment())
         for name, label in labels.items():
             texts[name].add(label.text())
             assert label.sizeHint().width() <= label.width()

@@ -15,7 +15,7 @@ from freecad_am.core.planning import moving_tool
 from freecad_am.core.simulation.pace import pace
 from freecad_am.core.simulation.watch import ISSUE, LIMIT, SINGULAR, SLOWED, TOUCHES
 from freecad_am.gui.simulation import dock as docks
-from freecad_am.gui.simulation import tool
+from freecad_am.gui.simulation import fields, tool
 from freecad_am.gui.simulation.run import run_of
 from freecad_am.gui.simulation.scene import SLOW, WRONG
 from freecad_am.kdl.chain import KdlArm
@@ -77,7 +77,7 @@ def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setu
     scene = simulation.scene
     seen = []
     for share in (0.05, 0.2, 0.37, 0.71, 0.93):
-        person.field(panel, "time").setValue(round(share * docks.STEPS))
+        person.field(panel, "time").setValue(round(share * fields.STEPS))
         person.idle(0.05)
         state = times.at(simulation.player.time)
         assert simulation.player.time == pytest.approx(share * times.total, rel=1e-3)

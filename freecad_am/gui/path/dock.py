@@ -3,30 +3,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
 import numpy as np
-from PySide import QtGui
 
 from ..background import redraw
 from ..docks import places
 from ..docks.follower import Follower
 from ..preferences import watch
 from ..texts.translation import tr, translated
-from ..widgets.steady import SteadyText
 from . import path_view
 from .colouring import LAYER
 from .facts import facts
+from .form import PathForm, offer
 from .path_view import PathView
 from .slider_row import Row
 
 NAME = "RoboticAM_PathDock"
-LINES = 3  # of what is told of a point, at most
-LABEL = 14  # letters of a choice that are to be seen, at least
-_LAYER_PAGE, _POINT_PAGE = 10, 100
 
 
 class PathDock(Follower):
@@ -48,77 +43,25 @@ class PathDock(Follower):
 
     def _build(self) -> None:
         """The fields, in the language of the window."""
-        form = QtGui.QWidget()
-        column, self.controls = QtGui.QVBoxLayout(form), QtGui.QWidget()
-        column.setContentsMargins(9, 4, 9, 4)
-        column.setSpacing(3)
-        self.choice = self._combo("path", tr("The toolpath or joint path to look at"))
-        self.colouring = self._combo("colouring", tr("What the colours of the beads tell"))
-        self.look = self._combo("look", tr("Draw beads as lines, or as tubes of their width and layer height"))
-        self.directions = QtGui.QCheckBox(tr("Build directions"))
-        self.directions.setObjectName("directions")
-        self.single = QtGui.QCheckBox(tr("One layer alone"))
-        self.single.setObjectName("single")
-        self.all = QtGui.QPushButton(tr("Show all"))
-        self.all.setObjectName("all")
-        self.from_, self.to, self.point = (
-            Row("from", tr("From layer"), tr("The first layer that is shown"), _LAYER_PAGE),
-            Row("to", tr("To layer"), tr("The last layer that is shown"), _LAYER_PAGE),
-            Row("point", tr("Point"), tr("The last point that is shown, counted from 0 in the last layer"), _POINT_PAGE),
-        )
-        self.facts = SteadyText("facts", LINES)
-        column.addLayout(self._choices())
-        column.addWidget(self.controls)
-        grid = QtGui.QGridLayout(self.controls)
-        grid.setContentsMargins(0, 0, 0, 0)
-        grid.setVerticalSpacing(2)
-        for number, row in enumerate((self.from_, self.to, self.point)):
-            row.add_to(grid, number)
-        column.addWidget(self.facts)
-        column.addStretch(1)
+        self.form = PathForm()
         self._connect()
-        self.dock.hold(tr("Path"), form)
+        self.dock.hold(tr("Path"), self.form)
 
     def _speak(self) -> None:
         """The window has another language."""
-        single = self.single.isChecked()
+        single = self.form.single.isChecked()
         self._build()
-        self.single.setChecked(single)
+        self.form.single.setChecked(single)
         self.fill()
 
-    def _combo(self, name: str, help: str) -> Any:
-        combo = QtGui.QComboBox()
-        combo.setObjectName(name)
-        combo.setToolTip(help)
-        combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
-        combo.setMinimumWidth(LABEL * combo.fontMetrics().averageCharWidth())  # a long label widens no window
-        return combo
-
-    def _choices(self) -> Any:
-        lines = QtGui.QVBoxLayout()
-        what, how = QtGui.QHBoxLayout(), QtGui.QHBoxLayout()
-        for line, text, widget in (
-            (what, tr("Path"), self.choice), (what, tr("Colours"), self.colouring), (how, tr("Look"), self.look),
-        ):
-            line.addWidget(QtGui.QLabel(text))
-            line.addWidget(widget)
-        what.addStretch(1)
-        for box in (self.directions, self.single):
-            how.addWidget(box)
-        how.addStretch(1)
-        how.addWidget(self.all)
-        lines.addLayout(what)
-        lines.addLayout(how)
-        return lines
-
     def _connect(self) -> None:
-        self.choice.activated.connect(self._chosen)
-        self.colouring.activated.connect(lambda *_: self._set("Colouring", self.colouring.currentData()))
-        self.look.activated.connect(lambda *_: self._set("Look", self.look.currentData()))
-        self.directions.clicked.connect(lambda *_: self._set("ShowDirections", self.directions.isChecked()))
-        self.single.clicked.connect(lambda *_: self._moved(self.to))
-        self.all.clicked.connect(self._show_all)
-        for row in (self.from_, self.to, self.point):
+        self.form.choice.activated.connect(self._chosen)
+        self.form.colouring.activated.connect(lambda *_: self._set("Colouring", self.form.colouring.currentData()))
+        self.form.look.activated.connect(lambda *_: self._set("Look", self.form.look.currentData()))
+        self.form.directions.clicked.connect(lambda *_: self._set("ShowDirections", self.form.directions.isChecked()))
+        self.form.single.clicked.connect(lambda *_: self._moved(self.form.to))
+        self.form.all.clicked.connect(self._show_all)
+        for row in (self.form.from_, self.form.to, self.form.point):
             row.moved = self._moved
 
     # ---- what is looked at
@@ -180,42 +123,41 @@ class PathDock(Follower):
             self.filling = False
 
     def _fill(self) -> None:
-        obj = self._object()
+        obj, form = self._object(), self.form
         view = None if obj is None else obj.ViewObject.Proxy
         rows = None if view is None else view.rows
         there = rows is not None and len(rows) > 0
-        for widget in (self.controls, self.colouring, self.look, self.directions, self.single, self.all):
-            widget.setEnabled(there)
+        form.enable(there)
         paths = _paths()
-        _offer(self.choice, [path.Label for path in paths], paths.index(obj) if obj in paths else -1)
+        offer(form.choice, [path.Label for path in paths], paths.index(obj) if obj in paths else -1)
         if not there:
-            self.facts.tell(tr("There is no path to look at yet: make a toolpath or a joint path.") if obj is None else
+            form.facts.tell(tr("There is no path to look at yet: make a toolpath or a joint path.") if obj is None else
                             tr("{} is hidden, or has no result.").format(obj.Label))
             return
         vobj = obj.ViewObject
-        for combo, name in ((self.colouring, "Colouring"), (self.look, "Look")):
+        for combo, name in ((form.colouring, "Colouring"), (form.look, "Look")):
             names = vobj.getEnumerationsOfProperty(name)
-            _offer(combo, names, names.index(getattr(vobj, name)), translated)
-        self.directions.setChecked(vobj.ShowDirections)
+            offer(combo, names, names.index(getattr(vobj, name)), translated)
+        form.directions.setChecked(vobj.ShowDirections)
         first, last, count = view.shown or (0, rows.layer_count - 1, None)
         low, high = rows.of_layers(last, last)
-        self.from_.set(0, rows.layer_count - 1, first)
-        self.to.set(0, rows.layer_count - 1, last)
+        form.from_.set(0, rows.layer_count - 1, first)
+        form.to.set(0, rows.layer_count - 1, last)
         row = max(low, (high if count is None else low + count) - 1)
-        self.point.set(0, max(high - low - 1, 0), row - low)
+        form.point.set(0, max(high - low - 1, 0), row - low)
         told = "" if view.scale is None or view.scale.title == LAYER else view.scale.told(row)
-        self.facts.tell(" · ".join(filter(None, (told, facts(rows, row)))))
+        form.facts.tell(" · ".join(filter(None, (told, facts(rows, row)))))
 
     def _moved(self, row: Row) -> None:
-        view = self.view()
+        view, form = self.view(), self.form
         if self.filling or view is None or view.rows is None:
             return
-        first, last = self.from_.value(), self.to.value()
-        if self.single.isChecked():
-            first = last = (first if row is self.from_ else last)
+        first, last = form.from_.value(), form.to.value()
+        if form.single.isChecked():
+            first = last = (first if row is form.from_ else last)
         elif first > last:
-            first, last = (first, first) if row is self.from_ else (last, last)
-        count = self.point.value() + 1 if row is self.point and self.point.value() < self.point.most() else None
+            first, last = (first, first) if row is form.from_ else (last, last)
+        count = form.point.value() + 1 if row is form.point and form.point.value() < form.point.most() else None
         whole = (first, last, count) == (0, view.rows.layer_count - 1, None)
         self._show(view, None if whole else (first, last, count))
 
@@ -228,7 +170,7 @@ class PathDock(Follower):
     def _show_all(self, *_: Any) -> None:
         view = self.view()
         if view is not None:
-            self.single.setChecked(False)
+            self.form.single.setChecked(False)
             self._show(view, None)
 
     def _picked(self, view: PathView, row: int) -> None:
@@ -239,7 +181,7 @@ class PathDock(Follower):
         self.target = (obj.Document.Name, obj.Name)
         layer = int(rows.layers[rows.bead_of(row)])
         begin = 0 if view.shown is None else min(view.shown[0], layer)
-        first = layer if self.single.isChecked() else begin
+        first = layer if self.form.single.isChecked() else begin
         self._show(view, (first, layer, row + 1 - rows.of_layers(layer, layer)[0]))
 
     def go_to(self, obj: Any, layer: int, bead: int | None, point: int | None) -> None:
@@ -269,15 +211,6 @@ class PathDock(Follower):
         if _is_path(found) and found.ViewObject.Visibility:
             self.target = (document, name)
             self.fill()
-
-
-def _offer(combo: Any, names: list[str], chosen: int, told: Callable[[str], str] = str) -> None:
-    """Choices of a combo box, changed only where they differ."""
-    if [combo.itemData(index) for index in range(combo.count())] != list(names):
-        combo.clear()
-        for name in names:
-            combo.addItem(told(name), name)
-    combo.setCurrentIndex(chosen)
 
 
 def _is_path(obj: Any) -> bool:

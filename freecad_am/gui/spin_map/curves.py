@@ -3,9 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
+
+from ...core.planning.spin_curve import Compared, Followed
 from ..nodes.lines import Array
+from .board import Board
+from .draft import CONSTANT, Draft
 
 OWN, PLANNED = "own", "planned"
 COLOURS = {
@@ -42,3 +49,33 @@ class Dragged:
     column: int
     value: float
     moved: bool = False
+
+
+def drawn(
+    board: Board, draft: Draft, bead: int, planned: Sequence[Any], compared: Sequence[Compared], followed: Followed,
+    shows: Callable[[str], bool],
+) -> tuple[list[Curve], list[Handle], Array]:
+    """Curves, handles of the user's own at a bead, and places (n, 2) of it that are bad, column and value.
+
+    planned: beads of the joint path; compared: other methods; followed: what the user's own asks of the machine; shows:
+    whether the curve of a name is to be seen.
+    """
+    curves = [
+        Curve(board.path_values(draft, paths), COLOURS[name], dashed=name == PLANNED)
+        for name, paths in [(PLANNED, planned), *((one.name, one.paths) for one in compared)] if shows(name)
+    ]
+    if not shows(OWN):
+        return curves, [], np.zeros((0, 2))
+    values = board.draft_values(draft)
+    curves.append(Curve(values, COLOURS[OWN], bold=True))
+    return curves, _handles(board, draft, bead, values), board.bad(draft, followed, values)
+
+
+def _handles(board: Board, draft: Draft, bead: int, values: Array) -> list[Handle]:
+    if draft.kind == CONSTANT or not board.shows(bead):
+        return []
+    columns = [board.column_of(bead, float(parameter)) for parameter in draft.handles(bead)]
+    return [
+        Handle(bead, number, column, float(np.interp(column, np.arange(len(values)), values)))
+        for number, column in enumerate(columns)
+    ]

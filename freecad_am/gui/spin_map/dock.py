@@ -6,20 +6,17 @@ from __future__ import annotations
 import contextlib
 from typing import Any
 
-import FreeCAD as App
 import FreeCADGui as Gui
 import numpy as np
-from PySide import QtCore, QtGui
+from PySide import QtGui
 
 from ...core.issues import AmError
-from ...core.planning.points import TURN
 from ...core.planning.spin_curve import Compared
-from ...objects.findings import first_message, issues_of
 from ...objects.progress import Cancelled
-from ...objects.staleness import UP_TO_DATE
 from .. import recorded
 from ..background.later import Later
 from ..docks import places
+from ..docks.lookout import Lookout
 from ..preferences import watch
 from ..texts.translation import tr, translated, translated_error
 from .board import Board
@@ -28,14 +25,14 @@ from .cells import Cells
 from .comparison import Comparison
 from .consequences import Consequences
 from .controls import AXES, CURVES, Controls
-from .curves import COLOURS, OWN, PLANNED, Curve, Dragged, Handle
-from .draft import CONSTANT, Draft
+from .curves import COLOURS, Dragged, drawn
+from .draft import Draft
 from .figures import Figures
 from .form import Form
 from .jump import jump
 from .picture import KINDS
 from .readout import readout
-from .source import Source, source_of
+from .source import Source, source_of, status_of
 
 NAME = "RoboticAM_SpinMap"
 WIDE, HIGH = 0.85, 380  # of the window's width; pixels
@@ -51,7 +48,7 @@ class SpinMapDock:
         self.canvas = Canvas()
         self._build()
         self.cells = Cells(self.holder, self.canvas, self._fill_controls, self._show_curves)
-        self.consequences = Consequences(self.holder, self.form, self._planned_text)
+        self.consequences = Consequences(self.holder, self.form, lambda: status_of(self.obj))
         self.comparison = Comparison(self.holder, self._show_compared, lambda text: self.form.tell(text))
         self.renewing = Later(self.holder, self.renew)
         self.canvas.hovered, self.canvas.clicked = self._hovered, self._clicked
@@ -60,7 +57,7 @@ class SpinMapDock:
         self.dock.closed = self.close
         self._take(source_of(obj))
         self.dock.come()
-        App.addDocumentObserver(self)
+        self.lookout = Lookout(lambda: self.source, self._changed_object, lambda why, _: self.end(why))
         watch.listen(self._renew_cells)
         watch.listen_to_language(self._speak)
 
@@ -170,12 +167,7 @@ class SpinMapDock:
 
     def _entered(self, number: int, value: float) -> None:
         """A coefficient was entered, deg and deg per turn."""
-        draft = self.draft
-        if draft.kind == CONSTANT:
-            draft.rz = float(np.radians(value))
-        else:
-            wanted = np.radians(value) / TURN**number
-            draft.coefficients[self._together(), number] += wanted - draft.coefficients[self.bead, number]
+        self.draft.enter(number, np.radians(value), self.bead, self._together())
         self._changed_for_good()
 
     def _dragged(self, drag: Dragged, by: float) -> None:
@@ -188,16 +180,6 @@ class SpinMapDock:
             self.bead = int(board.columns.bead[drag.column])
             draft.shift(changed, self._together())
         self._changed()
-
-    def _handles(self, values: Any) -> list[Handle]:
-        draft, board = self.draft, self.board
-        if draft.kind == CONSTANT or not board.shows(self.bead):
-            return []
-        found = []
-        for number, parameter in enumerate(draft.handles(self.bead)):
-            column = board.column_of(self.bead, float(parameter))
-            found.append(Handle(self.bead, number, column, float(np.interp(column, np.arange(len(values)), values))))
-        return found
 
     # ---- consequences
 
@@ -212,26 +194,12 @@ class SpinMapDock:
         self._changed()
         self.consequences.exactly()
 
-    def _planned_text(self) -> tuple[str, bool]:
-        with contextlib.suppress(ReferenceError, RuntimeError):
-            message = first_message(issues_of(self.obj))
-            wrong, status = self.obj.Status != UP_TO_DATE, translated(self.obj.Status)
-            return tr("{}: {}").format(status, translated(message)) if message and wrong else status, wrong
-        return "", False
-
     def _show_curves(self) -> None:
         """Draw the curves that are to be seen."""
-        board, draft = self.board, self.draft
-        curves, handles, bad = [], [], np.zeros((0, 2))
-        others = [(PLANNED, self.source.planned.beads), *((one.name, one.paths) for one in self.compared)]
-        for name, paths in others:
-            if self.figures.shows(name):
-                curves.append(Curve(board.path_values(draft, paths), COLOURS[name], dashed=name == PLANNED))
-        if self.figures.shows(OWN):
-            values = board.draft_values(draft)
-            curves.append(Curve(values, COLOURS[OWN], bold=True))
-            handles, bad = self._handles(values), board.bad(draft, self.consequences.followed, values)
-        self.canvas.set_curves(curves, handles, bad)
+        self.canvas.set_curves(*drawn(
+            self.board, self.draft, self.bead, self.source.planned.beads, self.compared, self.consequences.followed,
+            self.figures.shows,
+        ))
 
     # ---- side by side
 
@@ -297,7 +265,7 @@ class SpinMapDock:
         if self.gone:
             return
         self.gone = True
-        App.removeDocumentObserver(self)
+        self.lookout.stop()
         for listener in (self._renew_cells, self._speak):
             watch.forget(listener)
         for background in (self.cells, self.consequences, self.comparison):
@@ -313,26 +281,9 @@ class SpinMapDock:
             self.close()
             Gui.getMainWindow().statusBar().showMessage(tr("The map was closed: {why}").format(why=why), 8000)
 
-    # ---- called by FreeCAD
-
-    def slotDeletedDocument(self, document: Any) -> None:
-        """A document is closed."""
-        if document.Name == self.source.document:
-            self.end(tr("the document was closed"))
-
-    def slotDeletedObject(self, obj: Any) -> None:
-        """An object is deleted."""
-        if self._reads(obj):
-            text = tr("{label} was deleted").format(label=obj.Label)
-            QtCore.QTimer.singleShot(0, lambda: self.end(text))
-
-    def slotChangedObject(self, obj: Any, name: str) -> None:
-        """A property of an object has changed."""
-        if name in ("Key", "Label") and self._reads(obj):
+    def _changed_object(self, obj: Any, name: str) -> None:
+        if name in ("Key", "Label"):
             self.renewing.ask()
-
-    def _reads(self, obj: Any) -> bool:
-        return not self.gone and obj.Name in self.source.objects and obj.Document.Name == self.source.document
 
 
 _open: list[SpinMapDock] = []  # Python must keep it as long as it is open; there is one

@@ -17,7 +17,7 @@ from ...core.planning import spin_curve
 from ...core.planning.given import METHOD
 from ...core.planning.joint_path import BeadPath
 from ...core.planning.planned_rotation import rotation_along
-from ...core.planning.points import Points
+from ...core.planning.points import TURN, Points
 from ...core.planning.spin_curve import Followed
 from ...core.planning.spin_map import Columns, in_turns
 from ..nodes.lines import Array
@@ -152,6 +152,13 @@ class Draft:
             self.rz = float((self.rz + by + np.pi) % (2.0 * np.pi) - np.pi)
         else:
             self.coefficients[beads, 0] += by
+
+    def enter(self, number: int, value: float, bead: int, beads: list[int]) -> None:
+        """Coefficient of a bead, rad and rad per turn to its power, by which others move along; the RZ of a constant one."""
+        if self.kind == CONSTANT:
+            self.rz = float(value)
+        else:
+            self.coefficients[beads, number] += value / TURN**number - self.coefficients[bead, number]
 
     def handles(self, bead: int) -> Array:
         """(n,) parameters at which the polynomial of a bead is taken hold of."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,10 +25,13 @@ from ...core.planning.task import Task
 from ...core.toolpath import Bead, Toolpath
 from ...objects import user_machines
 from ...objects.cell_obstacles import resolved
+from ...objects.findings import first_message, issues_of
 from ...objects.joint_path import planned_of
 from ...objects.link_meshes import meshes_of
 from ...objects.stage import stage_of
+from ...objects.staleness import UP_TO_DATE
 from ..nodes.lines import Array
+from ..texts.translation import tr, translated
 
 
 @dataclass(frozen=True)
@@ -95,6 +99,15 @@ def source_of(obj: Any) -> Source:
         beads=_as_run(toolpath, value.joint_path), places=tuple((layer, index) for layer, index, _ in toolpath),
         width=obj.Toolpath.Proxy.parameters(obj.Toolpath, ProcessParameters).bead_width, shapes=meshes_of(cell.machine),
     )
+
+
+def status_of(obj: Any) -> tuple[str, bool]:
+    """How a joint path itself stands, in words of the window, and whether that is wrong; '' of one that is gone."""
+    with contextlib.suppress(ReferenceError, RuntimeError):
+        message = first_message(issues_of(obj))
+        wrong, status = obj.Status != UP_TO_DATE, translated(obj.Status)
+        return tr("{}: {}").format(status, translated(message)) if message and wrong else status, wrong
+    return "", False
 
 
 def _as_run(toolpath: Toolpath, planned: JointPath) -> tuple[Bead, ...]:

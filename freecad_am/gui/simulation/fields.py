@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The fields of a simulation: its time, its buttons, and what is told of the moment, of findings and of the whole job."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from PySide import QtCore, QtGui
+
+from ..colours import WRONG
+from ..texts.translation import tr
+from ..widgets.steady import SteadyLabel
+from . import told
+from .bars import JointBars
+from .player import Moment, Player
+from .run import Run
+
+STEPS = 10_000  # of the slider
+FACTORS = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0, 100.0, 500.0)
+_WRONG = f"QLabel {{ color: {WRONG}; }}"
+
+
+class Fields(QtGui.QWidget):
+    """In the language of the window of now. slid: called with the share of the job's time that the user chose; acts: what
+    each button does, by its name."""
+
+    def __init__(
+        self, run: Run, player: Player, slid: Callable[[float], None], acts: dict[str, Callable[[], None]],
+    ) -> None:
+        super().__init__()
+        self.setObjectName("form")
+        self.run, self.player, self.filling = run, player, False
+        machine, limits = run.cell.machine, run.cell.limits
+        units, axes = machine.unit_values, len(machine.axes)
+        self.bars = JointBars(machine.axes, machine.units, limits.lower[:axes] / units, limits.upper[:axes] / units)
+        self.slider = self._slider(slid)
+        self.told = {name: SteadyLabel(name) for name in ("clock", "place", "doing", "speed", "condition")}
+        self.finding = _label("finding")
+        self.finding.setWordWrap(True)
+        self.finding.setMinimumHeight(2 * self.finding.fontMetrics().height() + 4)
+        self.finding.setAlignment(QtCore.Qt.AlignTop)
+        column = QtGui.QVBoxLayout(self)
+        column.setContentsMargins(8, 6, 8, 6)
+        if run.stale:
+            stale = _label("stale", tr("This is an earlier plan; recompute the document for the present one."))
+            stale.setWordWrap(True)
+            stale.setStyleSheet(_WRONG)
+            column.addWidget(stale)
+        column.addWidget(self.slider)
+        column.addLayout(self._moment())
+        column.addLayout(self._buttons(acts))
+        column.addWidget(self.finding)
+        column.addWidget(self.bars)
+        column.addLayout(self._facts())
+        column.addWidget(_totals(run))
+        column.addStretch(1)
+
+    def _slider(self, slid: Callable[[float], None]) -> Any:
+        slider = QtGui.QSlider(QtCore.Qt.Horizontal)
+        slider.setObjectName("time")
+        slider.setRange(0, STEPS)
+        slider.setPageStep(STEPS // 20)
+        slider.setToolTip(tr("The time of the job"))
+        slider.valueChanged.connect(lambda value: None if self.filling else slid(value / STEPS))
+        return slider
+
+    def _moment(self) -> Any:
+        line = QtGui.QHBoxLayout()
+        line.addWidget(self.told["clock"])
+        line.addStretch(1)
+        line.addWidget(self.told["place"])
+        return line
+
+    def _buttons(self, acts: dict[str, Callable[[], None]]) -> Any:
+        line, style = QtGui.QHBoxLayout(), QtGui.QStyle
+        line.setSpacing(2)
+        marks = (
+            ("layer_back", style.SP_MediaSkipBackward, tr("Back to the start of the layer")),
+            ("point_back", style.SP_MediaSeekBackward, tr("One point back")),
+            ("play", style.SP_MediaPlay, tr("Play or pause")),
+            ("point_on", style.SP_MediaSeekForward, tr("One point on")),
+            ("layer_on", style.SP_MediaSkipForward, tr("On to the next layer")),
+        )
+        self.buttons = {}
+        for name, mark, help in marks:
+            button = QtGui.QToolButton()
+            button.setObjectName(name)
+            button.setIcon(self.style().standardIcon(mark))
+            button.setToolTip(help)
+            button.clicked.connect(lambda *_, act=acts[name]: act())
+            line.addWidget(button)
+            self.buttons[name] = button
+        self.factor = QtGui.QComboBox()
+        self.factor.setObjectName("factor")
+        self.factor.setToolTip(tr("How many seconds of the job pass in one"))
+        self.factor.addItems([f"{factor:g} ×" for factor in FACTORS])
+        self.factor.setCurrentIndex(FACTORS.index(self.player.factor))
+        self.factor.currentIndexChanged.connect(lambda index: setattr(self.player, "factor", FACTORS[index]))
+        self.next = QtGui.QPushButton(tr("Next finding"))
+        self.next.setObjectName("next_finding")
+        self.next.setToolTip(tr("To the next place where a limit, a singularity or a speed is to be looked at"))
+        self.next.clicked.connect(lambda *_: acts["next_finding"]())
+        self.next.setEnabled(bool(self.run.watch.findings))
+        line.addWidget(self.factor)
+        line.addStretch(1)
+        line.addWidget(self.next)
+        return line
+
+    def _facts(self) -> Any:
+        grid = QtGui.QGridLayout()
+        grid.setVerticalSpacing(2)
+        names = (("doing", tr("Machine")), ("speed", tr("Speed")), ("condition", tr("Condition")))
+        for row, (name, text) in enumerate(names):
+            grid.addWidget(QtGui.QLabel(text), row, 0)
+            grid.addWidget(self.told[name], row, 1, QtCore.Qt.AlignLeft)
+        grid.setColumnStretch(1, 1)
+        return grid
+
+    def make_room(self) -> None:
+        """As wide as what is told becomes, in the language and the units of now."""
+        for name, texts in told.widest(self.run).items():
+            self.told[name].make_room(texts)
+
+    # ---- what is shown
+
+    def mark_play(self) -> None:
+        """The button that plays pauses while it does."""
+        mark = QtGui.QStyle.SP_MediaPause if self.player.playing else QtGui.QStyle.SP_MediaPlay
+        self.buttons["play"].setIcon(self.style().standardIcon(mark))
+
+    def tell(self, moment: Moment) -> None:
+        """Tell of a moment."""
+        self.filling = True
+        self.slider.setValue(round(self.player.time / max(self.run.times.total, 1e-9) * STEPS))
+        self.filling = False
+        self.told["clock"].tell(told.times(self.run, self.player.time))
+        self.told["place"].tell(told.place(self.run, moment))
+        self.bars.set(moment.values, moment.margins, moment.ratios, moment.bad)
+        speed, kept = told.speed(moment)
+        for name, text, good in (
+            ("doing", told.doing(self.run, moment), bool(np.isfinite(moment.state.joints).all())), ("speed", speed, kept),
+            ("condition", told.condition(moment), not moment.singular),
+        ):
+            label = self.told[name]
+            label.tell(text)
+            sheet = "" if good else _WRONG
+            if label.styleSheet() != sheet:
+                label.setStyleSheet(sheet)
+
+    def tell_finding(self, found: Any) -> None:
+        """Tell of a finding, or how many there are."""
+        count = len(self.run.watch.findings)
+        if found is None:
+            text = tr("{count} findings").format(count=count) if count else told.nothing(self.run)
+        else:
+            limit = found.label in self.run.cell.machine.axes
+            unit = self.run.cell.machine.units[self.run.cell.machine.axes.index(found.label)] if limit else "deg"
+            text = f"{(self.player.finding or 0) + 1}/{count}: {told.finding(found, unit)}"
+        self.finding.setText(text)
+        self.finding.setStyleSheet(_WRONG if found is not None else "")
+
+
+def _label(name: str, text: str = "") -> Any:
+    label = QtGui.QLabel(text)
+    label.setObjectName(name)
+    return label
+
+
+def _totals(run: Run) -> Any:
+    box = QtGui.QGroupBox(tr("The whole job"))
+    box.setObjectName("totals")
+    grid = QtGui.QGridLayout(box)
+    grid.setVerticalSpacing(1)
+    for row, (name, value) in enumerate(told.totals(run)):
+        grid.addWidget(QtGui.QLabel(name), row, 0)
+        grid.addWidget(QtGui.QLabel(value), row, 1)
+    grid.setColumnStretch(1, 1)
+    return box

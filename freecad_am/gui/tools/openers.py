@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What each tool opens. Panels and docks are imported when they are first opened: the workbench starts the sooner."""
+
+from __future__ import annotations
+
+
+def open_part() -> None:
+    """Ask for a part file."""
+    from . import open_part
+
+    open_part.ask()
+
+
+def new_job() -> None:
+    """The panel of a new job."""
+    from ..new_job.panel import JobPanel
+    from ..panels.stage import show
+
+    show(JobPanel())
+
+
+def export_path() -> None:
+    """The panel that exports a path."""
+    from ..panels.stage import show
+    from .export_path import ExportPanel
+
+    show(ExportPanel())
+
+
+def cell() -> None:
+    """The panel of a new cell."""
+    from ..panels.cell import CellPanel
+    from ..panels.stage import show
+
+    show(CellPanel())
+
+
+def feature() -> None:
+    """The panel of a new feature of revolution."""
+    from ..panels.feature import FeaturePanel
+    from ..panels.stage import show
+
+    show(FeaturePanel())
+
+
+def wall() -> None:
+    """The panel of a new wall."""
+    from ..panels.stage import show
+    from ..panels.wall import WallPanel
+
+    show(WallPanel())
+
+
+def solid() -> None:
+    """The panel of new solids."""
+    from ..panels.solid import SolidPanel
+    from ..panels.stage import show
+
+    show(SolidPanel())
+
+
+def curves() -> None:
+    """The panel of new curves."""
+    from ..panels.curves import CurvesPanel
+    from ..panels.stage import show
+
+    show(CurvesPanel())
+
+
+def cladding() -> None:
+    """The panel of a new cladding."""
+    from ..panels.cladding import CladdingPanel
+    from ..panels.stage import show
+
+    show(CladdingPanel())
+
+
+def hub() -> None:
+    """The panel of new solids on a hub."""
+    from ..panels.hub import HubPanel
+    from ..panels.stage import show
+
+    show(HubPanel())
+
+
+def toolpath() -> None:
+    """The panel of a new toolpath."""
+    from ..panels.stage import show
+    from ..panels.toolpath import ToolpathPanel
+
+    show(ToolpathPanel())
+
+
+def joint_path() -> None:
+    """The panel of a new joint path."""
+    from ..panels.joint_path import JointPathPanel
+    from ..panels.stage import show
+
+    show(JointPathPanel())
+
+
+def spin_map() -> None:
+    """The map of a joint path."""
+    from ..spin_map import tool
+
+    tool.spin_map()
+
+
+def path() -> None:
+    """The dock of paths."""
+    from ..path import dock
+
+    dock.show()
+
+
+def simulate() -> None:
+    """The dock of a simulation."""
+    from ..simulation import tool
+
+    tool.simulate()
+
+
+def program() -> None:
+    """The panel of a new program."""
+    from ..panels.program import ProgramPanel
+    from ..panels.stage import show
+
+    show(ProgramPanel())
+
+
+def new_machine() -> None:
+    """The wizard of a new machine."""
+    from ..machine_wizard import wizard
+
+    wizard.show()
+
+
+def inspect() -> None:
+    """The panel of an inspection."""
+    from ..inspection import panel
+
+    panel.inspect()
+
+
+def plots() -> None:
+    """The dock of plots."""
+    from ..plots import dock
+
+    dock.show()

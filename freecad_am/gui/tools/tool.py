@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A command of FreeCAD as this workbench has them: its texts, what it needs, and that its tooltip says what is missing."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from .. import icons
+from ..texts.translation import tr
+from . import needs, whats_this
+
+PREFIX = "RoboticAM_"
+
+
+class Tool:
+    """One command. `icon` is also the object it makes; `action` opens what the tool opens; `need` tells what a document
+    lacks for it; `beside`: whether it acts beside a task panel that is open."""
+
+    name = ""  # without prefix
+    told = ""  # in its tooltip now, below its name
+
+    def __init__(
+        self, icon: str, text: str, help: str, action: Callable[[], None], need: needs.Need = needs.document,
+        beside: bool = False,
+    ) -> None:
+        # as written: FreeCAD translates them by the name of the command, and again when the language changes
+        self.icon, self.text, self.help, self.action, self.need, self.beside = icon, text, help, action, need, beside
+
+    def GetResources(self) -> dict[str, str]:
+        """Texts and icon; the macro interface makes the step of undo, not the command.
+
+        With ForEdit FreeCAD asks `IsActive` even while a task panel is open.
+        """
+        return {
+            "Pixmap": icons.path(self.icon), "MenuText": self.text, "ToolTip": self.help, "StatusTip": self.help,
+            "CmdType": "AlterDoc NoTransaction ForEdit", "WhatsThis": whats_this.url(self.name),
+        }
+
+    def IsActive(self) -> bool:
+        """Whether it can act; the tooltip says what is missing when it cannot."""
+        lacking = self.missing()
+        help = tr(self.help)
+        told = tr("{}. {}").format(help, lacking) if lacking else help
+        if told != self.told and self._explain(told):
+            self.told = told
+        return not lacking
+
+    def missing(self) -> str:
+        """What to do first, '' when it can act now."""
+        try:
+            if App.ActiveDocument is not None and not self.beside and Gui.Control.activeDialog():
+                return tr("First close the task panel that is open.")
+            return self.need(App.ActiveDocument)
+        except (ReferenceError, RuntimeError):  # the document is being closed
+            return tr("First open a part, or make a document.")
+
+    def _explain(self, text: str) -> bool:
+        """Tell the tool's name in its tooltip, and what is missing, which FreeCAD sets once; False while there is no button
+        yet."""
+        command = Gui.Command.get(PREFIX + self.name)
+        actions = [] if command is None else command.getAction()
+        name, help = html.escape(tr(self.text).rstrip("…")), html.escape(text, quote=False)
+        for action in actions:
+            action.setToolTip(f"<p><b>{name}</b></p><p>{help}</p>")
+            action.setStatusTip(text)
+        return bool(actions)
+
+    def Activated(self, index: int = 0) -> None:
+        """The tool was clicked, or called by a macro or a shortcut at a moment when it cannot act."""
+        lacking = self.missing()
+        if lacking:
+            App.Console.PrintWarning(tr("{}: {}").format(tr(self.text), lacking) + "\n")
+        else:
+            self.action()
