@@ -13,11 +13,9 @@ from PySide import QtCore, QtGui
 
 from ... import api
 from ...core.issues import AmError, Issue
-from ...core.parameters.cell import CellParameters
 from ...objects import preferences
 from ...objects.progress import Cancelled
 from ...objects.proposed_family import GEODESIC
-from ...objects.staleness import UP_TO_DATE
 from .. import icons, recorded
 from ..background.busy import carry_out
 from ..background.later import Background
@@ -31,11 +29,11 @@ from ..texts.translation import sentence, tr, translated, translated_error
 from ..widgets import choices, suggestions
 from ..widgets.fold import Fold
 from ..widgets.wheel import scrolls
-from . import proposal
+from . import after, proposal
+from .as_macro import arguments
+from .fields import label, machines, shown
 from .left_out import left_out
 from .proposal import CLADDING, CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
-
-_TOLD = 15000  # ms that the next step is told on the status bar
 
 
 class JobPanel:
@@ -65,30 +63,14 @@ class JobPanel:
         self.form.setObjectName("RoboticAM_NewJob")
         self.form.setWindowTitle(tr("New job"))
         self.form.setWindowIcon(QtGui.QIcon(icons.path("new_job")))
-        column = QtGui.QVBoxLayout(self.form)
-        self.error, self.reason, self.left_out, self.no_post = (QtGui.QLabel() for _ in range(4))
-        for label, name in (
-            (self.error, "error"), (self.reason, "reason"), (self.left_out, "left_out"), (self.no_post, "no_post"),
-        ):
-            label.setObjectName(name)
-            label.setWordWrap(True)
-            label.hide()
+        self.error, self.reason, self.left_out, self.no_post = (
+            label(name) for name in ("error", "reason", "left_out", "no_post")
+        )
         self.error.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
-        self.kind = QtGui.QComboBox()
-        self.kind.setObjectName("Kind")
-        self.kind.setToolTip(tr("How the part is cut into layers; proposed from the selection"))
-        self.kind.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)  # a narrow panel stays whole
-        for key, text in self.kinds.items():
-            self.kind.addItem(text, key)
-        self.kind.activated.connect(self._choose)
-        self.part = _shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
-        self.ground = _shown("Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view"))
-        self.machine = QtGui.QComboBox()
-        self.machine.setObjectName("Machine")
-        self.machine.setToolTip(tr("The machine that deposits; the program is written for its controller"))
-        self.machine.setEditable(True)
-        choices.offer(self.machine, choices.machines())
-        choices.enter(self.machine, _machine_before(self.document))
+        self.kind = self._kinds()
+        self.part = shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
+        self.ground = shown("Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view"))
+        self.machine = machines(_machine_before(self.document))
         self.name = inputs.NameChoice("")
         self.fold = Fold(tr("Inputs"), True)
         rows = (
@@ -103,11 +85,22 @@ class JobPanel:
         hint = QtGui.QLabel(tr("Cell, feature, toolpath, joint path and program are made with their defaults; "
                                "double-click one in the tree to change it."))
         hint.setWordWrap(True)
+        column = QtGui.QVBoxLayout(self.form)
         for widget in (self.fold.widget, self.error, self.reason, self.left_out, self.no_post, hint):
             column.addWidget(widget)
         column.addStretch(1)
         scrolls(self.form)
         self._entered_anew()
+
+    def _kinds(self) -> Any:
+        kind = QtGui.QComboBox()
+        kind.setObjectName("Kind")
+        kind.setToolTip(tr("How the part is cut into layers; proposed from the selection"))
+        kind.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)  # a narrow panel stays whole
+        for key, text in self.kinds.items():
+            kind.addItem(text, key)
+        kind.activated.connect(self._choose)
+        return kind
 
     # ---- the selection
 
@@ -254,8 +247,8 @@ class JobPanel:
         else:
             self.close()
             made = [obj for obj in api.stages_of(self.document) if obj.Name not in before]
-            _show_alone(made)
-            _tell_next(made)
+            after.show_alone(made)
+            after.tell_next(made)
             return True
         return False
 
@@ -267,29 +260,7 @@ class JobPanel:
             self.background.at_once()
 
     def _arguments(self) -> dict[str, str]:
-        found = self.found
-        first = found.parts[0]
-        told = {"source": recorded.reference(first.obj)}
-        if found.kind != REVOLUTION:
-            told["kind"] = repr(found.kind)
-        if found.layers == GEODESIC:
-            told["layers"] = repr(found.layers)
-        if found.mend:
-            told["mend"] = repr(found.mend)
-        if found.kind in (DEVELOPABLE, SOLID):
-            told.update(_of_solids(found))
-        else:
-            told["faces"] = repr(list(first.names))
-            if found.ground is not None:
-                told["substrate"] = recorded.reference(found.ground.obj)
-        machine = choices.entered(self.machine)
-        if machine != CellParameters().machine:
-            told["machine"] = repr(machine)
-        if preferences.post():
-            told["post"] = repr(preferences.post())
-        if preferences.process():
-            told["process"] = repr(preferences.process())
-        return {**told, **self.name.arguments()}
+        return {**arguments(self.found, choices.entered(self.machine)), **self.name.arguments()}
 
     def reject(self) -> Any:
         """Nothing was done."""
@@ -304,65 +275,7 @@ class JobPanel:
             self.background.cancel()
 
 
-def _of_solids(found: JobProposal) -> dict[str, str]:
-    """Solids and what they stand on, which may be one with them, as a macro says it."""
-    first, *further = (pick.obj for pick in found.parts)
-    told, ground = {}, found.ground
-    if further:
-        told["further"] = f"[{', '.join(recorded.reference(obj) for obj in further)}]"
-    if ground is not None and ground.obj == first:
-        told["faces"] = repr(list(ground.names))
-    elif ground is not None:
-        told["substrate"] = recorded.reference(ground.obj)
-        if ground.names:
-            told["base_faces"] = repr(list(ground.names))
-    return told
-
-
-def _shown(name: str, help: str) -> Any:
-    line = QtGui.QLineEdit()
-    line.setObjectName(name)
-    line.setReadOnly(True)
-    line.setToolTip(help)
-    line.setWhatsThis(help)
-    line.setPlaceholderText(tr("click it") if name == "Source" else tr("click it with Ctrl"))
-    return line
-
-
 def _machine_before(document: Any) -> str:
     """The machine of the last cell of a document, else the one by default."""
     cells = api.stages_of(document, "cell")
     return str(cells[-1].Machine) if cells else preferences.machine()
-
-
-def _tell_next(stages: list[Any]) -> None:
-    """Show the whole result, and tell what came of it and what can be done next."""
-    wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
-    if wrong is not None:
-        # why is in the report view already
-        text = tr("{} is {}. Double-click a stage in the tree to change it.").format(wrong.Label, translated(wrong.Status))
-    elif stages[-1].Proxy.kind == "program":
-        text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
-    else:
-        text = tr(
-            "The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export "
-            "Path… writes its points as a table."
-        )
-    Gui.getMainWindow().statusBar().showMessage(text, _TOLD)
-    App.Console.PrintMessage(text + "\n")
-    _show_whole()
-
-
-def _show_alone(stages: list[Any]) -> None:
-    """Hide what earlier jobs of the document have drawn: their cells and paths would lie across those of this one."""
-    for obj in api.stages_of(stages[0].Document) if stages else []:
-        if obj not in stages and obj.ViewObject.Visibility:
-            obj.ViewObject.Visibility = False
-
-
-def _show_whole() -> None:
-    """Fit the view; one that is still as FreeCAD opens it, straight from above, is turned so that heights are seen."""
-    view = Gui.activeDocument().activeView()
-    if hasattr(view, "getCameraOrientation") and view.getCameraOrientation().isIdentity():
-        view.viewIsometric()
-    Gui.SendMsgToActiveView("ViewFit")

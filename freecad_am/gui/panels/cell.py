@@ -187,9 +187,9 @@ class CellPanel(PreviewPanel):
             return self.places[place][0].value
         return None
 
-    def _judge_entries(self) -> None:
+    def judge_entries(self) -> None:
         """What was told of a proposal goes once something else is entered."""
-        super()._judge_entries()
+        super().judge_entries()
         for place, held in list(self.noted.items()):
             if not _alike(self._holds(place), held):
                 del self.noted[place]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import weakref
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import FreeCAD as App
@@ -14,7 +14,6 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ...core.issues import AmError, InputError
-from ...core.parameters.field import check_value
 from ...objects import expressions, preferences
 from ...objects.findings import issues_of
 from ...objects.progress import Cancelled
@@ -25,12 +24,13 @@ from ..background.later import Later
 from ..colours import WRONG
 from ..picking import inputs
 from ..signals import connect
-from ..texts.translation import marked, tr, translated, translated_error
+from ..texts.translation import marked, tr, translated
 from ..widgets import fields, suggestions
 from ..widgets.fold import Fold
 from ..widgets.messages import Messages
 from ..widgets.wheel import scrolls
 from . import closing
+from .noted import Noted, lines_of
 
 MOST_ISSUES = 6
 ADVANCED = marked("{}: advanced")
@@ -38,7 +38,7 @@ ROOM_IN_BUTTON = 26  # pixels beside its text
 CLOSED = marked("The document or object of this panel is gone; cancel and open the panel again.")
 
 
-class StagePanel:
+class StagePanel(Noted):
     """Inputs and parameters of a stage to be made (`obj` None) or changed. Nothing happens before OK or Apply.
 
     What is wrong is told under the field it belongs to, else at the top.
@@ -80,11 +80,11 @@ class StagePanel:
         self._show_findings()
         if obj is not None:
             self.messages.hold(self.findings)
-        self.later_entries = Later(self.form, self._judge_entries)
+        self.later_entries = Later(self.form, self.judge_entries)
         for widget in (*(field.widget for field, _, _ in self.places.values()), *(choice.widget for choice in choices)):
-            for line in _lines(widget):
+            for line in lines_of(widget):
                 connect(line, "textChanged(QString)", self.later_entries.ask)
-        self._judge_entries()
+        self.judge_entries()
         scrolls(self.form)
         missing = [choice.missing for choice in choices if choice.missing]
         if obj is None and missing:
@@ -150,111 +150,6 @@ class StagePanel:
     def _inputs(self) -> dict[str, str]:
         return {key: text for choice in self.choices for key, text in choice.arguments().items()}
 
-    def say(self, text: str) -> None:
-        """Show what is wrong."""
-        self.error.setText(text)
-        self.error.setVisible(bool(text))
-        self.messages.to_top()
-
-    # ---- what is wrong
-
-    def tell(self, place: str, text: str, wrong: bool = True) -> None:
-        """Something about a field, under it; '' for nothing any more."""
-        note = self.notes[place]
-        note.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
-        note.setText(text)
-        note.setVisible(bool(text))
-
-    def _tell_error(self, error: AmError) -> None:
-        """Under the field it belongs to, which is brought into sight and gets the focus; else at the top."""
-        place, text = self._placed(error)
-        if not place:
-            self.say(translated_error(error))
-            return
-        self.marked[place] = self._entry(place)
-        self.tell(place, text)
-        widget = self._unfolded(place)
-        widget.setFocus()
-        QtCore.QTimer.singleShot(0, lambda: _bring_into_sight(self.form, self.notes.get(place)))
-
-    def _placed(self, error: AmError) -> tuple[str, str]:
-        """The place among the notes that an error belongs to, '' for none, and what to say there."""
-        place, names = error.where.replace(".", "_"), self._names()
-        for known, (field, _, _) in self.places.items():
-            if known == place or error.where in [f"{name}.{field.row.name}" for name in names]:
-                return known, translated(error.message)
-        for choice in self.choices:
-            own = choice.link.name if hasattr(choice, "link") else choice.widget.objectName()
-            missing = error.code == "NO_INPUT" and error.message.startswith(f"{own} is missing")
-            if missing or error.where in [*choice.places, *(f"{name}.{own}" for name in names)]:
-                return choice.label, translated(error.message)
-        return "", translated_error(error)
-
-    def _names(self) -> list[str]:
-        """What errors call the stage: by its label, while it is made and where it is but previewed."""
-        return [self.draft, self.proxy.kind.capitalize(), *([] if self.obj is None else [self.obj.Label])]
-
-    def leave_out(self, places: Collection[str], also_entered: bool = False) -> None:
-        """Show all fields but some that mean nothing now; those that hold something all the same only where it is said."""
-        for place, (field, _, fold) in self.places.items():
-            holds = not also_entered and self._entry(place) != repr(field.row.outer(field.row.default))
-            fold.show(field.widget, place not in places or holds)
-
-    def _unfolded(self, place: str) -> Any:
-        """The widget of a place, its part of the panel unfolded."""
-        if place in self.places:
-            field, _, fold = self.places[place]
-            fold.show(field.widget, True)
-            fold.heading.setChecked(True)
-            return field.widget
-        self.heading.heading.setChecked(True)
-        return next(choice.widget for choice in self.choices if choice.label == place)
-
-    def _entry(self, place: str) -> str:
-        """What is entered at a place, to be compared."""
-        try:
-            if place in self.places:
-                return repr(self.places[place][0].value)
-            return repr([line.text() for choice in self.choices if choice.label == place for line in _lines(choice.widget)])
-        except InputError as error:
-            return error.message
-
-    def _judge_entries(self) -> None:
-        """Tell under each field what its expression gives or is wrong as typed; an error of OK goes with its entry."""
-        for place, entry in list(self.marked.items()):
-            if self._entry(place) != entry:
-                del self.marked[place]
-                self.tell(place, "")
-        for place, (field, _, _) in self.places.items():
-            with contextlib.suppress(ReferenceError):
-                judged = self._judged(field)
-                if judged is not None:
-                    self.tell(place, *judged)
-                    self.told[place] = judged[0]
-                elif self.told.pop(place, None) == self.notes[place].text():
-                    self.tell(place, "")
-
-    def _judged(self, field: fields.Field) -> tuple[str, bool] | None:
-        """What the expression in a field gives, or what is wrong with what it holds; None where there is nothing to tell."""
-        try:
-            value = field.value
-            if field.row.form not in expressions.FOLLOW:
-                return None
-            if expressions.is_expression(value):
-                found = self._evaluated(field, value)
-                return f"= {getattr(found, 'UserString', found)}", False
-            check_value(field.row.spec, field.row.inner(value, field.label), field.label)
-        except InputError as error:
-            return translated(error.message), True
-        return None
-
-    def _evaluated(self, field: fields.Field, value: str) -> Any:
-        """An expression's value now, in the unit that a plain entry would have."""
-        around = self.obj if self.obj is not None else next(iter(self.document.Objects), None)
-        found = expressions.evaluated(value, around, field.label)
-        field.row.inner(found, field.label)  # refuses another dimension
-        return found
-
     # ---- called by FreeCAD
 
     def getStandardButtons(self) -> int:
@@ -307,7 +202,7 @@ class StagePanel:
             elif changed or chosen != self.first_inputs:
                 recorded.change(self.obj, {**(chosen if chosen != self.first_inputs else {}), **changed})
         except AmError as error:
-            self._tell_error(error)
+            self.tell_error(error)
         except Cancelled:
             self.say(tr("Cancelled: the document is as it was."))
         except ReferenceError:
@@ -332,11 +227,6 @@ class StagePanel:
         return True
 
 
-def _lines(widget: Any) -> list[Any]:
-    """The line edits of a field: itself, or those in it."""
-    return [widget] if isinstance(widget, QtGui.QLineEdit) else list(widget.findChildren(QtGui.QLineEdit))
-
-
 def _narrow(box: Any) -> None:
     with contextlib.suppress(RuntimeError):  # the panel is closed again
         for button in box.buttons():
@@ -346,14 +236,6 @@ def _narrow(box: Any) -> None:
 
 def _number(button: Any) -> int:
     return int(getattr(button, "value", button))  # an enumeration of Qt 6
-
-
-def _bring_into_sight(form: Any, widget: Any) -> None:
-    """Scroll the task panel to something in it."""
-    with contextlib.suppress(RuntimeError):  # the panel is gone by now
-        for area in Gui.getMainWindow().findChildren(QtGui.QScrollArea):
-            if widget is not None and area.isVisible() and area.isAncestorOf(form):
-                area.ensureWidgetVisible(widget)
 
 
 def show(panel: Any) -> None:

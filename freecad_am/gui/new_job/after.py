@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the window does once a job is made: its result alone is seen whole, and the next step is told."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from ... import api
+from ...objects.staleness import UP_TO_DATE
+from ..texts.translation import tr, translated
+
+TOLD = 15000  # ms that the next step is told on the status bar
+
+
+def tell_next(stages: list[Any]) -> None:
+    """Show the whole result, and tell what came of it and what can be done next."""
+    wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
+    if wrong is not None:
+        # why is in the report view already
+        text = tr("{} is {}. Double-click a stage in the tree to change it.").format(wrong.Label, translated(wrong.Status))
+    elif stages[-1].Proxy.kind == "program":
+        text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
+    else:
+        text = tr(
+            "The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export "
+            "Path… writes its points as a table."
+        )
+    Gui.getMainWindow().statusBar().showMessage(text, TOLD)
+    App.Console.PrintMessage(text + "\n")
+    _show_whole()
+
+
+def show_alone(stages: list[Any]) -> None:
+    """Hide what earlier jobs of the document have drawn: their cells and paths would lie across those of this one."""
+    for obj in api.stages_of(stages[0].Document) if stages else []:
+        if obj not in stages and obj.ViewObject.Visibility:
+            obj.ViewObject.Visibility = False
+
+
+def _show_whole() -> None:
+    """Fit the view; one that is still as FreeCAD opens it, straight from above, is turned so that heights are seen."""
+    view = Gui.activeDocument().activeView()
+    if hasattr(view, "getCameraOrientation") and view.getCameraOrientation().isIdentity():
+        view.viewIsometric()
+    Gui.SendMsgToActiveView("ViewFit")
