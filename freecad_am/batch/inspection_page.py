@@ -11,7 +11,7 @@ import numpy as np
 from freecad_am.core.inspection import table
 from freecad_am.core.inspection.bands import band_of, bands
 from freecad_am.core.toolpath import Array
-from freecad_am.report.page import STYLE
+from freecad_am.report.style import STYLE
 from freecad_am.report.svg import Plot
 
 _MOST = 6000  # points of a map

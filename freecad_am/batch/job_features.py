@@ -7,16 +7,24 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
-from freecad_am.core.geometry.curves.bead_curves import POINT_FILES
 from freecad_am.core.issues import InputError
-from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters, SolidParameters
-from freecad_am.core.strategies.families import AUTO, KINDS, NEEDED, NONE, Family, family_of
+from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family
 
-from . import fields, quantity, tree
-from .part_source import PartSource, absolute, faces_of, fixtures_of, guide_of, part_of
+from . import fields, tree
+from .feature_sections import (
+    kept_clear,
+    process_of,
+    refuse_direction,
+    strategy_of,
+    substrate_of,
+    with_bead_model,
+    with_direction,
+    with_path,
+)
+from .part_source import PartSource, faces_of, fixtures_of, guide_of, part_of
 
 # what a job calls the links of a feature, which the window picks in a document
 _KEYS = {
@@ -53,11 +61,11 @@ def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
     section = values.get("strategy")
     if isinstance(section, dict) and section.get("kind") == AUTO.kind:
         return _left_open(values, section, name, path)
-    strategy = _strategy(_with_fuse(values.get("strategy") or {}, part_section))
-    process = _process(values.get("process") or {}, strategy)
-    process = _with_bead_model(process, strategy, path)
+    strategy = strategy_of(_with_fuse(values.get("strategy") or {}, part_section))
+    process = process_of(values.get("process") or {}, strategy)
+    process = with_bead_model(process, strategy, path)
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
-    _refuse_direction(strategy, build_direction)
+    refuse_direction(strategy, build_direction)
     part = part_of({key: value for key, value in part_section.items() if key != "fuse"}, path)
     guide = guide_of((values.get("strategy") or {}).get("guide"), part_section, path)
     if guide is not None and getattr(strategy, "layers", "") != "along":
@@ -69,7 +77,7 @@ def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
             "or use those layers",
         )
     return JobFeature(
-        name, part, _substrate(values.get("substrate"), strategy, part, path),
+        name, part, substrate_of(values.get("substrate"), strategy, part, path),
         fixtures_of(values.get("fixtures"), path), strategy, build_direction, process, guide, start_faces=start_faces,
     )
 
@@ -85,7 +93,7 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str, path:
         name, part_of(part, path), substrate,
         fixtures_of(values.get("fixtures"), path), fields.build(LayerParameters, common, "strategy"),
         fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"),
-        _with_path(fields.build(ProcessParameters, fields.mapping(values.get("process") or {}, "process"), "process"), path),
+        with_path(fields.build(ProcessParameters, fields.mapping(values.get("process") or {}, "process"), "process"), path),
         sections=values,
     )
 
@@ -106,14 +114,9 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str) 
 
 def planes_of(feature: JobFeature) -> SolidParameters:
     """The direction in which planes would be stacked and how far apart, of a feature whose family is left open."""
-    section = _with_direction(feature.sections["strategy"])
+    section = with_direction(feature.sections["strategy"])
     given = {key: section[key] for key in ("direction", "layer_height") if key in section}
     return fields.build(SolidParameters, given, "strategy")
-
-
-def _beside(kind: str) -> tuple[str, ...]:
-    """The keys of `strategy` that are no parameters of the family: its kind, and what is picked of the part."""
-    return ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
 
 
 def _keys(family: Family) -> tuple[str, ...]:
@@ -123,7 +126,7 @@ def _keys(family: Family) -> tuple[str, ...]:
 def process_of_all(section: Any, path: str) -> ProcessParameters:
     """The process of a program of several features, which may differ from it."""
     process = fields.build(ProcessParameters, fields.mapping(section, "process"), "process")
-    return _with_path(process, path)
+    return with_path(process, path)
 
 
 def several(values: dict[str, Any], path: str, lines: tree.Tree) -> tuple[JobFeature, ...]:
@@ -183,7 +186,7 @@ def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
         kind = "developable"
     family = KINDS[kind]
     given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
-    known = (*_beside(kind), *_keys(family))
+    known = (*kept_clear(kind), *_keys(family))
     mixed["strategy"] = {key: value for key, value in strategy.items() if key in known or key in given}
     if "substrate" not in own and family.substrate == NONE:
         mixed.pop("substrate", None)
@@ -205,86 +208,6 @@ def _over(base: Any, own: Any) -> Any:
     return {**base, **{key: _over(base.get(key), value) for key, value in own.items()}}
 
 
-def _process(section: Any, strategy: LayerParameters) -> ProcessParameters:
-    """The process; where solids are filled a bead width that the job gives is meant, whatever it is."""
-    given = fields.mapping(section, "process")
-    if "bead_width" in given and family_of(strategy).filled:
-        given = {"fill_width": "bead_width", **given}
-    return fields.build(ProcessParameters, given, "process")
-
-
-def _with_bead_model(process: ProcessParameters, strategy: LayerParameters, path: str) -> ProcessParameters:
-    """The process with the path of its calibration table made absolute; the table is read, so that what is wrong with it is
-    told at once."""
-    if process.bead_model == "none":
-        return process
-    if not family_of(strategy).filled:
-        raise InputError(
-            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of strategy.kind solid, "
-            "developable and cladding alone; use none",
-        )
-    return _with_path(process, path)
-
-
-def _with_path(process: ProcessParameters, path: str) -> ProcessParameters:
-    if process.bead_model == "none":
-        return process
-    from freecad_am.core.process import bead_table
-
-    if process.bead_model not in bead_table.BUILT_IN:
-        process = dataclasses.replace(process, bead_model=absolute(process.bead_model, path))
-    bead_table.load(process.bead_model)
-    return process
-
-
-def _refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -> None:
-    family = family_of(strategy)
-    if build_direction.mode not in family.modes:
-        raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why.format(build_direction.mode))
-
-
-def _substrate(section: Any, strategy: Any, part: PartSource, path: str) -> PartSource | None:
-    family = family_of(strategy)
-    if part.start_edges and not family.edges:
-        raise InputError("NOT_FOR_FAMILY", "part.start_edges", "only strategy.kind surface starts from edges; leave "
-        "them out")
-    table = part.file.lower().endswith(tuple(POINT_FILES))
-    if family.kind != "curves" and (part.edges or table):
-        where, what = ("part.edges", "edges") if part.edges else ("part.file", "tables of points")
-        raise InputError("NOT_FOR_FAMILY", where, f"only strategy.kind curves lays {what} as beads; use it")
-    if table and (part.edges or part.faces):
-        raise InputError("NOT_FOR_FAMILY", "part.edges" if part.edges else "part.faces", "a table of points has no edges "
-                         "and no faces; leave them out")
-    if part.faces and not family.faces:
-        raise InputError("NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out")
-    if family.substrate == NEEDED:
-        if section is None:
-            return None
-        found = part_of(fields.mapping(section, "substrate"), path, "substrate")
-        if found.faces:
-            raise InputError(
-                "NOT_YET", "substrate.faces", f"{', '.join(found.faces)!r} is not supported yet; use the whole solid"
-            )
-        return found
-    if section is not None and family.substrate == NONE:
-        raise InputError("NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out")
-    return None if section is None else part_of(fields.mapping(section, "substrate"), path, "substrate")
-
-
-def _strategy(section: Any) -> LayerParameters:
-    kind = fields.mapping(section, "strategy").get("kind", "revolution")
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise f.unknown_choice("strategy.kind", kind, (*KINDS, AUTO.kind))
-    if kind == "solid" and section.get("layers") == "developable":  # which has a name of its own
-        kind, section = "developable", {key: value for key, value in section.items() if key != "layers"}
-    if kind == "developable":
-        section = _with_base(section)
-    if kind in ("solid", "curves"):
-        section = _with_direction(section)
-    factory: type[LayerParameters] = KINDS[kind].parameters
-    return fields.build(factory, section, "strategy", also=_beside(kind))
-
-
 def _with_fuse(section: Any, part: dict[str, Any]) -> Any:
     """The section of the strategy with what the part says about solids that touch."""
     if "fuse" not in part:
@@ -292,29 +215,3 @@ def _with_fuse(section: Any, part: dict[str, Any]) -> Any:
     if fields.mapping(section, "strategy").get("kind") != "solid":
         raise InputError("NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; leave it out")
     return {**section, "fuse": part["fuse"]}
-
-
-def _with_direction(section: dict[str, Any]) -> dict[str, Any]:
-    """The section with a direction, a list of three numbers, as their text."""
-    direction = section.get("direction")
-    if not isinstance(direction, list):
-        return section
-    numbers = [quantity.read(number, f.NUMBER, "strategy.direction") for number in direction]
-    return {**section, "direction": " ".join(f"{number:.15g}" for number in numbers)}
-
-
-def _with_base(section: dict[str, Any]) -> dict[str, Any]:
-    """The section with a base of `auto` left out, and the axis, a point and a direction, as the text of six numbers."""
-    base = section.get("base")
-    if base == "auto":
-        return {key: value for key, value in section.items() if key != "base"}
-    if not isinstance(base, dict) or not isinstance(base.get("axis"), list):
-        return section
-    rows = base["axis"] if all(isinstance(row, list) for row in base["axis"]) else [base["axis"]]
-    numbers = [
-        quantity.read(number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, "strategy.base.axis")
-        for k, row in enumerate(rows) for number in row
-    ]
-    return {**section, "base": {**base, "axis": " ".join(f"{number:.15g}" for number in numbers)}}
-
-

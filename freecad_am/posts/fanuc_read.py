@@ -11,30 +11,20 @@ import dataclasses
 import re
 from array import array
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.program import Configuration, Event, ReadMoves
-from . import alike
-from .fanuc_records import Records, records_of, unreadable
+from .fanuc_parsed import UNITS, Listing, listing_of, name_of
+from .fanuc_records import unreadable
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
-_NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
-_TITLE = 1000  # bytes that hold the first line
-# what a unit of a move says: duration s, speed mm/s, share
-_UNITS = ("sec", "msec", "mm/sec", "%")
 _TOLD = np.array([(1.0, np.nan, np.nan), (0.001, np.nan, np.nan), (np.nan, 1.0, np.nan), (np.nan, np.nan, 0.01)])
-_SPEED, _SHARE = _UNITS.index("mm/sec"), _UNITS.index("%")
+_SPEED, _SHARE = UNITS.index("mm/sec"), UNITS.index("%")
 _MOST_CNT = 100.0
-_LINE = re.compile(r" *\d*:(.*?) *; *$")
-_MOTION = re.compile(
-    r" *\d*: *([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:(FINE)|CNT ?(\d+)) *; *$"
-)
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
 _CALL = re.compile(r"CALL (\w+)$")
 _CALLS = re.compile(r"^ *\d*: *CALL (\w+) *; *\r?$", re.MULTILINE)
@@ -44,46 +34,6 @@ _LAYER = re.compile(r"!layer (\d+)$")
 _WAIT = re.compile(r"WAIT +(\d*\.(\d+))\(sec\)$")
 _INPUT = re.compile(r"WAIT DI\[(\d+)(?::[^\]]*)?\]=ON$")
 _HARMLESS = re.compile(r"$|!|//|--eg:")
-
-class _Instruction(NamedTuple):
-    """An instruction and the number of its line; or moves that follow each other, by the first of them and the one after
-    the last."""
-
-    number: int
-    text: str
-    first: int = 0
-    end: int = 0
-
-
-@dataclass
-class _Moves:
-    """All moves of a file in order (n,): the numbers of their lines, positions, numbers and the units of these, whether they
-    are straight, and CNT, NaN of those that stop."""
-
-    line: Index
-    point: Index
-    value: Array
-    unit: Index
-    straight: Mask
-    corner: Array
-
-
-@dataclass
-class _Listing:
-    """One file: its instructions, its moves, and its positions in the order of their numbers."""
-
-    file: str
-    instructions: list[_Instruction]
-    moves: _Moves
-    records: Records
-
-    def rows(self, points: Index) -> Index:
-        """Which positions those numbered (k,) are, -1 where there is none."""
-        known = self.records.point
-        if not len(known):
-            return np.full(len(points), -1)
-        at = np.minimum(np.searchsorted(known, points), len(known) - 1)
-        return np.where(known[at] == points, at, -1)
 
 
 def _floats() -> array[float]:
@@ -123,7 +73,7 @@ class _Run:
         """Something happens before the next move."""
         self.events.append(Event(len(self.duration), kind, value, digits))
 
-    def take(self, listing: _Listing) -> None:
+    def take(self, listing: Listing) -> None:
         """Take over the records that are pending."""
         if self.pending:
             rows, told = np.concatenate(self.pending), listing.records
@@ -142,7 +92,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
-    named = {_name(file, files[file]): file for file in sorted(files)}
+    named = {name_of(file, files[file]): file for file in sorted(files)}
     if len(named) < len(files):
         raise unreadable("program", "two files hold a program of the same name")
     calling = [content.decode("latin-1") for content in files.values() if b"CALL " in content]
@@ -191,71 +141,11 @@ def _rotation(wpr: Array) -> Array:
     return np.moveaxis(np.array(rows), -1, 0)
 
 
-def _text(content: bytes) -> str:
-    return content.decode("latin-1").replace("\r\n", "\n")
-
-
-def _name(file: str, content: bytes) -> str:
-    """The name of a program, upper case."""
-    title = re.match(r"/PROG +(\w+)\s*$", _text(content[:_TITLE]).partition("\n")[0])
-    if title is None:
-        raise unreadable(file, _NO_LISTING)
-    return title[1].upper()
-
-
-def _listing(file: str, content: bytes) -> _Listing:
-    text = f"\n{_text(content)}\n"
-    marks = [text.find(f"\n{section}\n") for section in ("/MN", "/POS", "/END")]
-    if -1 in marks or marks != sorted(marks):
-        raise unreadable(file, _NO_LISTING)
-    # the records, by far the most of it, are not taken apart by lines
-    lines = text[1 : marks[1]].split("\n")
-    start, positions = lines.index("/MN"), len(lines)
-    instructions, moves = _instructions(file, lines[start + 1 :], start + 2)
-    records = records_of(file, lines, text[marks[1] + len("\n/POS\n") : marks[2]], positions)
-    return _Listing(file, instructions, moves, records)
-
-
-def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instruction], _Moves]:
-    """The instructions of lines, of which the first has a number, and all moves among them."""
-    count = len(lines)
-    moves = _Moves(
-        np.arange(number, number + count), np.zeros(count, dtype=np.intp), np.zeros(count), np.zeros(count, dtype=np.intp),
-        np.zeros(count, dtype=bool), np.full(count, np.nan),
-    )
-    moving, others = np.zeros(count, dtype=bool), []
-    for shape, some in alike.shapes(lines).items():
-        move = _MOTION.match(shape)
-        if move is None:
-            others += some
-            continue
-        moving[some] = True
-        spans = [move.span(group) for group in (2, 3, 6) if move[group]]
-        told = alike.numbers([lines[row] for row in some], shape, spans)
-        moves.point[some], moves.value[some] = told[:, 0], told[:, 1]
-        moves.unit[some], moves.straight[some] = _UNITS.index(move[4]), move[1] == "L"
-        if move[6]:
-            moves.corner[some] = told[:, 2]
-    before = np.cumsum(moving)  # how many moves there are up to a line
-    instructions, done = [], 0
-    for row in [*sorted(row for row in others if lines[row].strip()), count]:
-        moved = int(before[row - 1]) if row else 0
-        if moved > done:
-            instructions.append(_Instruction(0, "", done, moved))
-            done = moved
-        if row < count:
-            statement = _LINE.match(lines[row])
-            if statement is None:
-                raise unreadable(f"{file} line {number + row}", f"{lines[row].strip()!r} is no instruction")
-            instructions.append(_Instruction(number + row, statement[1].strip()))
-    return instructions, _Moves(*(getattr(moves, entry.name)[moving] for entry in dataclasses.fields(moves)))
-
-
 def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: tuple[str, ...]) -> None:
     """Carry out the instructions of a program in order, and of those it calls. A listing is there while it is followed."""
     if name in callers:
         raise unreadable(files[name][0], "it calls itself")
-    listing = _listing(*files[name])
+    listing = listing_of(*files[name])
     for position, (number, statement, first, end) in enumerate(listing.instructions):
         if end > first:
             _move(listing, slice(first, end), run)
@@ -289,7 +179,7 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
     run.take(listing)
 
 
-def _move(listing: _Listing, some: slice, run: _Run) -> None:
+def _move(listing: Listing, some: slice, run: _Run) -> None:
     """Carry out moves that follow each other, all of them column by column."""
     moves, cartesian = listing.moves, listing.records.cartesian
     unit, straight, corner = moves.unit[some], moves.straight[some], moves.corner[some]
@@ -316,7 +206,7 @@ def _move(listing: _Listing, some: slice, run: _Run) -> None:
     run.linear += straight.tobytes()
 
 
-def _refuse(listing: _Listing, move: int, run: _Run) -> None:
+def _refuse(listing: Listing, move: int, run: _Run) -> None:
     """InputError for what cannot be understood of a move."""
     moves, records = listing.moves, listing.records
     where, unit, corner = _at(listing, int(moves.line[move])), int(moves.unit[move]), moves.corner[move]
@@ -326,10 +216,10 @@ def _refuse(listing: _Listing, move: int, run: _Run) -> None:
         raise unreadable(where, "joint and Cartesian positions are mixed")
     if moves.straight[move] and not records.cartesian:
         raise unreadable(where, "a position is moved to in another way than it is recorded")
-    raise unreadable(where, f"{_UNITS[unit]} or CNT{'' if np.isnan(corner) else int(corner)} is not understood here")
+    raise unreadable(where, f"{UNITS[unit]} or CNT{'' if np.isnan(corner) else int(corner)} is not understood here")
 
 
-def _select(listing: _Listing, row: int, run: _Run, number: int) -> None:
+def _select(listing: Listing, row: int, run: _Run, number: int) -> None:
     """Look at the frames that a position is recorded in; those like it need not be looked at until others are selected."""
     recorded = listing.records.frames[row]
     for word, frame in zip(("FRAME", "TOOL"), recorded, strict=True):
@@ -342,5 +232,5 @@ def _select(listing: _Listing, row: int, run: _Run, number: int) -> None:
     run.numbers = float(run.frame.get("FRAME", "nan")), float(run.frame.get("TOOL", "nan"))
 
 
-def _at(listing: _Listing, number: int) -> str:
+def _at(listing: Listing, number: int) -> str:
     return f"{listing.file} line {number}"

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import Any
@@ -17,6 +17,8 @@ from freecad_am.plots.source import Source
 from . import hub_figures, view, wall_figures
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
+from .style import STYLE
+from .tables import axis_names, clock, figure_text, grid_of, in_units, pairs_of, table_of
 
 _MOST_ISSUES = 200
 _WHOLE = (
@@ -43,43 +45,6 @@ _MOTION_PER_AXIS = (
 )
 # how a promise is marked: what was not checked is never green
 _MARKS = {True: ("good", "kept"), False: ("error", "broken"), None: ("unknown", "not checked")}
-STYLE = """
-:root{--ink:#1d2430;--soft:#667085;--line:#dfe3ea;--paper:#fff;--ground:#f3f5f8;--good:#1a7f4b;--bad:#b8322a;--warn:#9a6700}
-@media(prefers-color-scheme:dark){:root{--ink:#e6e9ef;--soft:#98a2b3;--line:#323a47;--paper:#1a202b;--ground:#11151c;
---good:#4cc38a;--bad:#ff7a70;--warn:#e2b340}}
-*{box-sizing:border-box}body{margin:0;background:var(--ground);color:var(--ink);font:15px/1.5 system-ui,sans-serif}
-main{max-width:1040px;margin:0 auto;padding:28px 20px 60px}h1{font-size:28px;margin:0}h2{font-size:18px;margin:34px 0 10px}
-header{display:flex;align-items:center;gap:14px;flex-wrap:wrap}.sub{color:var(--soft);margin:4px 0 18px}
-.status{font-weight:600;padding:2px 12px;border-radius:99px;color:#fff;background:var(--good)}
-.status.infeasible,.status.failed{background:var(--bad)}@media(prefers-color-scheme:dark){.status{color:#11151c}}
-.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(125px,1fr));gap:10px;margin:0 0 16px}
-.card,figure,.table{background:var(--paper);border:1px solid var(--line);border-radius:10px}
-.card{padding:10px 12px}.card b{display:block;font-size:17px;white-space:nowrap;font-weight:600}
-.card span{color:var(--soft);font-size:13px}
-figure{margin:0;padding:8px}.grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(400px,100%),1fr));gap:10px}
-figcaption{color:var(--soft);font-size:13px;padding:2px 8px 4px}
-.table{overflow-x:auto}.findings{max-height:340px;overflow-y:auto}
-table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:tabular-nums}
-th,td{padding:6px 12px;text-align:right;border-top:1px solid var(--line);white-space:nowrap}
-tr:first-child>*{border-top:0}th{color:var(--soft);font-weight:500}th:first-child,td:first-child{text-align:left}
-td.text,td.place{text-align:left}td.text{white-space:normal}
-.good{color:var(--good);font-weight:600}.unknown{color:var(--soft);font-style:italic}
-.error{color:var(--bad);font-weight:600}.warning{color:var(--warn);font-weight:600}
-svg{width:100%;height:auto;display:block}svg text{fill:var(--soft);font:11px system-ui,sans-serif}
-svg .title{fill:var(--ink);font-size:13px;font-weight:600}
-svg .grid{stroke:var(--line)}
-svg .frame{fill:none;stroke:var(--soft);opacity:.5}
-svg.plot path{stroke-linejoin:round}figure.wide{margin-top:10px}
-svg .curve{fill:none;stroke-linejoin:round}
-svg .asked{stroke:var(--soft);stroke-dasharray:5 4}
-svg .rule{fill:var(--bad)}
-svg .near,svg .far{fill:none;stroke-width:2.1;stroke-linejoin:round}
-svg .far{stroke-width:1.2;opacity:.6}svg .direction{stroke:var(--ink);stroke-width:1.1;opacity:.6}
-svg .body{stroke-width:.6;stroke-linejoin:round}
-svg .b0,svg .b1{fill:#9aa4b5;stroke:#9aa4b5}svg .b2{fill:#a8b1c0;stroke:#a8b1c0}svg .b3{fill:#b5bdca;stroke:#b5bdca}
-svg .b4{fill:#c2c9d4;stroke:#c2c9d4}svg .b5{fill:#ced4dd;stroke:#ced4dd}svg .b6{fill:#d9dee5;stroke:#d9dee5}
-svg .platform{fill:var(--line);stroke:var(--soft);stroke-width:.8}svg .platform-side{fill:var(--soft);opacity:.55}
-"""
 
 
 @dataclass(frozen=True)
@@ -118,7 +83,7 @@ def render(content: Content) -> str:
         _comparison(report),
         _totals(report["totals"]),
         _criteria(report),
-        _pairs("Time taken", {stage: f"{seconds:.3f} s" for stage, seconds in report["timing_s"].items()}),
+        pairs_of("Time taken", {stage: f"{seconds:.3f} s" for stage, seconds in report["timing_s"].items()}),
         _programs(report["programs"]),
     ]
     return (
@@ -139,71 +104,48 @@ def _cards(report: dict[str, Any]) -> str:
     counts, spacing = report["counts"], report["spacing_mm"]
     cards = [
         (f"{counts['layers']:,}", "layers"), (f"{counts['beads']:,}", "beads"), (f"{counts['points']:,}", "points"),
-        (f"{report['length_mm'] / 1000:.3f} m", "length of the beads"), (_clock(report["duration_s"]), "time of all moves"),
+        (f"{report['length_mm'] / 1000:.3f} m", "length of the beads"), (clock(report["duration_s"]), "time of all moves"),
     ]
     cards.append((f"{report['totals']['mass_g']:,.1f} g", f"deposit, {report['totals']['volume_cm3']:,.2f} cm\u00b3"))
     if spacing["mean"] is not None:
         cards.append((f"{spacing['mean']:.4f} mm", f"spacing, {spacing['min']:.4f} to {spacing['max']:.4f}"))
     if report["joints"] is not None and report["joints"]["condition_min"] is not None:
-        cards.append((_figure(report["joints"]["condition_min"]), "smallest condition"))
+        cards.append((figure_text(report["joints"]["condition_min"]), "smallest condition"))
     boxes = "".join(f'<div class="card"><b>{escape(value)}</b><span>{escape(word)}</span></div>' for value, word in cards)
     return f'<div class="cards">{boxes}</div>'
-
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s"
 
 
 def _joints(content: Content, pictures: Pictures) -> list[str]:
     if content.source.cell is None:
         return []
-    sections = ["<h2>Joints against their limits</h2>", _grid(pictures.angles()), _joint_table(content)]
+    sections = ["<h2>Joints against their limits</h2>", grid_of(pictures.angles()), _joint_table(content)]
     if content.source.motion.reachable.any():
         plots = "".join(f'<figure class="wide">{plot}</figure>' for plot in pictures.rates())
         sections.append(f"<h2>Speed and condition</h2>{plots}" if plots else "")
     return sections
 
 
-def _grid(plots: Iterable[str]) -> str:
-    figures = "".join(f"<figure>{plot}</figure>" for plot in plots)
-    return f'<div class="grid">{figures}</div>' if figures else ""
-
-
 def _joint_table(content: Content) -> str:
     joints = content.report["joints"]
-    rows = [("", _axes(content.report))] + [
-        (_in_units(word, content.report), [_figure(value) for value in joints[key] or ()]) for key, word in (
+    rows = [("", axis_names(content.report))] + [
+        (in_units(word, content.report), [figure_text(value) for value in joints[key] or ()]) for key, word in (
             ("min_deg", "smallest, deg"), ("max_deg", "largest, deg"), _PER_AXIS[0], _PER_AXIS[1], _PER_AXIS[-1],
         )
     ]
-    return _table(rows)
-
-
-def _axes(report: dict[str, Any]) -> list[str]:
-    """The names of the axes, with their units where these are not all the same."""
-    axes, units = report["machine"]["labels"], report["machine"]["units"]
-    return [f"{axis}, {unit}" for axis, unit in zip(axes, units)] if "mm" in units else axes
-
-
-def _in_units(word: str, report: dict[str, Any]) -> str:
-    """The name of a figure of the axes, with mm beside degrees where some of them slide."""
-    name, _, unit = word.rpartition(", ")
-    mixed = unit.startswith("deg") and "mm" in report["machine"]["units"]
-    return f"{name}, {unit} or {unit.replace('deg', 'mm')}" if mixed else word
+    return table_of(rows)
 
 
 def _process(content: Content, pictures: Pictures) -> str:
     plots = pictures.process(content.features)
-    return f"<h2>Layers and path</h2>{_grid(plots)}" if plots else ""
+    return f"<h2>Layers and path</h2>{grid_of(plots)}" if plots else ""
 
 
 def _on_hub(content: Content, pictures: Pictures) -> str:
     """Layers of solids on a hub laid flat, and what the bead model makes of them."""
     if content.solids is None:
         return ""
-    return f"<h2>Layers laid flat</h2>{_grid(hub_figures.layer_plots(content.solids, content.toolpath) + pictures.beads())}"
+    plots = hub_figures.layer_plots(content.solids, content.toolpath) + pictures.beads()
+    return f"<h2>Layers laid flat</h2>{grid_of(plots)}"
 
 
 def _spacings(of: OfFeature) -> str:
@@ -221,12 +163,12 @@ def _spacings(of: OfFeature) -> str:
     cut = [row for row in rows if row["layers"] is not None]
     names = [row["method"] + (" (planned)" if row["planned"] else "") for row in cut]
     told = [(word, key) for key, word in _SPACING if any(row[key] is not None for row in cut)]
-    table = _table([("", names)] + [(word, [_figure(row[key]) for row in cut]) for word, key in told])
+    table = table_of([("", names)] + [(word, [figure_text(row[key]) for row in cut]) for word, key in told])
     reasons = "".join(f'<p class="sub">{escape(row["method"] + ": " + row["reason"])}.</p>' for row in rows if row["reason"])
     name = f": {escape(of.name)}" if of.name else ""
     return (
         f'<h2>What spacing costs{name}</h2><p class="sub">Distance of each point to the nearest point of the layer below, '
-        f'around the wall; every curve is a layer, dark ones first.</p>{_grid(plots)}{both}{table}{reasons}'
+        f'around the wall; every curve is a layer, dark ones first.</p>{grid_of(plots)}{both}{table}{reasons}'
     )
 
 
@@ -235,21 +177,21 @@ def _spacing_motion(report: dict[str, Any]) -> str:
     if len(rows) < 2:
         return ""
     whole = [("", [row["method"] for row in rows])] + [
-        (word, [_figure(row["motion"][key]) for row in rows]) for key, word in _MOTION
+        (word, [figure_text(row["motion"][key]) for row in rows]) for key, word in _MOTION
     ]
-    axes = [("", ["", *_axes(report)])] + [
-        (_in_units(word, report) if number == 0 else "",
-         [row["method"], *(_figure(value) for value in row["motion"][key] or ())])
+    axes = [("", ["", *axis_names(report)])] + [
+        (in_units(word, report) if number == 0 else "",
+         [row["method"], *(figure_text(value) for value in row["motion"][key] or ())])
         for key, word in _MOTION_PER_AXIS for number, row in enumerate(rows)
     ]
-    return f"<h2>What spacing gains in motion</h2>{_table(whole)}{_table(axes)}"
+    return f"<h2>What spacing gains in motion</h2>{table_of(whole)}{table_of(axes)}"
 
 
 def _totals(sums: dict[str, Any]) -> str:
     """What the job takes and deposits."""
-    return _pairs("Time and material", {
-        "the whole job": _clock(sums["time_s"]), "depositing": _clock(sums["deposit_s"]),
-        "rapid moves": _clock(sums["rapid_s"]), "waits and lead times": _clock(sums["wait_s"]),
+    return pairs_of("Time and material", {
+        "the whole job": clock(sums["time_s"]), "depositing": clock(sums["deposit_s"]),
+        "rapid moves": clock(sums["rapid_s"]), "waits and lead times": clock(sums["wait_s"]),
         "length of the deposit": f"{sums['deposit_mm'] / 1000:.3f} m",
         "length of rapid moves": f"{sums['rapid_mm'] / 1000:.3f} m",
         "volume of the deposit": f"{sums['volume_cm3']:,.2f} cm\u00b3",
@@ -264,17 +206,17 @@ def _criteria(report: dict[str, Any]) -> str:
         return ""
     methods = [report["joints"], *report["comparison"]]
     rows = [("", [entry["method"] for entry in methods])] + [
-        (name, [_figure(entry["criteria"][name]) for entry in methods]) for name in report["joints"]["criteria"]
+        (name, [figure_text(entry["criteria"][name]) for entry in methods]) for name in report["joints"]["criteria"]
     ]
     told = f"Whichever was optimised; smaller is better.{_optimality(report)}"
-    return f"<h2>Criteria</h2><p class=\"sub\">{told}</p>{_table(rows)}"
+    return f"<h2>Criteria</h2><p class=\"sub\">{told}</p>{table_of(rows)}"
 
 
 def _optimality(report: dict[str, Any]) -> str:
     known = report["joints"].get("optimality")
     if known is None:
         return ""
-    name, value, least = escape(report["joints"]["objective"]), _figure(known["objective"]), _figure(known["bound"])
+    name, value, least = escape(report["joints"]["objective"]), figure_text(known["objective"]), figure_text(known["bound"])
     return f" {name}, bead by bead: {value}; no rotation about the tool goes below {least}, a gap of {known['gap']:.1%}."
 
 
@@ -284,14 +226,14 @@ def _comparison(report: dict[str, Any]) -> str:
         return ""
     methods = [report["joints"], *report["comparison"]]
     whole = [("", [entry["method"] for entry in methods])] + [
-        (word, [_figure(entry.get(key)) for entry in methods]) for key, word in _WHOLE
+        (word, [figure_text(entry.get(key)) for entry in methods]) for key, word in _WHOLE
     ]
-    axes = [("", ["", *_axes(report)])] + [
-        (_in_units(word, report) if number == 0 else "",
-         [entry["method"], *(_figure(value) for value in entry.get(key) or ())])
+    axes = [("", ["", *axis_names(report)])] + [
+        (in_units(word, report) if number == 0 else "",
+         [entry["method"], *(figure_text(value) for value in entry.get(key) or ())])
         for key, word in _PER_AXIS for number, entry in enumerate(methods)
     ]
-    return f"<h2>Comparison of the methods</h2>{_table(whole)}{_table(axes)}"
+    return f"<h2>Comparison of the methods</h2>{table_of(whole)}{table_of(axes)}"
 
 
 def _issues(issues: list[dict[str, Any]]) -> str:
@@ -321,9 +263,9 @@ def _preflight(promises: list[dict[str, Any]]) -> str:
     for one in promises:
         mark, word = _MARKS[one["ok"]]
         where = "" if one["place"] is None else _where(one["place"])
-        worst = "" if one["worst"] is None else f"{_figure(one['worst'])} {one['unit']}".strip()
+        worst = "" if one["worst"] is None else f"{figure_text(one['worst'])} {one['unit']}".strip()
         sign = "\u2265" if one["at_least"] else "\u2264"
-        bound = "" if one["bound"] is None else f"{sign} {_figure(one['bound'])} {one['unit']}".strip()
+        bound = "" if one["bound"] is None else f"{sign} {figure_text(one['bound'])} {one['unit']}".strip()
         rows.append(
             f'<tr><td class="{mark}">{word}</td><td class="text">{escape(one["promise"])}</td><td>{worst}</td>'
             f'<td>{bound}</td><td class="place">{where}</td><td class="text">{escape(one["how"])}</td></tr>'
@@ -333,30 +275,4 @@ def _preflight(promises: list[dict[str, Any]]) -> str:
 
 
 def _programs(programs: list[str]) -> str:
-    return _pairs("Programs", {str(number): name for number, name in enumerate(programs, 1)}) if programs else ""
-
-
-def _pairs(title: str, values: dict[str, str]) -> str:
-    return f"<h2>{title}</h2>{_table([(word, [value]) for word, value in values.items()])}"
-
-
-def _table(rows: Iterable[tuple[str, Iterable[str]]]) -> str:
-    lines = "".join(
-        f"<tr><td>{escape(word)}</td>{''.join(f'<td>{escape(str(value))}</td>' for value in values)}</tr>"
-        for word, values in rows
-    )
-    return f'<div class="table" style="margin-top:10px"><table>{lines}</table></div>'
-
-
-def _figure(value: Any) -> str:
-    if value is None:
-        return "\u2013"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        if abs(value) >= 1e4:
-            return f"{value:,.0f}"
-        if abs(value) < 1e-8:
-            return "0"  # what rounding leaves says nothing
-        return f"{value:.4g}" if abs(value) >= 1e-3 else f"{value:.1e}"
-    return str(value)
+    return pairs_of("Programs", {str(number): name for number, name in enumerate(programs, 1)}) if programs else ""

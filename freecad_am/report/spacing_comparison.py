@@ -19,7 +19,7 @@ from freecad_am.core.planning import comparison
 from freecad_am.core.planning.joint_path import JointPath
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.process.spacing import SMOOTH
+from freecad_am.core.process.layer_curve import SMOOTH
 from freecad_am.core.strategies import wall_comparison
 from freecad_am.core.strategies.wall_comparison import METHODS, NORMAL, Compared, Refused
 from freecad_am.core.toolpath import Array, Toolpath

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -21,9 +20,8 @@ from scipy.spatial import cKDTree
 from ..geometry.curves.space_curve import SpaceCurve
 from ..geometry.mesh.triangle_mesh import LevelLine, Mesh, chains
 from ..geometry.walls.surface import dot
-from .even_line import even, rounded
 from .front_curve import Feet, Wall, feet
-from .on_wall import on_wall
+from .gap_middle import finer, middle, samples, shares
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -34,8 +32,6 @@ LEVELS = (0.5, 0.42, 0.34)  # of the height; how deep the border of what is clos
 SHORTEST = 0.5  # of the height
 COARSE, FINE = 0.2, 0.1  # of the height; edges of the mesh on which gaps are sought, and are seen
 LONGEST = 2.0  # of the height; of a bead in a gap whose border is not as deep as layers leave the wall anyway
-STRAIGHT = 1.2  # of the height; shorter beads are
-ROUND = 0.8  # of the height; standard deviation of the mean that rounds a bead
 SAMPLED = 0.05  # of the height; places along the beads
 ROUNDS = 4
 SEEN = 0.02  # of the height; gaps deeper by this than half the spacing of layers are looked at
@@ -43,7 +39,6 @@ LEFT = 0.005  # of the height, likewise; what is left open
 SAME = 1e-5  # mm; what is nearer to an edge of the mesh lies on it
 UNSURE = 0.07  # of the height; how far off the depth of a gap may be that is told by the vertices of the fine mesh
 AROUND, CLIMB, SHORTER = 8, 14, 0.7  # ways in which deeper places are sought, how often, how much shorter each time
-ALIKE = 6  # decimals of mm to which vertices of the fine mesh are told apart
 
 
 def closing(
@@ -60,9 +55,9 @@ def closing(
         return []
     fronts = [*below, *above]
     faces = mesh.faces[mesh.faces_at(passed)]
-    near = cKDTree(_samples(fronts, SAMPLED * height))
+    near = cKDTree(samples(fronts, SAMPLED * height))
     corners = mesh.vertices[faces]
-    share, _ = _parts(corners, COARSE * height)
+    share, _ = shares(corners, COARSE * height)
     places = np.einsum("sk,mkc->msc", share, corners)
     depth = np.asarray(near.query(places, distance_upper_bound=height)[0])
     deep: Mask = depth > (0.5 * widest + SEEN) * height  # infinite where it is farther
@@ -72,7 +67,7 @@ def closing(
     # the gap ends within a layer height of where it is deep
     size = np.linalg.norm(np.ptp(corners[deep], axis=1), axis=1).max()
     beside = cKDTree(corners[deep].mean(axis=1)).query(corners.mean(axis=1))[0] < height + 2.0 * size
-    fine = _finer(mesh.vertices, faces[beside], FINE * height)
+    fine = finer(mesh.vertices, faces[beside], FINE * height)
     depth = np.asarray(near.query(fine.vertices)[0])
     asked = np.ones(len(depth), dtype=bool)
     cut = np.setdiff1d(fine.border_edges, _on_rims(mesh, np.unique(faces), fine))
@@ -86,7 +81,7 @@ def closing(
         if not more:
             break
         found += more
-        depth = np.minimum(depth, cKDTree(_samples(more, SAMPLED * height)).query(fine.vertices)[0])
+        depth = np.minimum(depth, cKDTree(samples(more, SAMPLED * height)).query(fine.vertices)[0])
     return found
 
 
@@ -185,7 +180,7 @@ class _Gaps(NamedTuple):
             for gap in np.flatnonzero(deepest > self.covered * height):
                 members = label == gap
                 loops = _loops(fine, members, [line for line, own in zip(lines, owner) if own == gap])
-                bead = _middle(self.wall, loops, height) if loops and not done[members].any() else None
+                bead = middle(self.wall, loops, height) if loops and not done[members].any() else None
                 if bead is None or (level != self.levels[0] and bead.length > LONGEST * height):
                     continue
                 if bead.length < SHORTEST * height:
@@ -245,93 +240,3 @@ def _labels(fine: Mesh, inside: Mask) -> Index:
     links = coo_matrix((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(n, n))
     label: Index = connected_components(links, directed=False)[1].astype(np.intp)
     return label
-
-
-def _middle(wall: Wall, borders: list[Array], height: float) -> SpaceCurve | None:
-    """The line halfway between the sides of a gap with the borders (k, 3): open along one that has a single border, closed
-    within a ring."""
-    longest = max(borders, key=len)
-    if len(borders) == 2:
-        other = next(border for border in borders if border is not longest)
-        return _through(wall, 0.5 * (longest + _beside(longest, other)), height, True)
-    ahead = longest - longest.mean(axis=0)
-    one = int(np.argmax(np.linalg.norm(ahead, axis=1)))
-    line = np.roll(longest, -one, axis=0)
-    other_end = int(np.argmax(np.linalg.norm(line - line[0], axis=1)))
-    if other_end < 1 or other_end > len(line) - 1:
-        return None
-    side, back = line[: other_end + 1], np.vstack([line[other_end:], line[:1]])
-    middle = 0.5 * (side + _beside(side, back))
-    return _through(wall, np.vstack([line[:1], middle[1:-1], line[other_end : other_end + 1]]), height, False)
-
-
-def _beside(points: Array, line: Array) -> Array:
-    """The nearest places (n, 3) of a polyline, sampled."""
-    share = np.linspace(0.0, 1.0, 8, endpoint=False)[None, :, None]
-    dense = np.vstack([((1.0 - share) * line[:-1, None] + share * line[1:, None]).reshape(-1, 3), line[-1:]])
-    nearest: Array = dense[cKDTree(dense).query(points)[1]]
-    return nearest
-
-
-def _through(wall: Wall, points: Array, height: float, closed: bool) -> SpaceCurve | None:
-    """A smooth curve on the wall near a chain of points."""
-    if closed:
-        points = np.vstack([points, points[:1]])
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    points = points[np.r_[True, steps > 1e-9]]
-    length = float(steps.sum())
-    count = max(2 if not closed else 6, int(np.ceil(length / (0.5 * height))))
-    if len(points) < 2:
-        return None
-    # the sides of a gap are known to the fine mesh alone, and its middle has hooks at the ends
-    line = even(points, closed, 16 * count)
-    wide = min(ROUND * height / (length / (16 * count)), 4.0 * count)
-    means = rounded(line, closed, wide)[::16]
-    if closed:
-        means = np.vstack([means, means[:1]])
-    elif length < STRAIGHT * height:
-        means = line[0] + np.linspace(0.0, 1.0, count + 1)[:, None] * (line[-1] - line[0])
-    at = np.linspace(0.0, length, count + 1)
-    nodes, normal = wall.project(means)
-    if closed:
-        nodes[-1], normal[-1] = nodes[0], normal[0]
-    slope = CubicSpline(at, nodes, bc_type="periodic" if closed else "natural")(at, 1)
-    slope -= dot(slope, normal)[:, None] * normal
-    return on_wall(wall, SpaceCurve(at, nodes, slope, slope, closed))
-
-
-def _samples(curves: list[SpaceCurve], step: float) -> Array:
-    """Points all along the curves, no farther apart than about `step` mm."""
-    parts = []
-    for curve in curves:
-        count = max(2, int(np.ceil(curve.length / step)))
-        w = np.union1d(np.linspace(curve.w[0], curve.w[-1], count + 1), curve.w)
-        parts.append(curve.at(w)[0])
-    return np.vstack(parts)
-
-
-def _parts(corners: Array, longest: float) -> tuple[Array, Index]:
-    """Triangles (m, 3, 3) cut evenly so that no edge is longer than `longest` mm: the corners' shares (k, 3) in the parts'
-    vertices, and the vertices (l, 3) of each part."""
-    edge = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
-    n = max(1, int(np.ceil(edge / longest)))
-    i, j = (k.ravel() for k in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
-    i, j = i[i + j <= n], j[i + j <= n]
-    number = np.full((n + 2, n + 2), -1)
-    number[i, j] = np.arange(len(i))
-    up, down = i + j < n, i + j < n - 1
-    parts = np.vstack([
-        np.stack([number[i[up], j[up]], number[i[up] + 1, j[up]], number[i[up], j[up] + 1]], axis=1),
-        np.stack([number[i[down] + 1, j[down]], number[i[down] + 1, j[down] + 1], number[i[down], j[down] + 1]], axis=1),
-    ])
-    return np.stack([n - i - j, i, j], axis=1) / n, parts.astype(np.intp)
-
-
-def _finer(vertices: Array, faces: Index, longest: float) -> Mesh:
-    """The mesh of the faces (m, 3), cut evenly so that no edge is longer than `longest` mm."""
-    corners = vertices[faces]
-    share, parts = _parts(corners, longest)
-    points = np.einsum("sk,mkc->msc", share, corners).reshape(-1, 3)
-    every = (np.arange(len(faces))[:, None, None] * len(share) + parts[None]).reshape(-1, 3)
-    _, first, same = np.unique(np.round(points, ALIKE) + 0.0, axis=0, return_index=True, return_inverse=True)
-    return Mesh(points[first], np.ravel(same)[every].astype(np.intp))

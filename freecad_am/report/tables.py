@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tables, grids and figures of the page, as HTML."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from html import escape
+from typing import Any
+
+
+def clock(seconds: float) -> str:
+    """Seconds as hours, minutes and seconds."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s"
+
+
+def grid_of(plots: Iterable[str]) -> str:
+    """Pictures side by side; nothing without any."""
+    figures = "".join(f"<figure>{plot}</figure>" for plot in plots)
+    return f'<div class="grid">{figures}</div>' if figures else ""
+
+
+def axis_names(report: dict[str, Any]) -> list[str]:
+    """The names of the axes, with their units where these are not all the same."""
+    axes, units = report["machine"]["labels"], report["machine"]["units"]
+    return [f"{axis}, {unit}" for axis, unit in zip(axes, units)] if "mm" in units else axes
+
+
+def in_units(word: str, report: dict[str, Any]) -> str:
+    """The name of a figure of the axes, with mm beside degrees where some of them slide."""
+    name, _, unit = word.rpartition(", ")
+    mixed = unit.startswith("deg") and "mm" in report["machine"]["units"]
+    return f"{name}, {unit} or {unit.replace('deg', 'mm')}" if mixed else word
+
+
+def pairs_of(title: str, values: dict[str, str]) -> str:
+    """A table of names and values under a title."""
+    return f"<h2>{title}</h2>{table_of([(word, [value]) for word, value in values.items()])}"
+
+
+def table_of(rows: Iterable[tuple[str, Iterable[str]]]) -> str:
+    """A table of rows with their names."""
+    lines = "".join(
+        f"<tr><td>{escape(word)}</td>{''.join(f'<td>{escape(str(value))}</td>' for value in values)}</tr>"
+        for word, values in rows
+    )
+    return f'<div class="table" style="margin-top:10px"><table>{lines}</table></div>'
+
+
+def figure_text(value: Any) -> str:
+    """A figure with the digits that tell something."""
+    if value is None:
+        return "\u2013"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        if abs(value) >= 1e4:
+            return f"{value:,.0f}"
+        if abs(value) < 1e-8:
+            return "0"  # what rounding leaves says nothing
+        return f"{value:.4g}" if abs(value) >= 1e-3 else f"{value:.1e}"
+    return str(value)
