@@ -9,8 +9,9 @@ from typing import Any
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import LayerParameters, SolidParameters
+from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family
 
 from . import fields, tree

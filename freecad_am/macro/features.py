@@ -7,14 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..core.parameters.build_direction import BuildDirectionParameters
-from ..core.parameters.strategy import (
-    CladdingParameters,
-    CurvesParameters,
-    DevelopableParameters,
-    RevolutionParameters,
-    SolidParameters,
-    SurfaceParameters,
-)
+from ..core.parameters.filled import CladdingParameters, DevelopableParameters, SolidParameters
+from ..core.parameters.strategy import CurvesParameters, RevolutionParameters, SurfaceParameters
 from ..objects.feature_kinds import proxy_of
 from .steps import make_stage, with_faces
 

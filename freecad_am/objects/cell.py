@@ -13,7 +13,8 @@ from ..core.kinematics import cell as cells
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.external import externals
 from . import cell_obstacles, user_machines
-from .stage import Outcome, Section, Stage, Work
+from .stage import Stage
+from .stage_parts import Outcome, Section, Work
 
 
 class Cell(Stage):

@@ -12,12 +12,13 @@ from ..brep.clad_faces import clad_faces
 from ..core.geometry.walls.clad_mesh import clad_mesh
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
-from ..core.parameters.strategy import CladdingParameters
+from ..core.parameters.filled import CladdingParameters
 from ..core.strategies import size
 from .feature import source_of
 from .fingerprints import fingerprint, shape_fingerprint
 from .shapes import FIXTURES, bodies, fixtures_of, taken
-from .stage import Link, Outcome, Section, Stage, Work
+from .stage import Stage
+from .stage_parts import Link, Outcome, Section, Work
 
 
 class CladdingFeature(Stage):

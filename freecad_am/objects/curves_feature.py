@@ -12,7 +12,8 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import CurvesParameters
 from .fingerprints import fingerprint, shape_fingerprint
 from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
-from .stage import Link, Outcome, Section, Stage, Work
+from .stage import Stage
+from .stage_parts import Link, Outcome, Section, Work
 from .table_part import points_of
 
 

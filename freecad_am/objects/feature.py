@@ -16,7 +16,8 @@ from ..core.parameters.strategy import RevolutionParameters
 from ..core.strategies import size
 from .fingerprints import digits, fingerprint, shape_fingerprint
 from .shapes import FIXTURES, bodies, fixtures_of, global_shape
-from .stage import Link, Outcome, Section, Stage, Work
+from .stage import Stage
+from .stage_parts import Link, Outcome, Section, Work
 
 
 class RevolutionFeature(Stage):

@@ -21,7 +21,8 @@ from . import progress
 from .fingerprints import fingerprint
 from .properties import HIDDEN, OUTPUT
 from .shapes import taken
-from .stage import Link, Outcome, Section, Stage, Work, checked, stage_of
+from .stage import Stage, checked, stage_of
+from .stage_parts import Link, Outcome, Section, Work
 
 KINDS = ("feature", "toolpath")
 FACES_FITTED = 3000  # points that a fit to exact faces is made with

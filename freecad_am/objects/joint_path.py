@@ -27,7 +27,8 @@ from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
 from . import cell_obstacles, progress, user_machines
 from .links_clear import arm_issues, rods_of
-from .stage import Link, Outcome, Section, Stage, Work, stage_of
+from .stage import Stage, stage_of
+from .stage_parts import Link, Outcome, Section, Work
 from .staleness import UP_TO_DATE
 
 JOINTS = 0.9  # of the time goes into the joints, the rest into rapid moves

@@ -22,7 +22,8 @@ from ..core.toolpath import Toolpath
 from ..posts import catalogue, refusals
 from . import progress, user_machines
 from .joint_path import Planned
-from .stage import Link, Outcome, Section, Stage, Work
+from .stage import Stage
+from .stage_parts import Link, Outcome, Section, Work
 
 
 @dataclass(frozen=True)

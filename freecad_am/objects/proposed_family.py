@@ -25,7 +25,8 @@ from ..core.geometry.told import at_least, place
 from ..core.issues import InputError
 from ..core.layers.curved import STANDING
 from ..core.layers.stacking import best, facets, judged
-from ..core.parameters.strategy import DevelopableParameters, SolidParameters, SurfaceParameters
+from ..core.parameters.filled import DevelopableParameters, SolidParameters
+from ..core.parameters.strategy import SurfaceParameters
 from ..core.process.deposit_balance import LITTLE, MM3, of_wall
 from .developable_feature import found_in
 from .shapes import Taken

@@ -14,7 +14,7 @@ import numpy as np
 from ..brep import tessellate
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError
-from .stage import Link
+from .stage_parts import Link
 
 FIXTURES = Link(
     "Fixtures", "", "Clamps and other bodies around the part, which the nozzle is kept clear of.", required=False,

@@ -14,12 +14,13 @@ from ..core.issues import InputError, Issue
 from ..core.layers.guided import guided
 from ..core.layers.stacking import stacked
 from ..core.parameters.build_direction import BuildDirectionParameters
-from ..core.parameters.strategy import SolidParameters
+from ..core.parameters.filled import SolidParameters
 from ..core.strategies import size
 from .feature import source_of
 from .fingerprints import fingerprint, shape_fingerprint
 from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
-from .stage import Link, Outcome, Section, Stage, Work
+from .stage import Stage
+from .stage_parts import Link, Outcome, Section, Work
 
 
 class SolidFeature(Stage):

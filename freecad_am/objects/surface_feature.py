@@ -16,7 +16,8 @@ from ..core.strategies import size
 from .feature import source_of
 from .fingerprints import fingerprint
 from .shapes import FIXTURES, bodies, fixtures_of, taken
-from .stage import Link, Outcome, Section, Stage, Work
+from .stage import Stage
+from .stage_parts import Link, Outcome, Section, Work
 
 
 class SurfaceFeature(Stage):

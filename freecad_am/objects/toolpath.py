@@ -18,7 +18,8 @@ from . import rows
 from .in_sequence import member, planned_in_sequence
 from .planned import Given, looked_at, planned
 from .shapes import taken
-from .stage import Link, Outcome, Section, Stage, Work, stage_of
+from .stage import Stage, stage_of
+from .stage_parts import Link, Outcome, Section, Work
 
 if TYPE_CHECKING:
     from ..core.planning.remedies import Fixed

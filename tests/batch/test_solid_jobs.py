@@ -12,7 +12,7 @@ import pytest
 
 from freecad_am.batch import job as jobs
 from freecad_am.core.issues import InputError
-from freecad_am.core.parameters.strategy import DevelopableParameters, SolidParameters
+from freecad_am.core.parameters.filled import DevelopableParameters, SolidParameters
 
 START = "part: {file: part.step}\nstrategy:\n  kind: solid\n"
 

@@ -13,7 +13,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.issues import InputError
 from freecad_am.core.layers import planes
-from freecad_am.core.parameters.strategy import SolidParameters
+from freecad_am.core.parameters.filled import SolidParameters
 
 UP = App.Vector(0, 0, 1)
 FAST = {"layer_height": 5, "chord_error": 0.1, "bead_spacing": 5}

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.layers.stacking import stacked
+from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import SolidParameters
 from freecad_am.core.process import bead_model, bead_table, predicted, spacing
 from freecad_am.core.simulation import deposit
 from freecad_am.core.simulation.totals import totals

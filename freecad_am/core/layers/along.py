@@ -20,7 +20,7 @@ from ..geometry.regions.region import Region
 from ..geometry.surroundings import Body
 from ..geometry.told import place
 from ..issues import ERROR, InfeasibleError, InputError, Issue
-from ..parameters.strategy import SolidParameters
+from ..parameters.filled import SolidParameters
 from ..slicing.plane_sections import PlaneCuts
 from . import planes
 from .along_layer import AlongLayer, between

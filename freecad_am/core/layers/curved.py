@@ -12,7 +12,7 @@ from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.on_hub import Group
 from ..geometry.surroundings import Body
 from ..issues import NOTE, WARNING, InputError, Issue
-from ..parameters.strategy import SolidParameters
+from ..parameters.filled import SolidParameters
 from .chart_layer import ChartLayer
 from .geodesic import GeodesicField, Piece, field
 from .margins import BORDER

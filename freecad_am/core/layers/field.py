@@ -10,7 +10,7 @@ from ..geometry.curves.guide import Guide
 from ..geometry.developable import Developable
 from ..geometry.on_hub import Group, middle_azimuth
 from ..geometry.surroundings import Body
-from ..parameters.strategy import DevelopableParameters, FilledParameters, SolidParameters
+from ..parameters.filled import DevelopableParameters, FilledParameters, SolidParameters
 from ..slicing.equidistant import Facets
 from ..slicing.laid_flat import cut
 from . import along, curved, planes, rotary

@@ -12,7 +12,7 @@ from ..geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ..geometry.surroundings import Body
 from ..geometry.told import place
 from ..issues import NOTE, Issue
-from ..parameters.strategy import SolidParameters
+from ..parameters.filled import SolidParameters
 from .centre_line import centre_line
 from .guide_edges import Nodes, chained
 from .stacking import stacked

@@ -20,7 +20,7 @@ from ..geometry.told import place
 from ..geometry.walls.patch_wall import PatchWall
 from ..geometry.walls.surface import dot
 from ..issues import InputError
-from ..parameters.strategy import CladdingParameters
+from ..parameters.filled import CladdingParameters
 from .chart import Chart, Place
 from .charted import Charted, axes
 from .flattening import flattened

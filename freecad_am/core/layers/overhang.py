@@ -10,7 +10,7 @@ from ..geometry.on_hub import Base
 from ..geometry.regions.region import Region
 from ..geometry.told import place
 from ..issues import WARNING, Issue
-from ..parameters.strategy import SolidParameters
+from ..parameters.filled import SolidParameters
 from .surface import Slice
 
 CODE = "OVERHANG"

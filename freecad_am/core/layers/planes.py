@@ -13,7 +13,7 @@ from ..geometry.on_hub import Base
 from ..geometry.surroundings import Body
 from ..geometry.told import place
 from ..issues import InputError
-from ..parameters.strategy import SolidParameters
+from ..parameters.filled import SolidParameters
 from ..slicing.plane_sections import PlaneCuts
 from .covered import with_covered
 from .margins import grown, within_margin

@@ -15,7 +15,7 @@ from ..geometry.regions.strip import Strip, strips
 from ..geometry.surroundings import Body
 from ..geometry.told import place
 from ..issues import InputError
-from ..parameters.strategy import DevelopableParameters
+from ..parameters.filled import DevelopableParameters
 from ..slicing.equidistant import Facets, Loop
 from ..slicing.laid_flat import count, cut, moved, opened
 from .covered import under_and_over

@@ -14,7 +14,7 @@ from ..geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ..geometry.plane import Plane
 from ..geometry.surroundings import Body
 from ..issues import NOTE, Issue
-from ..parameters.strategy import SolidParameters
+from ..parameters.filled import SolidParameters
 
 Array = NDArray[np.float64]
 

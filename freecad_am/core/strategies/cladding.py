@@ -16,8 +16,8 @@ from ..issues import NOTE, InfeasibleError, InputError, Issue
 from ..layers.on_faces import FaceLayer, pieces, slices
 from ..layers.surface import Slice
 from ..parameters.build_direction import BuildDirectionParameters
+from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
-from ..parameters.strategy import CladdingParameters
 from ..process.bead_model import BeadModel
 from ..process.order import Laid, ordered, waited
 from ..toolpath import Array, Toolpath

@@ -9,15 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ..parameters.strategy import (
-    CladdingParameters,
-    CurvesParameters,
-    DevelopableParameters,
-    LayerParameters,
-    RevolutionParameters,
-    SolidParameters,
-    SurfaceParameters,
-)
+from ..parameters.filled import CladdingParameters, DevelopableParameters, SolidParameters
+from ..parameters.strategy import CurvesParameters, LayerParameters, RevolutionParameters, SurfaceParameters
 
 NEEDED, OPTIONAL, NONE = "needed", "optional", "none"
 

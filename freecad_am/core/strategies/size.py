@@ -18,15 +18,9 @@ from ..geometry.on_hub import SolidsOnHub
 from ..geometry.surroundings import Body
 from ..geometry.told import at_least, count
 from ..issues import NOTE, InputError, Issue
+from ..parameters.filled import CladdingParameters, FilledParameters
 from ..parameters.process import ProcessParameters
-from ..parameters.strategy import (
-    MOST_LAYERS,
-    CladdingParameters,
-    FilledParameters,
-    LayerParameters,
-    RevolutionParameters,
-    SurfaceParameters,
-)
+from ..parameters.strategy import MOST_LAYERS, LayerParameters, RevolutionParameters, SurfaceParameters
 
 if TYPE_CHECKING:
     from ..geometry.walls.clad_faces import CladFaces

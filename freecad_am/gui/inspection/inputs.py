@@ -13,7 +13,8 @@ from PySide import QtGui
 from ...core.inspection.point_file import MESHES, TABLES
 from ...core.issues import InputError
 from ...objects.inspection import KINDS
-from ...objects.stage import Link, stage_of
+from ...objects.stage import stage_of
+from ...objects.stage_parts import Link
 from .. import recorded
 from ..picking import inputs
 from ..picking.picking import usable

@@ -9,7 +9,7 @@ from ...brep import kernel, part_depths
 from ...brep.revolution import find_wall
 from ...brep.wall_on import named_faces
 from ...core.issues import InputError, Issue
-from ...core.parameters.strategy import DevelopableParameters
+from ...core.parameters.filled import DevelopableParameters
 from ...core.process import deposit_balance
 from ...objects import deposit
 from ...objects.developable_feature import found_in

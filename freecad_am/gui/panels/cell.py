@@ -20,7 +20,8 @@ from ...core.parameters.cell import CellParameters
 from ...objects import user_machines
 from ...objects.cell import Cell
 from ...objects.progress import Cancelled
-from ...objects.stage import Outcome, stage_of
+from ...objects.stage import stage_of
+from ...objects.stage_parts import Outcome
 from ..background.busy import carry_out
 from ..background.later import Background, Later
 from ..background.worker import Worker

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ...core.parameters.strategy import CladdingParameters
+from ...core.parameters.filled import CladdingParameters
 from ...objects.cladding_feature import CladdingFeature
 from ...objects.shapes import FIXTURES
-from ...objects.stage import Link, Outcome
+from ...objects.stage_parts import Link, Outcome
 from .. import recorded
 from ..nodes.wall import WallNodes
 from ..picking import picking

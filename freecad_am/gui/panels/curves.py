@@ -10,7 +10,7 @@ import numpy as np
 
 from ...objects.curves_feature import CurvesFeature
 from ...objects.shapes import FIXTURES
-from ...objects.stage import Link, Outcome
+from ...objects.stage_parts import Link, Outcome
 from .. import recorded
 from ..nodes.wall import WallNodes
 from ..picking import picking

@@ -11,7 +11,7 @@ from ...core.parameters.strategy import RevolutionParameters
 from ...core.strategies.revolution import Slices, sliced
 from ...objects import deposit
 from ...objects.feature import RevolutionFeature
-from ...objects.stage import Outcome
+from ...objects.stage_parts import Outcome
 from ..nodes.meridian import MeridianNodes
 from ..picking import inputs
 from ..texts.translation import sentence, tr, translated

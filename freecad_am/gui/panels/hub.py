@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from ...core.issues import AmError, Issue
-from ...core.parameters.strategy import DevelopableParameters
+from ...core.parameters.filled import DevelopableParameters
 from ...core.strategies import size
 from ...objects import deposit
 from ...objects.developable_feature import DevelopableFeature
 from ...objects.proposed_family import COARSE
 from ...objects.shapes import FIXTURES
-from ...objects.stage import Link, Outcome
+from ...objects.stage_parts import Link, Outcome
 from .. import recorded
 from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
 from ..nodes.lines import Array

@@ -19,7 +19,7 @@ from ...core.planning.plan import OF_ROBOTS, plan_joints
 from ...core.planning.sampled import Sampled, sampled
 from ...objects import progress, user_machines
 from ...objects.joint_path import Job, JointPath
-from ...objects.stage import Outcome
+from ...objects.stage_parts import Outcome
 from ..nodes.joint_path import JointPathNodes
 from ..path.colouring import CONDITION, MARGIN, RATIO
 from ..picking import inputs

@@ -11,7 +11,8 @@ from PySide import QtCore
 
 from ...core.issues import AmError, InputError, has_errors
 from ...objects import expressions, hooks
-from ...objects.stage import Outcome, Stage
+from ...objects.stage import Stage
+from ...objects.stage_parts import Outcome
 from ...objects.staleness import STALE
 from ..background.later import Background
 from ..background.worker import Worker

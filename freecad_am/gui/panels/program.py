@@ -17,7 +17,7 @@ from ...core.simulation.timeline import timeline
 from ...core.simulation.totals import Totals, totals
 from ...objects import preflight
 from ...objects.program import Job, Program, Written, posted
-from ...objects.stage import Outcome
+from ...objects.stage_parts import Outcome
 from ...objects.staleness import UP_TO_DATE
 from ...posts import catalogue
 from ..path import dock

@@ -14,12 +14,12 @@ from ...core.issues import AmError
 from ...core.layers import along, guide_edges
 from ...core.layers.leaning import Leaning, leaning
 from ...core.layers.stacking import STANDING, stacked
-from ...core.parameters.strategy import SolidParameters
+from ...core.parameters.filled import SolidParameters
 from ...core.strategies import size
 from ...objects.proposed_family import COARSE
 from ...objects.shapes import FIXTURES
 from ...objects.solid_feature import SolidFeature
-from ...objects.stage import Link, Outcome
+from ...objects.stage_parts import Link, Outcome
 from .. import recorded
 from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
 from ..nodes.lines import Array, Faces

@@ -11,7 +11,7 @@ import numpy as np
 from ...core.issues import Issue
 from ...objects import deposit
 from ...objects.shapes import taken
-from ...objects.stage import Outcome
+from ...objects.stage_parts import Outcome
 from ...objects.surface_feature import SurfaceFeature
 from ..nodes.wall import WallNodes, drawn, first_curves
 from ..picking import picking

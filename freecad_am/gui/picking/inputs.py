@@ -9,7 +9,8 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
-from ...objects.stage import Link, Stage, stage_of
+from ...objects.stage import Stage, stage_of
+from ...objects.stage_parts import Link
 from .. import recorded
 from ..texts.translation import tr, translated
 from . import picking

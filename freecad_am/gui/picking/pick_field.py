@@ -8,7 +8,7 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
-from ...objects.stage import Link
+from ...objects.stage_parts import Link
 from .. import recorded
 from ..texts.translation import tr, translated
 from .inputs import Input

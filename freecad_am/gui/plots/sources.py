@@ -10,9 +10,9 @@ from typing import Any
 from ...core.geometry.on_hub import SolidsOnHub
 from ...core.kinematics import cell as cells
 from ...core.motion import Motion
+from ...core.parameters.filled import SolidParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
-from ...core.parameters.strategy import SolidParameters
 from ...core.planning import program as programs
 from ...core.simulation import deposit
 from ...core.simulation.margins import on_deposit

@@ -11,7 +11,8 @@ from typing import Any, TypeVar
 import FreeCADGui as Gui
 
 from ...objects import faults
-from ...objects.stage import Stage, Work
+from ...objects.stage import Stage
+from ...objects.stage_parts import Work
 
 NAME = "RoboticAM_Preview"
 _VIEW = "Gui::View3DInventor"

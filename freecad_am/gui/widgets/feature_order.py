@@ -8,7 +8,8 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 from ...core.strategies.sequence import BY_FEATURE, BY_HEIGHT
-from ...objects.stage import Link, stage_of
+from ...objects.stage import stage_of
+from ...objects.stage_parts import Link
 from .. import recorded
 from ..picking.inputs import Input, StageChoice
 from ..picking.selection import selected

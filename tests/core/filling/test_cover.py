@@ -15,7 +15,7 @@ from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import fill, open_at_slits, open_places
 from freecad_am.core.geometry.regions.region import joined, regions
 from freecad_am.core.geometry.regions.strip import Period, strips
-from freecad_am.core.parameters.strategy import DevelopableParameters
+from freecad_am.core.parameters.filled import DevelopableParameters
 
 _spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
 shapes = importlib.util.module_from_spec(_spec)

@@ -16,7 +16,7 @@ from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
 from freecad_am.core.layers.covered import under_and_over, with_covered
 from freecad_am.core.layers.surface import Slice
-from freecad_am.core.parameters.strategy import DevelopableParameters
+from freecad_am.core.parameters.filled import DevelopableParameters
 
 _spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
 shapes = importlib.util.module_from_spec(_spec)

@@ -12,7 +12,7 @@ from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.layers.leaning import leaning
 from freecad_am.core.layers.slabs import below, group_of, outline, slabs
 from freecad_am.core.layers.stacking import stacked
-from freecad_am.core.parameters.strategy import SolidParameters
+from freecad_am.core.parameters.filled import SolidParameters
 from tests.core.strategies.test_solids_in_planes import CONE, box, hull, tube
 
 LEVEL = Base("the first layer", Plane(), np.eye(4))

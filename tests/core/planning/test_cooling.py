@@ -11,10 +11,10 @@ from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, CoolingParameters, ProcessParameters
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters
-from freecad_am.core.parameters.strategy import DevelopableParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build, returning

@@ -13,8 +13,9 @@ from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
+from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.process import support as pieces_of_beads
 from freecad_am.core.strategies import revolution, support
 from freecad_am.core.strategies.solids.plan import plan as plan_solids

@@ -13,8 +13,8 @@ from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InfeasibleError, InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import DevelopableParameters
 from freecad_am.core.strategies.solids import filling
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.objects.store import pack, unpack

@@ -12,8 +12,8 @@ from freecad_am.core.geometry.plane import Plane
 from freecad_am.core.layers.plane_layer import PlaneLayer
 from freecad_am.core.layers.round_layer import RoundLayer
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import SolidParameters
 from freecad_am.core.strategies.solids.beads import CLOSE, dense, rolled
 
 

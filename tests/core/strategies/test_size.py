@@ -13,14 +13,9 @@ from freecad_am.core.geometry.walls.clad_faces import CladFaces
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
+from freecad_am.core.parameters.filled import CladdingParameters, DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import (
-    MOST_LAYERS,
-    CladdingParameters,
-    DevelopableParameters,
-    RevolutionParameters,
-    SurfaceParameters,
-)
+from freecad_am.core.parameters.strategy import MOST_LAYERS, RevolutionParameters, SurfaceParameters
 from freecad_am.core.strategies import cladding, revolution, size, surface, wall_fronts
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from tests.core.strategies.test_developable import CONE, CYLINDER, box, collar, solids

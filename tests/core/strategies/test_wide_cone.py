@@ -13,8 +13,8 @@ from freecad_am.core.geometry.regions.strip import Strip, strips
 from freecad_am.core.layers.round_layer import RoundLayer
 from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import DevelopableParameters
 from freecad_am.core.strategies.solids.beads import rolled
 from freecad_am.core.strategies.solids.filling import Pictures
 

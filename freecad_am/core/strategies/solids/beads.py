@@ -15,8 +15,8 @@ from ...geometry.on_hub import Base
 from ...geometry.regions.region import simplified, telling
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
-from ...parameters.strategy import FilledParameters
 from ...process.bead_model import BeadModel
 from ...process.bead_speed import followed, radii
 from ...process.wire import with_model

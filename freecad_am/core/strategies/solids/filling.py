@@ -24,8 +24,8 @@ from ...geometry.told import place
 from ...issues import NOTE, WARNING, InputError, Issue
 from ...layers.margins import ARCS
 from ...layers.surface import Slice
+from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
-from ...parameters.strategy import FilledParameters
 from ...process.bead_model import BeadModel
 
 Same = TypeVar("Same", bound=FilledParameters)

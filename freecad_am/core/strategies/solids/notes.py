@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...issues import NOTE, WARNING, Issue
+from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
-from ...parameters.strategy import FilledParameters
 from ...process.bead_model import MINUTE, BeadModel
 from ...process.predicted import heights_told
 from ...process.wire import with_model

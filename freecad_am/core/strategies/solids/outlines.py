@@ -12,7 +12,7 @@ from ...geometry.curves.plane_curve import Array, nearest, steps
 from ...geometry.regions.region import Region
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
-from ...parameters.strategy import FilledParameters
+from ...parameters.filled import FilledParameters
 from .lean import Lean
 
 NEAR = 0.55  # of the bead spacing; beads along an outline are half a spacing inside of it, the next are farther

@@ -18,8 +18,8 @@ from ...issues import InfeasibleError, InputError, Issue
 from ...layers.field import Piece, pieces, upwards
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
-from ...parameters.strategy import FilledParameters
 from ...process.bead_model import BeadModel
 from ...process.order import Laid, ordered, waited
 from ...toolpath import Toolpath
