@@ -9,7 +9,7 @@
         <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>A region narrower than a bead gets a single bead, or the job is refused.</source>
         <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
     </message>
@@ -49,7 +49,7 @@
         <translation>Tableaux du résultat.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Beads that close gaps are made no shorter than this; others that are shorter are left out.</source>
         <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté.</translation>
     </message>
@@ -79,7 +79,7 @@
         <translation>Compare la trajectoire articulaire à une borne inférieure sur toutes les rotations autour de l’axe de l’outil. Prend jusqu’à quelques secondes par cordon.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Contours are laid round lines and the like.</source>
         <translation>Des contours sont déposés autour des lignes et autres motifs.</translation>
     </message>
@@ -144,12 +144,12 @@
         <translation>Sens des cordons fermés vu contre la direction de dépôt ; les cordons ouverts courent tels que trouvés, sauf avec alternate.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Direction of lines and zigzags; 0 runs around the hub, 90 deg along it.</source>
         <translation>Direction des lignes et des zigzags ; 0 court autour du moyeu, 90 deg le long de celui-ci.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Distance between neighbouring beads of a layer.</source>
         <translation>Distance entre cordons voisins d&apos;une couche.</translation>
     </message>
@@ -224,7 +224,7 @@
         <translation>Quatre axes seulement : de combien l&apos;outil peut manquer la direction demandée.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>From the base circle to the apex of the cone, along the axis; inf: a cylinder. (mm)</source>
         <translation>Du cercle de base au sommet du cône, le long de l&apos;axe ; inf : un cylindre. (mm)</translation>
     </message>
@@ -274,12 +274,12 @@
         <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the deposit stands out on all sides of the part, to be machined off.</source>
         <translation>De combien le dépôt dépasse de tous les côtés de la pièce, pour être usiné.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the direction of lines and zigzags turns from layer to layer.</source>
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
     </message>
@@ -314,7 +314,7 @@
         <translation>Temps d&apos;attente entre les couches. (s)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How many contours lie round lines and the like; inf: contours alone.</source>
         <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
     </message>
@@ -324,12 +324,12 @@
         <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How narrow and how wide beads may be, of their usual width and spacing, so that contours come out even over the thickness of a region, and beads in thin places are as wide as these. (%)</source>
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces. (%)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How narrow, of their usual width, beads in planes may be laid where others leave them less room; all of it: none is, and layers get higher there. (%)</source>
         <translation>À quelle part de leur largeur habituelle les cordons en couches planes peuvent se réduire là où d&apos;autres leur laissent moins de place ; toute la largeur : aucun ne se réduit, et les couches y deviennent plus hautes. (%)</translation>
     </message>
@@ -404,22 +404,22 @@
         <translation>Plus petit écart.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Least time between the end of a solid&apos;s layer and the start of its next.</source>
         <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Least time between the end of a solid&apos;s layer and the start of its next. (s)</source>
         <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante. (s)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid.</source>
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid. (s)</source>
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres. (s)</translation>
     </message>
@@ -459,7 +459,7 @@
         <translation>LinuxCNC : de combien les angles peuvent être arrondis (G64 P).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be longer another zigzag begins. (%)</source>
         <translation>Plus long chemin d&apos;une ligne d&apos;un zigzag à la suivante, en part de la distance des cordons ; là où il serait plus long un autre zigzag commence. (%)</translation>
     </message>
@@ -499,7 +499,7 @@
         <translation>Méthode layer-by-layer : polynômes donnés, non cherchés : couche/cordon:constante:pente, ou * pour tout autre cordon, en deg et deg par tour.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the part&apos;s coordinates.</source>
         <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
     </message>
@@ -584,12 +584,12 @@
         <translation>Un polynôme par couche, une valeur par point, ou une valeur pour tout le travail.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing. (%)</source>
         <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons. (%)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
         <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
     </message>
@@ -609,7 +609,7 @@
         <translation>Les points jusqu&apos;à cette distance au-dessus ou au-dessous d&apos;une telle hauteur y comptent, glissés le long de la surface prévue.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Radius of the base circle; auto: the face chosen, or the one that the solids stand on. (mm)</source>
         <translation>Rayon du cercle de base ; auto : la face choisie, ou celle sur laquelle reposent les solides. (mm)</translation>
     </message>
@@ -679,7 +679,7 @@
         <translation>Plusieurs éléments : ce qui diffère du procédé pour chacun, en JSON.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Share of the area inside of the walls that beads fill: their length times their spacing. (%)</source>
         <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement. (%)</translation>
     </message>
@@ -749,7 +749,7 @@
         <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>So many layers under tops and over bottoms are filled at 100 %.</source>
         <translation>Nombre de couches remplies à 100 % sous les faces supérieures et au-dessus des faces inférieures.</translation>
     </message>
@@ -854,7 +854,7 @@
         <translation>Les points tels qu&apos;ils ont été lus.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>The same layer of all solids on a base in turn, around the axis, the same ring of each and the inner ones first; or solid by solid (feature).</source>
         <translation>La même couche de tous les solides d&apos;une base tour à tour, autour de l&apos;axe, le même anneau de chacun et les intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
     </message>
@@ -934,7 +934,7 @@
         <translation>Outil sur le robot seulement : pose du bout sur la bride, son Z pointant hors de la buse. mm, RX RY RZ.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Torch turned outwards about the bead on outer contours.</source>
         <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
     </message>
@@ -1009,7 +1009,7 @@
         <translation>Ce qui était dans le fichier.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Where beads start: where the seam says (aligned), or apart from those of neighbouring contours and layers, lines of every second layer at their other end (spread).</source>
         <translation>Départ des cordons : où le dit la couture (alignés), ou loin de ceux des contours et couches voisins, les lignes d&apos;une couche sur deux par leur autre bout (répartis).</translation>
     </message>
@@ -1064,7 +1064,7 @@
         <translation>Quelle paroi d&apos;un solide est déposée ; middle court à mi-chemin entre l&apos;extérieure et l&apos;intérieure.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Widest gap that may stay open between beads, as a share of the bead spacing. (%)</source>
         <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons. (%)</translation>
     </message>
@@ -1237,7 +1237,7 @@
         <translation>Une pièce de révolution demande des faces exactes ; {} est un maillage.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>A region narrower than a bead gets a single bead, or the job is refused.</source>
         <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
     </message>
@@ -1437,7 +1437,7 @@
         <translation>Retour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>Back to the start of the layer</source>
         <translation>Retour au début de la couche</translation>
     </message>
@@ -1472,12 +1472,12 @@
         <translation>Modèle de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Bead overlap</source>
         <translation>Recouvrement des cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Bead spacing</source>
         <translation>Distance des cordons</translation>
     </message>
@@ -1492,7 +1492,7 @@
         <translation>Largeur de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Beads that close gaps are made no shorter than this; others that are shorter are left out.</source>
         <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté.</translation>
     </message>
@@ -1547,7 +1547,7 @@
         <translation>Direction de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>Build directions</source>
         <translation>Directions de dépôt</translation>
     </message>
@@ -1777,7 +1777,7 @@
         <translation>Couleur des machines</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>Colours</source>
         <translation>Couleurs</translation>
     </message>
@@ -1842,12 +1842,12 @@
         <translation>La surveillance des configurations peut être désactivée (ConfL), et les valeurs articulaires signifient ce que dit le fichier de machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Contour</source>
         <translation>Contour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Contours are laid round lines and the like.</source>
         <translation>Des contours sont déposés autour des lignes et autres motifs.</translation>
     </message>
@@ -1897,7 +1897,7 @@
         <translation>Les défauts sont les largeurs de la zone la plus étroite, selon ISO 1101</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Deflection</source>
         <translation>Flèche</translation>
     </message>
@@ -2042,7 +2042,7 @@
         <translation>Sens des cordons fermés vu contre la direction de dépôt ; les cordons ouverts courent tels que trouvés, sauf avec alternate.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Direction of lines and zigzags; 0 runs around the hub, 90 deg along it.</source>
         <translation>Direction des lignes et des zigzags ; 0 court autour du moyeu, 90 deg le long de celui-ci.</translation>
     </message>
@@ -2052,7 +2052,7 @@
         <translation>Distance entre les couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Distance between neighbouring beads of a layer.</source>
         <translation>Distance entre cordons voisins d&apos;une couche.</translation>
     </message>
@@ -2082,7 +2082,7 @@
         <translation>Descendre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>Draw beads as lines, or as tubes of their width and layer height</source>
         <translation>Dessiner les cordons en lignes, ou en tubes de leur largeur et hauteur de couche</translation>
     </message>
@@ -2282,22 +2282,22 @@
         <translation>Fichiers écrits : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Fill</source>
         <translation>Remplissage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Fill angle</source>
         <translation>Angle de remplissage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Fill angle step</source>
         <translation>Pas de l&apos;angle de remplissage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Fill density</source>
         <translation>Densité de remplissage</translation>
     </message>
@@ -2317,7 +2317,7 @@
         <translation>Premier cordon de cette couche.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/tool.py"/>
         <source>First close the task panel that is open.</source>
         <translation>Fermez d&apos;abord le panneau de tâche ouvert.</translation>
     </message>
@@ -2362,7 +2362,7 @@
         <translation>Ouvrez d&apos;abord une pièce, ou importez-en une dans ce document.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/needs.py"/>
         <source>First open a part, or make a document.</source>
         <translation>Ouvrez d&apos;abord une pièce, ou créez un document.</translation>
     </message>
@@ -2427,7 +2427,7 @@
         <translation>De</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>From layer</source>
         <translation>De la couche</translation>
     </message>
@@ -2437,7 +2437,7 @@
         <translation>Du corps</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>From the base circle to the apex of the cone, along the axis; inf: a cylinder.</source>
         <translation>Du cercle de base au sommet du cône, le long de l&apos;axe ; inf : un cylindre.</translation>
     </message>
@@ -2487,7 +2487,7 @@
         <translation>Gain</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Gap</source>
         <translation>Jour</translation>
     </message>
@@ -2577,12 +2577,12 @@
         <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the deposit stands out on all sides of the part, to be machined off.</source>
         <translation>De combien le dépôt dépasse de tous les côtés de la pièce, pour être usiné.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the direction of lines and zigzags turns from layer to layer.</source>
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
     </message>
@@ -2602,7 +2602,7 @@
         <translation>Temps d&apos;attente entre les couches.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How many contours lie round lines and the like; inf: contours alone.</source>
         <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
     </message>
@@ -2612,7 +2612,7 @@
         <translation>Combien de points ont quel écart ; tirets : la tolérance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>How many seconds of the job pass in one</source>
         <translation>Combien de secondes du travail passent en une</translation>
     </message>
@@ -2622,12 +2622,12 @@
         <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How narrow and how wide beads may be, of their usual width and spacing, so that contours come out even over the thickness of a region, and beads in thin places are as wide as these.</source>
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How narrow, of their usual width, beads in planes may be laid where others leave them less room; all of it: none is, and layers get higher there.</source>
         <translation>À quelle part de leur largeur habituelle les cordons en couches planes peuvent se réduire là où d&apos;autres leur laissent moins de place ; toute la largeur : aucun ne se réduit, et les couches y deviennent plus hautes.</translation>
     </message>
@@ -2962,12 +2962,12 @@
         <translation>Plus petite épaisseur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Least time between the end of a solid&apos;s layer and the start of its next.</source>
         <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid.</source>
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres.</translation>
     </message>
@@ -3062,17 +3062,17 @@
         <translation>Plus long de</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Longest link</source>
         <translation>Liaison maximale</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be longer another zigzag begins.</source>
         <translation>Plus long chemin d&apos;une ligne d&apos;un zigzag à la suivante, en part de la distance des cordons ; là où il serait plus long un autre zigzag commence.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>Look</source>
         <translation>Aspect</translation>
     </message>
@@ -3247,12 +3247,12 @@
         <translation>Méthode layer-by-layer : polynômes donnés, non cherchés : couche/cordon:constante:pente, ou * pour tout autre cordon, en deg et deg par tour.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the part&apos;s coordinates.</source>
         <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Min layer time</source>
         <translation>Durée minimale de couche</translation>
     </message>
@@ -3327,7 +3327,7 @@
         <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2), groupe de mouvement de FANUC (2).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Narrowest</source>
         <translation>Plus étroit</translation>
     </message>
@@ -3362,7 +3362,7 @@
         <translation>Nouvelle machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>Next finding</source>
         <translation>Remarque suivante</translation>
     </message>
@@ -3507,7 +3507,7 @@
         <translation>Décalage le long de z, mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>On to the next layer</source>
         <translation>À la couche suivante</translation>
     </message>
@@ -3517,7 +3517,7 @@
         <translation>Un en arrière</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>One layer alone</source>
         <translation>Une seule couche</translation>
     </message>
@@ -3532,12 +3532,12 @@
         <translation>Un en avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>One point back</source>
         <translation>Un point en arrière</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>One point on</source>
         <translation>Un point en avant</translation>
     </message>
@@ -3577,7 +3577,7 @@
         <translation>Ouvre les pages des outils</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Order</source>
         <translation>Ordre</translation>
     </message>
@@ -3607,7 +3607,7 @@
         <translation>Recouvrement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing.</source>
         <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons.</translation>
     </message>
@@ -3627,7 +3627,7 @@
         <translation>Paires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
         <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
     </message>
@@ -3722,7 +3722,7 @@
         <translation>Diamètre du plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>Play or pause</source>
         <translation>Jouer ou suspendre</translation>
     </message>
@@ -3752,7 +3752,7 @@
         <translation>Graphiques…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>Point</source>
         <translation>Point</translation>
     </message>
@@ -3942,12 +3942,12 @@
         <translation>RZ de l&apos;article</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Radius</source>
         <translation>Rayon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Radius of the base circle; auto: the face chosen, or the one that the solids stand on.</source>
         <translation>Rayon du cercle de base ; auto : la face choisie, ou celle sur laquelle reposent les solides.</translation>
     </message>
@@ -4162,7 +4162,7 @@
         <translation>Plusieurs éléments : l&apos;un après l&apos;autre, ou de toutes les couches la plus basse d&apos;abord</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Share of the area inside of the walls that beads fill: their length times their spacing.</source>
         <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement.</translation>
     </message>
@@ -4187,7 +4187,7 @@
         <translation>Gaz de protection ; transmis tel quel.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Shortest</source>
         <translation>Minimum</translation>
     </message>
@@ -4202,7 +4202,7 @@
         <translation>Épaule, coude et poignet ; derrière, la part de la carte qu&apos;elle atteint dans ses limites</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>Show all</source>
         <translation>Tout montrer</translation>
     </message>
@@ -4307,12 +4307,12 @@
         <translation>Lisser</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>So many layers under tops and over bottoms are filled at 100 %.</source>
         <translation>Nombre de couches remplies à 100 % sous les faces supérieures et au-dessus des faces inférieures.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Solid layers</source>
         <translation>Couches pleines</translation>
     </message>
@@ -4377,17 +4377,17 @@
         <translation>Espacement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Spacing range</source>
         <translation>Plage d&apos;écartement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Spacing range from</source>
         <translation>Écartement de</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Spacing range to</source>
         <translation>Écartement à</translation>
     </message>
@@ -4487,7 +4487,7 @@
         <translation>Arêtes de départ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Starts</source>
         <translation>Départs</translation>
     </message>
@@ -4732,7 +4732,7 @@
         <translation>La première couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>The first layer that is shown</source>
         <translation>La première couche montrée</translation>
     </message>
@@ -4757,12 +4757,12 @@
         <translation>Valeur de l&apos;entrée dans un programme à 0 degré Celsius.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
         <source>The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.</source>
         <translation>Le travail est prêt. Simuler… le joue ; double-cliquez sur le programme pour le lire, sur la cellule pour régler votre machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
         <source>The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export Path… writes its points as a table.</source>
         <translation>La trajectoire articulaire est prête ; aucun post-processeur n&apos;écrit encore de programme pour cette machine et cette configuration. Simuler… la joue, Exporter la trajectoire… écrit ses points dans un tableau.</translation>
     </message>
@@ -4787,12 +4787,12 @@
         <translation>La dernière couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>The last layer that is shown</source>
         <translation>La dernière couche montrée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>The last point that is shown, counted from 0 in the last layer</source>
         <translation>Le dernier point montré, compté à partir de 0 dans la dernière couche</translation>
     </message>
@@ -4857,7 +4857,7 @@
         <translation>La machine est gardée dans le dossier de vos propres machines ; cellules et travaux la connaissent par son nom.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/fields.py"/>
         <source>The machine that deposits; the program is written for its controller</source>
         <translation>La machine qui dépose ; le programme est écrit pour sa commande</translation>
     </message>
@@ -4927,7 +4927,7 @@
         <translation>Le robot tient la durée de chaque mouvement à travers les lissages</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>The same layer of all solids on a base in turn, around the axis, the same ring of each and the inner ones first; or solid by solid (feature).</source>
         <translation>La même couche de tous les solides d&apos;une base tour à tour, autour de l&apos;axe, le même anneau de chacun et les intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
     </message>
@@ -4972,7 +4972,7 @@
         <translation>Le texte amène l’outil aux points planifiés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>The time of the job</source>
         <translation>Le temps du travail</translation>
     </message>
@@ -4997,7 +4997,7 @@
         <translation>La table d’outils a la longueur de la torche, et la cinématique a les décalages du fichier machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>The toolpath or joint path to look at</source>
         <translation>La trajectoire d&apos;outil ou articulaire à regarder</translation>
     </message>
@@ -5022,7 +5022,7 @@
         <translation>La paroi à déposer, ou ses faces.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>The whole job</source>
         <translation>Tout le travail</translation>
     </message>
@@ -5107,7 +5107,7 @@
         <translation>Épaisseur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Thin</source>
         <translation>Mince</translation>
     </message>
@@ -5117,7 +5117,7 @@
         <translation>Cette courbe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>This is an earlier plan; recompute the document for the present one.</source>
         <translation>C&apos;est une planification antérieure ; recalculez le document pour l&apos;actuelle.</translation>
     </message>
@@ -5167,7 +5167,7 @@
         <translation>À</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>To layer</source>
         <translation>À la couche</translation>
     </message>
@@ -5177,7 +5177,7 @@
         <translation>Au corps</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>To the next place where a limit, a singularity or a speed is to be looked at</source>
         <translation>Au prochain endroit où une limite, une singularité ou une vitesse est à regarder</translation>
     </message>
@@ -5222,7 +5222,7 @@
         <translation>Trajectoire d&apos;outil…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Torch turned outwards about the bead on outer contours.</source>
         <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
     </message>
@@ -5352,7 +5352,7 @@
         <translation>Volume du dépôt, largeur de cordon fois hauteur de couche (cm³).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Wait</source>
         <translation>Attente</translation>
     </message>
@@ -5387,7 +5387,7 @@
         <translation>Paroi sur pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Walls</source>
         <translation>Contours extérieurs</translation>
     </message>
@@ -5432,7 +5432,7 @@
         <translation>Ce sur quoi cela croît : cliquez dessus avec Ctrl dans l&apos;arbre ou la vue 3D</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/path/form.py"/>
         <source>What the colours of the beads tell</source>
         <translation>Ce que disent les couleurs des cordons</translation>
     </message>
@@ -5452,7 +5452,7 @@
         <translation>À quoi se rapportent les positions des programmes cartésiens, dans les coordonnées de la pièce : x y z mm, RX RY RZ deg ; auto : le repère qui repose sur le plateau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Where beads start: where the seam says (aligned), or apart from those of neighbouring contours and layers, lines of every second layer at their other end (spread).</source>
         <translation>Départ des cordons : où le dit la couture (alignés), ou loin de ceux des contours et couches voisins, les lignes d&apos;une couche sur deux par leur autre bout (répartis).</translation>
     </message>
@@ -5522,7 +5522,7 @@
         <translation>Tout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Widest gap that may stay open between beads, as a share of the bead spacing.</source>
         <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons.</translation>
     </message>
@@ -5717,7 +5717,7 @@
         <translation>un jour de {0} mm entre des faces de {1} est comblé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>a height alone is no cone; give the radius of its base circle too, or base: auto</source>
         <translation>une hauteur seule n&apos;est pas un cône ; donnez aussi le rayon de son cercle de base, ou base: auto</translation>
     </message>
@@ -6012,7 +6012,7 @@
         <translation>par rapport à l&apos;horizontale</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>aligned</source>
         <translation>alignés</translation>
     </message>
@@ -6172,7 +6172,7 @@
         <translation>autour de l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>around-axis</source>
         <translation>autour de l&apos;axe</translation>
     </message>
@@ -6207,7 +6207,7 @@
         <translation>en ({0}) la face a une arête en son sein, de {1} deg ; arrondissez-la, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>at least {0}</source>
         <translation>au moins {0}</translation>
     </message>
@@ -6567,12 +6567,12 @@
         <translation>cliquez sur des faces ou un objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/fields.py"/>
         <source>click it</source>
         <translation>cliquez dessus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/fields.py"/>
         <source>click it with Ctrl</source>
         <translation>cliquez avec Ctrl</translation>
     </message>
@@ -6647,7 +6647,7 @@
         <translation>cône, R {:.4g} mm, demi-angle {:.4g}°</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>connected</source>
         <translation>contours reliés</translation>
     </message>
@@ -6682,7 +6682,7 @@
         <translation>contour, ou fermé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>contours</source>
         <translation>contours</translation>
     </message>
@@ -7032,7 +7032,7 @@
         <translation>donnez trois nombres comme [0, 0, 1]</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>give three numbers such as [0, 0, 1], or auto</source>
         <translation>donnez trois nombres comme [0, 0, 1], ou auto</translation>
     </message>
@@ -7047,12 +7047,12 @@
         <translation>gris</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>grid</source>
         <translation>grille</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>gyroid</source>
         <translation>gyroïde</translation>
     </message>
@@ -7077,7 +7077,7 @@
         <translation>la plus haute</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>honeycomb</source>
         <translation>nid d&apos;abeilles</translation>
     </message>
@@ -7632,7 +7632,7 @@
         <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>it is for solids, not for cladding; use {0}</source>
         <translation>c&apos;est pour les solides, pas pour le rechargement ; utilisez {0}</translation>
     </message>
@@ -7712,7 +7712,7 @@
         <translation>ce n&apos;est pas un job de /JOB à END</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc_parsed.py"/>
         <source>it is not a listing with /PROG, /MN, /POS and /END in this order</source>
         <translation>ce n&apos;est pas un listing avec /PROG, /MN, /POS et /END dans cet ordre</translation>
     </message>
@@ -9102,7 +9102,7 @@
         <translation>affinage des couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>refuse</source>
         <translation>refuser</translation>
     </message>
@@ -9252,7 +9252,7 @@
         <translation>les signes et zéros de {} sont autres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>single</source>
         <translation>simple</translation>
     </message>
@@ -9332,7 +9332,7 @@
         <translation>divisé pour un axe limité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>spread</source>
         <translation>répartis</translation>
     </message>
@@ -9512,7 +9512,7 @@
         <translation>le dépôt est commandé autrement que planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/docks/lookout.py"/>
         <source>the document was closed</source>
         <translation>le document a été fermé</translation>
     </message>
@@ -9832,7 +9832,7 @@
         <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; jusqu&apos;à strategy.mend, {3} mm, les trous sont fermés ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
         <source>the mesh has no inside, as at {0}; model the solid again</source>
         <translation>le maillage n&apos;a pas d&apos;intérieur, comme en {0} ; modélisez le solide de nouveau</translation>
     </message>
@@ -10707,7 +10707,7 @@
         <translation>vitesse d&apos;avance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>triangles</source>
         <translation>triangles</translation>
     </message>
@@ -11197,7 +11197,7 @@
         <translation>{0} face(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>{0} fills the whole, not {1} %; use 100 %, or fill: contours, lines, zigzag, grid, triangles, honeycomb or gyroid</source>
         <translation>{0} remplit tout, non pas {1} % ; choisissez 100 %, ou fill : contours, lines, zigzag, grid, triangles, honeycomb ou gyroid</translation>
     </message>
@@ -11467,7 +11467,7 @@
         <translation>{0} n&apos;est ni une longueur ni six nombres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>{0} is no axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]</source>
         <translation>{0} n&apos;est pas un axe ; donnez un point et une direction comme [[0, 0, 0], [0, 0, 1]]</translation>
     </message>
@@ -11517,7 +11517,7 @@
         <translation>{0} n&apos;est pas une hauteur ; donnez des nombres en mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc_parsed.py"/>
         <source>{0} is no instruction</source>
         <translation>{0} n&apos;est pas une instruction</translation>
     </message>
@@ -11912,7 +11912,7 @@
         <translation>{0} y est deux fois ; donnez chaque cordon une fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>{0} is without 100 %, the usual width; include it</source>
         <translation>{0} ne contient pas 100 %, la largeur habituelle ; incluez-la</translation>
     </message>
@@ -12157,7 +12157,7 @@
         <translation>{0} paires de triangles se croisent, par exemple en {1}, et ce que l&apos;un d&apos;eux enferme compte comme intérieur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
         <source>{0} pieces that enclose nothing were dropped</source>
         <translation>{0} morceaux qui n&apos;enferment rien ont été écartés</translation>
     </message>
@@ -12227,7 +12227,7 @@
         <translation>{0} solides sur {1} ({2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
         <source>{0} solids were inside out and were turned</source>
         <translation>{0} solides étaient retournés et ont été remis à l&apos;endroit</translation>
     </message>
@@ -12282,7 +12282,7 @@
         <translation>{0} triangles présents en double ont été écartés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
         <source>{0} triangles were turned to agree with their neighbours</source>
         <translation>{0} triangles ont été retournés pour s&apos;accorder avec leurs voisins</translation>
     </message>
@@ -12602,7 +12602,7 @@
         <translation>{condition:.3f} (au moins {threshold:.3f})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>{count} findings</source>
         <translation>{count} remarques</translation>
     </message>
@@ -12627,7 +12627,7 @@
         <translation>{label} a été recalculé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/docks/lookout.py"/>
         <source>{label} was deleted</source>
         <translation>{label} a été supprimé</translation>
     </message>
@@ -12802,7 +12802,7 @@
         <translation>{} est écrit.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
         <source>{} is {}. Double-click a stage in the tree to change it.</source>
         <translation>{} est {}. Double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
     </message>
@@ -12887,7 +12887,7 @@
         <translation>{}, {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/tool.py"/>
         <source>{}. {}</source>
         <translation>{}. {}</translation>
     </message>

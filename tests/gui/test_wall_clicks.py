@@ -8,6 +8,7 @@ import pytest
 from freecad_am import api
 from freecad_am.gui.background import later
 from freecad_am.gui.views import preview
+from tests import rooms
 
 ORANGE = (245, 120, 0)  # of first layers
 PANEL = "RoboticAM_SurfaceFeature"
@@ -107,6 +108,18 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     person.look()
     assert person.screen_pixels(ORANGE) > 150
     assert opened.Feature.ViewObject.Proxy.wall.faces.triangles.coordIndex.getNum() > 100
+
+
+def test_a_wall_face_goes_the_way_that_the_page_tells(person, hand, bend):
+    part, _ = bend
+    with rooms.Trail() as trail:
+        hand.click_face(part, "Face1")
+        hand.click_tree("Old pipe", "ctrl")
+        hand.click(person.button("RoboticAM_WallOnPart"))
+        previewed(person, person.panel(PANEL))
+        ok(person, hand)
+    assert len(rooms.told("A wall face")) > 18
+    assert rooms.lost(trail.calls, "A wall face") == []
 
 
 def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
