@@ -142,3 +142,23 @@ def test_all_stages_of_several_at_once(doc):
     with pytest.raises(InputError, match="give source"):
         api.make_all(doc, plate, kind="solid", then=[{"kind": "solid"}])
     assert api.stages_of(doc) == []
+
+
+def test_what_one_feature_leaves_out_and_what_of_another_is_over_nothing_are_told(doc):
+    """A cylinder laid as a skin, and on a block of 40 mm one of 60: a third of each bead of its first layer hangs out."""
+    rod = doc.addObject("Part::Cylinder", "Rod")
+    rod.Radius, rod.Height, rod.Placement.Base = 30, 20, App.Vector(0, 100, 0)
+    low, high = box(doc, "Low", 40, 20, 10, 0, 0, 0), box(doc, "High", 60, 20, 10, 0, 0, 10)
+    features = [
+        api.make_feature(doc, rod, label="skin", layer_height=5, chord_error=0.2),
+        api.make_solid_feature(doc, low, label="low", **COARSE), api.make_solid_feature(doc, high, label="high", **COARSE),
+    ]
+    toolpath = api.make_toolpath(doc, features)
+    left, = [issue for issue in api.issues(toolpath) if issue.code == "NOT_DEPOSITED"]
+    assert "of the 56.5 cm3 of Rod are not deposited" in left.message and left.level == "warning"
+    over, = [issue for issue in api.issues(toolpath) if issue.code == "UNSUPPORTED"]
+    made = api.result(toolpath)
+    first = next(k for k, layer in enumerate(made.layers) if layer.feature == 2)
+    assert over.layer == first and over.level == "warning"
+    laid = sum(bead.length for bead in made.layers[first].beads)
+    assert made.unsupported == pytest.approx(laid / 3.0, rel=0.25)
