@@ -276,6 +276,25 @@ def test_the_bound_holds_and_is_tight_for_random_machines():
         assert 0.2 * path.tool_bound[0] < tilt <= path.tool_bound[0]
 
 
+def test_a_rapid_that_leaves_its_way_is_caught_even_where_coarse_digits_explain_it(cell, motion, program, files):
+    """As near a singularity, where a last digit turns other axes far: by half a millimetre no clearance is spent."""
+
+    class Coarse:
+        @staticmethod
+        def read(told):
+            return dataclasses.replace(fanuc.read(told), digits=np.radians(0.1))
+
+    assert verification.verify(cell, motion, program, files, Coarse, CHORD_ERROR).issues == ()
+    moves = program.blocks[6]
+    assert moves.kind == "rapid"
+    joints = moves.joints.copy()
+    joints[-1, 0] += np.radians(0.04)
+    blocks = (*program.blocks[:6], dataclasses.replace(moves, joints=joints), *program.blocks[7:])
+    other = fanuc.write(dataclasses.replace(program, blocks=blocks))
+    result = verification.verify(cell, motion, program, other, Coarse, CHORD_ERROR)
+    assert codes(result) == {"VERIFY_BETWEEN"} and "between two beads" in result.issues[0].message
+
+
 def short_of(cell, axis, upper):
     """The cell with another upper limit of an axis, rad."""
     ends = cell.limits.upper.copy()
