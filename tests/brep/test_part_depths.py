@@ -151,3 +151,10 @@ def test_the_one_solid_of_revolution_that_is_most_of_a_part_is_taken_and_the_res
     found = balance(shape)
     assert [name for name, _ in found.solids] == ["Solid2"] and found.left_out == pytest.approx(1000.0, rel=0.3)
     assert codes(found) == ["NOT_DEPOSITED"]
+
+
+def test_a_solid_left_aside_is_told_however_small():
+    shape = Part.Compound([tube(30, 22), Part.makeBox(5, 5, 5, Vector(40, 0, 0))])
+    found = balance(shape)
+    assert found.left_out < deposit_balance.LITTLE * found.part
+    assert "1 solid(s) (Solid2)" in deposit_balance.issues(found)[0].message and codes(found) == ["NOT_DEPOSITED"]

@@ -74,6 +74,8 @@ def test_bends_end_at_their_end_however_far_they_turn(turn, spacing, end):
     last = np.radians(turn)
     toolpath = planned(bend(end=last), spacing=spacing, end=end, layer_height=8.0)
     points = np.vstack([bead.points for _, _, bead in toolpath])
+    x, y, z = points.T
+    assert np.hypot(np.hypot(x + BEND, z) - BEND, y) == pytest.approx(TUBE, abs=1e-4)
     around = np.mod(parameters(points)[0], 2.0 * np.pi)
     assert around.max() <= last + 1e-7
     v = np.linspace(0.0, 2.0 * np.pi, 50)
