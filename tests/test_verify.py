@@ -200,6 +200,21 @@ def test_times_that_are_off_by_a_millisecond_each_are_caught_in_the_bead(cell, m
     assert codes(verify(cell, motion, program, {"HEMISPHERE.LS": slowed.encode()})) == {"VERIFY_TIME"}
 
 
+def test_times_that_are_each_within_a_millisecond_are_caught_where_they_add_up(cell, motion, program, files):
+    """Every move longer or shorter by what a whole millisecond forgives: a bead of 200 moves is off by a tenth of a second."""
+    text = files["HEMISPHERE.LS"].decode()
+    laid = [block for block in program.blocks if isinstance(block, Moves) and block.kind == "deposit"]
+    planned = iter(np.concatenate([moves.duration for moves in laid]))
+
+    def longer(found):
+        return f"{int(np.ceil(1000.0 * next(planned) - 1e-6))}msec"
+
+    found = re.sub(r"(\d+)msec(?= CNT)|(\d+)msec(?= FINE    ;\r\n *\d+:  WAIT)", longer, text)
+    assert next(planned, None) is None and found != text
+    result = verify(cell, motion, program, {"HEMISPHERE.LS": found.encode()})
+    assert codes(result) == {"VERIFY_TIME"} and "do not add up" in result.issues[0].message
+
+
 def test_layers_in_the_wrong_order_are_caught(cell, motion, program):
     parts = fanuc.write(dataclasses.replace(program, max_points=150))
     swaps = {b"CALL HEMISPHERE01": b"CALL HEMISPHERE02", b"CALL HEMISPHERE02": b"CALL HEMISPHERE01"}
