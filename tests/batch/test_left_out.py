@@ -60,6 +60,13 @@ def test_a_bracket_is_refused_as_a_part_of_revolution_and_told_of_as_solids_on_i
     assert done.status == 0
     (issue,) = of_code(report, "NOT_DEPOSITED")
     bend = math.pi * (15**2 - 10**2) / 4 * 50 / 1000
-    assert report["deposit"]["left_out_cm3"] == pytest.approx(bend, rel=0.01)
-    assert report["deposit"]["deposited_cm3"] == pytest.approx(30.0, rel=1e-3)
+    found = report["deposit"]
+    assert found["part_cm3"] == pytest.approx(30.0 + bend, rel=1e-3) and found["solids_left_out"] == ["part solid 2"]
+    assert found["deposited_cm3"] == pytest.approx(found["part_cm3"] - found["left_out_cm3"])
+    assert bend < found["left_out_cm3"] < bend + 0.03 * 30.0  # and what beads leave in corners of the plates
     assert "solid 2" in issue["message"] and "34.9" in issue["message"]
+    # beads of 8 mm in plates of 5 mm lie over one another: what is laid is far more than what is covered
+    (twice,) = of_code(report, "DEPOSITED_TWICE")
+    laid, covered = report["totals"]["volume_cm3"], found["deposited_cm3"] + found["beside_cm3"]
+    assert laid > 1.4 * covered and found["twice_cm3"] == pytest.approx(laid - covered, rel=0.06)
+    assert twice["level"] == "warning" and f"{found['twice_cm3']:.3g} cm3" in twice["message"]

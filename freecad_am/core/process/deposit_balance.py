@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..geometry.on_hub import SolidsOnHub
@@ -27,7 +27,8 @@ MM3 = 1000.0  # in a cm3
 class Balance:
     """Volumes in mm3, estimates but for solids; None where the part has none. faces: those left out; solids: those left out,
     with mm3. width: of a bead, mm, 0 of solids, which are filled. thick: mm, of the part there.
-    filled: beads fill the part. twice: of beads laid over others of their layer."""
+    filled: beads fill the part. twice: of beads laid over others of their layer. hub: of what is left out and of the part,
+    the hub that is there before."""
 
     label: str
     part: float | None
@@ -40,6 +41,7 @@ class Balance:
     thick: float = 0.0
     filled: bool = False
     twice: float | None = None
+    hub: float = 0.0
 
 
 def of_feature(value: Any, width: float) -> Balance | None:
@@ -54,9 +56,11 @@ def of_toolpath(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
     if toolpath.volumes is None:
         return of_feature(value, width)
     part, left, beside = toolpath.volumes
+    own = value.own if isinstance(value, SolidsOnHub) else None
+    hub = own.hub if own else 0.0
     return Balance(
-        value.label, part, left, part - left + beside, beside, width=toolpath.bead_width or 0.0, filled=True,
-        twice=toolpath.twice,
+        value.label, own.volume if own else part, left + hub, part - left + beside, beside, solids=own.apart if own else (),
+        width=toolpath.bead_width or 0.0, filled=True, twice=toolpath.twice, hub=hub,
     )
 
 
@@ -74,7 +78,7 @@ def together(balances: Sequence[Balance | None]) -> Balance | None:
         ", ".join(one.label for one in known), total("part"), total("left_out"), total("beads"), total("beside"),
         tuple(f"{one.label} {face}" for one in known for face in one.faces),
         tuple(solid for one in known for solid in one.solids), width=known[0].width, thick=known[0].thick,
-        filled=all(one.filled for one in known), twice=total("twice"),
+        filled=all(one.filled for one in known), twice=total("twice"), hub=total("hub") or 0.0,
     )
 
 
@@ -130,7 +134,10 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
 
 
 def _of_filling(of: Balance) -> tuple[Issue, ...]:
-    found, part = [], of.part or 0.0
+    found, part = [], (of.part or 0.0) - of.hub
+    if of.hub > LITTLE * (of.part or 0.0):
+        found += issues(replace(of, left_out=of.hub, beside=None, width=0.0, filled=False))
+    of = replace(of, part=part, left_out=(of.left_out or 0.0) - of.hub)
     if (of.left_out or 0.0) > UNFILLED * part:
         found.append(Issue(
             WARNING, LEFT_OUT, f"{_left_out(of, True)}: beads of {of.width:.4g} mm do not reach into what is "

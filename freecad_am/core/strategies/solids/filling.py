@@ -41,7 +41,8 @@ INSTEAD = {  # round a hub
 
 
 class Cover(NamedTuple):
-    """Areas, mm^2: of regions, what beads as wide as they count leave of them, and what of beads lies beside them."""
+    """Areas, mm^2: of regions, what beads as wide as they count leave of them, and what of beads lies beside them; NaN of
+    what goes all the way round a hub."""
 
     whole: float = 0.0
     left: float = 0.0
@@ -135,7 +136,7 @@ class Pictures:
         if isinstance(region, Strip):
             if one.covered == ():
                 infill = Infill()
-            return *self._made(region, beads, angle, infill), Cover()
+            return *self._made(region, beads, angle, infill), Cover(math.nan, math.nan, math.nan)
         known = self._known.setdefault(one.surface.alike, [])
         for other in known:
             alike = abs(other.angle - angle) < 1e-9 and abs(_number(other.beads) - _number(beads)) < 1e-9
@@ -143,8 +144,8 @@ class Pictures:
             if alike and _equal(other.rings, region.rings()) and _same(other.infill, infill):
                 return other.curves, other.left, other.cover
         curves, left = self._made(region, beads, angle, infill)
-        cover = Cover() if one.surface.period is not None else _covered(region, curves, beads, infill)
-        if infill.density == 1.0 and cover.whole and self._strategy.spacing_range == EVERY:
+        cover = _covered(region, curves, beads, infill)
+        if infill.density == 1.0 and one.surface.period is None and self._strategy.spacing_range == EVERY:
             curves = self._thinned(curves, beads, angle, cover)
         known.append(_Picture(beads, angle, infill, region.rings(), curves, left, cover))
         return curves, left, cover

@@ -96,8 +96,8 @@ def plan(
         layers, _frame(solids), strategy.layer_height, strategy.chord_error, issues, process.overlap,
         "solid" if planes else "developable",
         solids.surroundings, None if model is None else model.law(process.acceleration), counted,
-        volumes=_volumes(solids, strategy, covers) if planes else None,
-        twice=_twice(made, strategy, covers, counted) if planes and strategy.fill_density == 1.0 else None,
+        volumes=_volumes(solids, strategy, covers, planes),
+        twice=_twice(made, strategy, covers, counted) if strategy.fill_density == 1.0 else None,
         uneven=np.array([(layer, *uneven[layer]) for layer in sorted(uneven)]) if uneven else None,
     )
 
@@ -108,25 +108,33 @@ def _both(known: tuple[float, float] | None, heights: tuple[float, float, float]
     return (low, high) if known is None else (min(low, known[0]), max(high, known[1]))
 
 
-def _volumes(solids: SolidsOnHub, strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[float, float, float]:
-    """mm3 of the part, of what beads leave of it, and of what of them lies beside it. Of a single solid the part is all of
-    that, so that what is above the last cut counts; solids may overlap, and are as large as their sections are."""
+def _volumes(
+    solids: SolidsOnHub, strategy: FilledParameters, covers: Sequence[Cover], planes: bool
+) -> tuple[float, float, float] | None:
+    """mm3 of the part, of what beads leave of it, and of what of them lies beside it. Of a single solid in planes the part is
+    all of that, so that what is above the last cut counts; solids may overlap, and are as large as their sections are. None
+    where a layer goes all the way round a hub."""
     whole, left, beside = (strategy.layer_height * math.fsum(column) for column in zip(*covers))
+    if not math.isfinite(whole):
+        return None
     bodies = [body for group in solids.groups for body in group.bodies]
-    part = whole if len(bodies) > 1 or strategy.margin else SolidMesh(bodies[0].vertices, bodies[0].triangles).volume
+    single = planes and len(bodies) == 1 and not strategy.margin
+    part = SolidMesh(bodies[0].vertices, bodies[0].triangles).volume if single else whole
     return part, max(part - whole + left, 0.0), beside
 
 
-def _twice(made: Sequence[Rolled], strategy: FilledParameters, covers: Sequence[Cover], width: float) -> float:
-    """mm3 of beads that count as `width` mm wide, each as wide as they are apart, beyond what they cover."""
-    area = 0.0
+def _twice(made: Sequence[Rolled], strategy: FilledParameters, covers: Sequence[Cover], width: float) -> float | None:
+    """mm3 of beads that count as `width` mm wide, each as wide as they are apart, beyond what they cover; None where that is
+    not known."""
+    area, once = 0.0, math.fsum(cover.whole - cover.left + cover.beside for cover in covers)
+    if not math.isfinite(once):
+        return None
     for bead in (one.bead for one in made):
         step = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
         wide = np.full(len(bead), width) if bead.width is None else bead.width
         high = np.ones(len(bead)) if bead.height is None else bead.height / strategy.layer_height
         section = wide * high * strategy.bead_spacing / width
         area += float((0.5 * (section[1:] + section[:-1])) @ step)
-    once = math.fsum(cover.whole - cover.left + cover.beside for cover in covers)
     return max(area - once, 0.0) * strategy.layer_height
 
 
