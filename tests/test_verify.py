@@ -201,7 +201,7 @@ def test_times_that_are_off_by_a_millisecond_each_are_caught_in_the_bead(cell, m
 
 
 def test_times_that_are_each_within_a_millisecond_are_caught_where_they_add_up(cell, motion, program, files):
-    """Every move longer or shorter by what a whole millisecond forgives: a bead of 200 moves is off by a tenth of a second."""
+    """Every move longer by what a whole millisecond forgives: a bead of 200 moves is off by a tenth of a second."""
     text = files["HEMISPHERE.LS"].decode()
     laid = [block for block in program.blocks if isinstance(block, Moves) and block.kind == "deposit"]
     planned = iter(np.concatenate([moves.duration for moves in laid]))

@@ -182,3 +182,55 @@ def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound)
     found = broken(dataclasses.replace(evidence, read=dataclasses.replace(evidence.read, ok=False)))
     assert set(found) == {
         "The text takes the tool to the planned points", "Between its points the text keeps to the planned path"}
+
+
+def without(evidence, **parts):
+    """The evidence with parts of its toolpath, or of its cell, replaced."""
+    return {name: dataclasses.replace(getattr(evidence, name), **values) for name, values in parts.items()}
+
+
+@pytest.mark.parametrize(
+    ("promise", "change"),
+    [
+        ("What is deposited lies on the part", lambda e: without(e, toolpath={"on_part": None})),
+        ("All of the part is deposited", lambda e: {"balance": None}),
+        ("Nothing is deposited beside the part", lambda e: {"balance": None}),
+        ("Nothing is deposited beside the part", lambda e: without(e, balance={"beside": None})),
+        ("Every bead is carried by what lies below it", lambda e: without(e, toolpath={"unsupported": None})),
+        ("The wire feeds what the beads take", lambda e: without(e, toolpath={"wire_feed": None})),
+        ("The wire feeds what the beads take", lambda e: without(e, process={"bead_model": "csw"})),
+        ("The nozzle stays clear of deposit, part and platform while it deposits", lambda e: {"looked": None}),
+        ("Every axis stays within its limits", lambda e: {"cell": None}),
+        ("The joints bring the tool to every point", lambda e: {"motion": None}),
+        ("No axis is asked for more than its largest speed", lambda e: {"motion": None}),
+        ("The tool keeps away from singularities while it deposits", lambda e: {"condition": None}),
+        ("The nozzle stays clear on the rapids", lambda e: {"rapids": None}),
+        ("The arm stays clear of part, deposit, platform and nozzle", lambda e: {"arm": None}),
+        ("The arm stays clear of part, deposit, platform and nozzle", lambda e: {"true_shapes": False}),
+        ("The text takes the tool to the planned points", lambda e: {"read": None}),
+        ("Between its points the text keeps to the planned path", lambda e: {"read": None}),
+    ],
+)
+def test_what_nobody_has_looked_at_is_neither_kept_nor_broken_and_says_so(sound, promise, change):
+    entries = {entry.promise: entry for entry in promises(dataclasses.replace(sound[2], **change(sound[2])))}
+    assert entries[promise].ok is None and entries[promise].how.startswith("not checked")
+    assert entries["UFRAME 1"].ok is None
+
+
+def test_what_a_machine_file_does_not_tell_is_not_kept(sound):
+    evidence = sound[2]
+    cell = evidence.cell
+    n = cell.machine.chain.axes
+    bare = dataclasses.replace(
+        cell, machine=dataclasses.replace(cell.machine, max_speed=np.full(n, np.inf)),
+        limits=dataclasses.replace(
+            cell.limits, lower=np.full(n, -np.inf), upper=np.full(n, np.inf), coefficients=np.zeros((0, n)),
+            coupled_lower=np.zeros(0), coupled_upper=np.zeros(0), labels=cell.limits.labels[:n],
+        ),
+    )
+    unknown = np.full(len(evidence.motion), np.nan)
+    changed_ = dataclasses.replace(evidence, cell=bare, condition=unknown)
+    entries = {entry.promise: entry.ok for entry in promises(changed_)}
+    for name in ("Every axis stays within its limits", "No axis is asked for more than its largest speed",
+                 "The tool keeps away from singularities while it deposits"):
+        assert entries[name] is None, name

@@ -111,9 +111,9 @@ def _both(known: tuple[float, float] | None, heights: tuple[float, float, float]
 def _volumes(
     solids: SolidsOnHub, strategy: FilledParameters, covers: Sequence[Cover], planes: bool
 ) -> tuple[float, float, float] | None:
-    """mm3 of the part, of what beads leave of it, and of what of them lies beside it. Of a single solid in planes the part is
-    all of that, so that what is above the last cut counts; solids may overlap, and are as large as their sections are. None
-    where a layer goes all the way round a hub."""
+    """mm3 of the part, of what beads leave of it, and of what of them lies beside it. Of a single solid in planes the part
+    is all of that, so that what is above the last cut counts; solids may overlap, and are as large as their sections are.
+    None where a layer goes all the way round a hub."""
     whole, left, beside = (strategy.layer_height * math.fsum(column) for column in zip(*covers))
     if not math.isfinite(whole):
         return None

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How deep is a touch: upright nozzles beside a wall and a bead whose distances follow from how they were put, a little
+less deep and a little deeper than docs/architecture.md and the file of tolerances promise."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.collision.deposit import of_beads
+from freecad_am.core.collision.frustum import Frustum, beside_tip
+from freecad_am.core.collision.nozzle import depositing, travelling
+from freecad_am.core.collision.scene import scene
+from freecad_am.core.geometry.rods import Rod
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.kinematics import arm_contact
+
+RADIUS, LENGTH, UP = 3.0, 30.0, np.array([[0.0, 0.0, 1.0]])
+WIDTH, HEIGHT = 4.0, 2.0
+
+
+def wall(x):
+    """A block whose face looks along -X at x, and reaches far to all other sides."""
+    corners = np.array([[x + a, b, c] for a in (0.0, 50.0) for b in (-50.0, 50.0) for c in (-50.0, 50.0)])
+    sides = [(0, 1, 3), (0, 3, 2), (4, 7, 5), (4, 6, 7), (0, 5, 1), (0, 4, 5), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
+             (1, 5, 7), (1, 7, 3)]
+    return Body("wall", corners, np.array(sides))
+
+
+def bead():
+    """Along Y, half of its width on either side of x = 0, from z = 0 up."""
+    points = np.array([[0.0, -20.0, 0.0], [0.0, 20.0, 0.0]])
+    return of_beads(points, np.repeat(UP, 2, axis=0), WIDTH, HEIGHT, [0])
+
+
+def meets(nozzle, x, bodies=(), deposit=None):
+    tip = np.array([[x, 0.0, 0.0]])
+    return bool(scene(bodies, tip, 100.0, deposit).touched(nozzle, tip, UP)[0])
+
+
+# mm that two solids are in one another
+@pytest.mark.parametrize(("deep", "touched"), [(-0.02, False), (0.03, False), (0.07, True), (0.5, True)])
+def test_on_rapids_a_nozzle_is_in_a_bead_by_no_more_than_its_chords_are_off(deep, touched):
+    x = RADIUS + 0.5 * WIDTH - deep
+    assert meets(travelling(RADIUS, 0.0, LENGTH), x, deposit=bead()) == touched
+
+
+@pytest.mark.parametrize(("deep", "touched"), [(-0.02, False), (0.08, False), (0.12, True), (0.5, True)])
+def test_on_rapids_a_nozzle_is_in_a_body_by_no_more_than_triangles_are_off(deep, touched):
+    assert meets(travelling(RADIUS, 0.0, LENGTH), deep - RADIUS, [wall(0.0)]) == touched
+
+
+@pytest.mark.parametrize(("deep", "let", "halfway"), [(0.02, True, False), (0.08, True, False), (0.12, True, True)])
+def test_while_depositing_beads_are_met_exactly_and_halfway_within_a_tenth(deep, let, halfway):
+    nozzle = depositing(RADIUS, 0.5, LENGTH, 0.0)
+    low = nozzle.deposit.low
+    tall = of_beads(np.array([[0.0, -50.0, 0.0], [0.0, 50.0, 0.0]]), np.repeat(UP, 2, axis=0), WIDTH, 2.0 * low, [0])
+    # the side of the cone is deepest in the bead's round flank, a quarter circle of its half width about its upper edge
+    round_, top = 0.5 * WIDTH, 2.0 * low - 0.5 * WIDTH
+    lean = np.hypot(1.0, 0.5)
+    x = (RADIUS + 0.5 * top) + lean * (round_ - deep)
+    assert low < top - 0.5 * round_ / lean  # that place is above what is left out
+    assert meets(nozzle, x, deposit=tall) == let and meets(nozzle.halfway(), x, deposit=tall) == halfway
+    assert not meets(nozzle, x + lean * (deep + 0.01), deposit=tall)
+
+
+def test_over_the_bodies_that_a_nozzle_deposits_on_what_both_faces_may_be_off_is_left_out():
+    nozzle, slope = depositing(RADIUS, 0.5, LENGTH, 0.0), 0.5
+    assert nozzle.bodies.low == pytest.approx(beside_tip(RADIUS, slope) + 0.2)
+
+
+@pytest.mark.parametrize(("gap", "touched"), [(-1.0, True), (0.15, True), (0.25, False)])
+def test_links_are_kept_as_far_as_two_lots_of_triangles_are_off(gap, touched):
+    """A rod along Y beside the wall: it touches from a fifth of a millimetre on, and with a clearance so much farther."""
+    rod = Rod(np.array([0.0, -10.0, 0.0]), np.array([0.0, 10.0, 0.0]), 5.0)
+    group = arm_contact._of_body(wall(0.0), range(1))
+    for clearance in (0.0, 10.0):
+        seen = np.eye(4)[None].copy()
+        seen[0, 0, 3] = -5.0 - gap - clearance
+        found = arm_contact._meets(group, [rod], seen, np.array([0]), clearance)
+        assert bool(found[0]) == touched
+
+
+def test_rounding_is_no_touch_and_a_nanometre_is_one():
+    solid = Frustum(RADIUS, 0.0, 0.0, LENGTH)
+    points = np.array([[0.0, -20.0, 5.0], [0.0, 20.0, 5.0]])
+    line = of_beads(points, np.repeat(UP, 2, axis=0), 0.0, 0.0, [0])
+    for deep, touched in ((-1e-6, False), (1e-10, False), (1e-6, True)):
+        assert meets(solid, RADIUS - deep, deposit=line) == touched
