@@ -134,7 +134,8 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
 
 
 def _of_filling(of: Balance) -> tuple[Issue, ...]:
-    found, part = [], (of.part or 0.0) - of.hub
+    found: list[Issue] = []
+    part = (of.part or 0.0) - of.hub
     if of.hub > LITTLE * (of.part or 0.0):
         found += issues(replace(of, left_out=of.hub, beside=None, width=0.0, filled=False))
     of = replace(of, part=part, left_out=(of.left_out or 0.0) - of.hub)

@@ -11,7 +11,9 @@ from freecad_am.core.collision.nozzle import depositing, travelling
 from freecad_am.core.collision.scene import scene
 from freecad_am.core.geometry.rods import Rod
 from freecad_am.core.geometry.surroundings import Body
-from freecad_am.core.kinematics import arm_contact
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics.arm_contact import ArmContact
+from freecad_am.core.parameters.cell import CellParameters
 
 RADIUS, LENGTH, UP = 3.0, 30.0, np.array([[0.0, 0.0, 1.0]])
 WIDTH, HEIGHT = 4.0, 2.0
@@ -68,15 +70,19 @@ def test_over_the_bodies_that_a_nozzle_deposits_on_what_both_faces_may_be_off_is
 
 
 @pytest.mark.parametrize(("gap", "touched"), [(-1.0, True), (0.15, True), (0.25, False)])
-def test_links_are_kept_as_far_as_two_lots_of_triangles_are_off(gap, touched):
-    """A rod along Y beside the wall: it touches from a fifth of a millimetre on, and with a clearance so much farther."""
-    rod = Rod(np.array([0.0, -10.0, 0.0]), np.array([0.0, 10.0, 0.0]), 5.0)
-    group = arm_contact._of_body(wall(0.0), range(1))
-    for clearance in (0.0, 10.0):
-        seen = np.eye(4)[None].copy()
-        seen[0, 0, 3] = -5.0 - gap - clearance
-        found = arm_contact._meets(group, [rod], seen, np.array([0]), clearance)
-        assert bool(found[0]) == touched
+@pytest.mark.parametrize("clearance", [0.0, 10.0])
+def test_links_are_kept_as_far_as_two_lots_of_triangles_are_off(gap, touched, clearance):
+    """A rod of link 2 along the wall: it touches from a fifth of a millimetre on, and with a clearance so much farther."""
+    cell = cells.resolve(CellParameters(
+        setup="tool-on-robot", mount="part", deposition_point=(1000.0, 0.0, -100.0, 0.0, 0.0, 0.0), platform_diameter=0.0,
+    ), np.eye(4), "developable")
+    joints = np.radians([[10.0, 20.0, -15.0, 5.0, 40.0, 30.0]])
+    ends = np.array([[-5.0 - gap - clearance, y, 0.0, 1.0] for y in (-10.0, 10.0)])
+    part = cell.station @ np.linalg.inv(cell.mount)
+    seen = (np.linalg.inv(cell.links(joints)[0, 2]) @ part @ ends.T).T[:, :3]
+    rods = [()] * 2 + [(Rod(*seen, 5.0),)] + [()] * 4
+    found = ArmContact(cell, rods, (wall(0.0),), clearance=clearance).touches(joints)
+    assert bool(found.any[0]) == touched and (not touched or found.link[0] == 2)
 
 
 def test_rounding_is_no_touch_and_a_nanometre_is_one():
