@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`cell.arm_clearance`: how near links come to a post beside a dome, and what keeping them clear adds to planning.
+"""`cell.arm_clearance`: how near links come to what stands beside a dome, and what keeping them clear adds to planning.
 
-Judged by others on what was saved: joints of every row of waypoints.csv, and at nine places between two rows, through
-PyKDL's chain of the machine, and distances by python-fcl between the rods of the links and the post. Without the key the
-same job drives links into the post, which the library has to see too, or it sees nothing.
+A post that is a fixture, a table on which the part stands and a tall finished wall, which the same job drives links into
+without the key: the library has to see that too, or it sees nothing. And a screen between robot and part, which is refused
+by name. Judged by others on what was saved: joints of every row of waypoints.csv, and at nine places between two rows,
+through PyKDL's chain of the machine, and distances by python-fcl between the rods of the links and the body.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import json
 import os
 import subprocess
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -28,54 +30,99 @@ ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
 CLEARANCE, TIMES = 10.0, 3.0  # mm that are kept, and times the planning may take
 BETWEEN = 10  # places looked at from one row to the next, the row's own among them
-LOW, SIZE = (50.0, 108.5, -5.0), (60.0, 60.0, 400.0)  # of the post, mm in part coordinates
 ROUNDS = 5  # of both jobs in turns
 ROBOT, STATION, LEAN = "fanuc-arcmate120ic", (900.0, 0.0, -100.0), 45.0
 JOB = """version: 1
 name: arm
 part: {{file: {step}}}
-fixtures: [{{file: post.stl}}]
+{fixtures}
 strategy: {{kind: revolution, layer_height: 15 mm, chord_error: 0.2 mm}}
 build_direction: {{mode: fixed}}
 cell: {{machine: {robot}, limits: paper, setup: tool-on-robot, deposition_point: [{x}, {y}, {z}, 0, 0, 0],
-       nozzle: {{length: 60 mm, tool: [120, 0, 200, 0, {lean}, 0]}}, branch: [front, down, noflip]{key}}}
+       nozzle: {{length: 60 mm, tool: [120, 0, 200, 0, {lean}, 0]}}, branch: {branch}, obstacles: {obstacles}{key}}}
 program: {{post: fanuc}}
 """
+DOWN, AUTO = "[front, down, noflip]", "auto"
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A box beside the part: its name, its lower corner and its edges, mm in part coordinates, the branch that is asked for,
+    and whether it is a fixture."""
+
+    name: str
+    low: tuple[float, float, float]
+    size: tuple[float, float, float]
+    branch: str
+    fixture: bool = False
+
+    def job(self, key: str) -> str:
+        """The text of a job beside it."""
+        x, y, z = STATION
+        middle = np.add(self.low, 0.5 * np.array(self.size)) + STATION
+        stands = "[]" if self.fixture else (
+            f"[{{name: {self.name}, box: {list(self.size)}, pose: [{', '.join(map(repr, middle.tolist()))}, 0, 0, 0]}}]")
+        return JOB.format(
+            step=EXAMPLE, robot=ROBOT, x=x, y=y, z=z, lean=LEAN, key=key, branch=self.branch, obstacles=stands,
+            fixtures="fixtures: [{file: post.stl}]" if self.fixture else "")
+
+
+CLEARED = (
+    Standing("post", (50.0, 108.5, -5.0), (60.0, 60.0, 400.0), DOWN, fixture=True),
+    Standing("table", (-500.0, -400.0, -30.0), (1000.0, 800.0, 30.0), AUTO),
+    Standing("finished wall", (-130.0, 104.0, 0.0), (260.0, 12.0, 420.0), DOWN),
+)
+SCREEN = Standing("screen", (-470.0, -1500.0, -1400.0), (40.0, 3000.0, 3000.0), AUTO)
 
 
 def run() -> list[Row]:
-    """The least distance against what was asked for, and the time against the same without."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "post.stl").write_text(_box(), encoding="utf-8")
-        done = [
-            [_planned(folder, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm")] for _ in range(ROUNDS)
+    """The least distance from each against what was asked for, and the time against the same without."""
+    found = []
+    for body in CLEARED:
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "post.stl").write_text(_box(body), encoding="utf-8")
+            done = [
+                [_planned(folder, body, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm")] for _ in range(ROUNDS)
+            ]
+        plain, took = (median(seconds for _, seconds in some) for some in zip(*done))
+        (near, _), (kept, _) = done[0]
+        assert near is None or near < CLEARANCE, f"nothing to keep clear of: {near:.1f} mm from the {body.name}"
+        found += [
+            Row(f"least distance of links from a {body.name} by python-fcl, {0.0 if near is None else near:.1f} mm without "
+                "cell.arm_clearance; what is kept", CLEARANCE, kept, "mm", 1.0),
+            Row(f"joint path beside a {body.name} with cell.arm_clearance, against {TIMES:g} times that without", took,
+                TIMES * plain, "s", 1.0),
         ]
-    plain, took = (median(seconds for _, seconds in some) for some in zip(*done))
-    (near, _), (kept, _) = done[0]
-    assert near is None or near < CLEARANCE, f"nothing to keep clear of: {near:.1f} mm"
-    return [
-        Row(f"least distance of links from a post by python-fcl, {0.0 if near is None else near:.1f} mm without "
-            "cell.arm_clearance; what is kept", CLEARANCE, kept, "mm", 1.0),
-        Row(f"joint path with cell.arm_clearance, against {TIMES:g} times that without", took, TIMES * plain, "s", 1.0),
-    ]
+    _refused()
+    return found
 
 
-def _planned(folder: Path, key: str) -> tuple[float | None, float]:
-    """The least distance in mm, None without python-fcl, and seconds that the joint path took."""
-    x, y, z = STATION
-    (folder / "arm.yaml").write_text(
-        JOB.format(step=EXAMPLE, robot=ROBOT, x=x, y=y, z=z, lean=LEAN, key=key), encoding="utf-8")
+def _refused() -> None:
+    """The screen, which nothing clears, is refused by name, with link, layer and bead."""
+    with tempfile.TemporaryDirectory() as name:
+        done = _carried_out(Path(name), SCREEN, f", arm_clearance: {CLEARANCE:g} mm")
+    told = "error[ARM_CLEARANCE] layer 0 bead 0: link q", f"mm to {SCREEN.name}"
+    assert done.returncode == 3 and all(text in done.stderr for text in told), done.stderr
+
+
+def _carried_out(folder: Path, body: Standing, key: str) -> subprocess.CompletedProcess[str]:
+    (folder / "arm.yaml").write_text(body.job(key), encoding="utf-8")
     command = [str(ROOT / "freecad-am"), "plan", str(folder / "arm.yaml"), "-o", str(folder / "out"), "--no-page"]
     environment = {name: value for name, value in os.environ.items() if name not in ("BENCH_INSIDE", "VIRTUAL_ENV")}
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+
+
+def _planned(folder: Path, body: Standing, key: str) -> tuple[float | None, float]:
+    """The least distance in mm, None without python-fcl, and seconds that the joint path took."""
+    done = _carried_out(folder, body, key)
     assert not done.returncode, done.stderr
     report = json.loads((folder / "out" / "report.json").read_text(encoding="utf-8"))
-    return _nearest(folder / "out" / "waypoints.csv"), float(report["timing_s"]["joint_path"])
+    return _nearest(folder / "out" / "waypoints.csv", body), float(report["timing_s"]["joint_path"])
 
 
-def _nearest(table: Path) -> float | None:
-    """Least distance in mm of links from the post along a saved path."""
+def _nearest(table: Path, body: Standing) -> float | None:
+    """Least distance in mm of links from the body along a saved path."""
     try:
         import fcl
     except ImportError:
@@ -89,8 +136,8 @@ def _nearest(table: Path) -> float | None:
     arm, frame, least = KdlArm(robot), None, np.inf
     frame = arm.kdl.Frame()
     # the part stands at the deposition point, its frame as that of the base
-    middle = robot.base[:3, :3] @ (np.add(LOW, 0.5 * np.array(SIZE)) + STATION) + robot.base[:3, 3]
-    post = fcl.CollisionObject(fcl.Box(*SIZE), fcl.Transform(middle))
+    middle = robot.base[:3, :3] @ (np.add(body.low, 0.5 * np.array(body.size)) + STATION) + robot.base[:3, 3]
+    box = fcl.CollisionObject(fcl.Box(*body.size), fcl.Transform(middle))
     links = [(number, [_rod(fcl, rod) for rod in rods]) for number, rods in enumerate(link_rods.of_robot(robot.chain))]
     for q in joints:
         angles = arm.angles(q)
@@ -100,7 +147,7 @@ def _nearest(table: Path) -> float | None:
             place = np.array([frame.p.x(), frame.p.y(), frame.p.z()])
             for cylinder, turned, at in rods:
                 moving = fcl.CollisionObject(cylinder, fcl.Transform(turn @ turned, place + turn @ at))
-                least = min(least, fcl.distance(moving, post, fcl.DistanceRequest(), fcl.DistanceResult()))
+                least = min(least, fcl.distance(moving, box, fcl.DistanceRequest(), fcl.DistanceResult()))
     return max(float(least), 0.0)
 
 
@@ -113,9 +160,9 @@ def _rod(fcl: Any, rod: Any) -> tuple[Any, np.ndarray, np.ndarray]:
     return fcl.Cylinder(rod.radius, rod.length), turned, 0.5 * (rod.start + rod.end)
 
 
-def _box() -> str:
-    """The post as a text of STL."""
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * SIZE + LOW
+def _box(body: Standing) -> str:
+    """The body as a text of STL."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * body.size + body.low
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     lines = ["solid post"]
     for a, b, c, d in faces:

@@ -54,9 +54,10 @@ class Bodies:
         return found
 
 
-def of_bodies(bodies: Sequence[Body], around: Array, reach: float) -> Bodies:
+def of_bodies(bodies: Sequence[Body], around: Array, reach: float, piece: float = PIECE) -> Bodies:
     """The triangles of bodies no farther than `reach` (mm) from the box about the points `around` (n, 3), and the inside of
-    those that are closed; a body with an opening counts by its triangles alone."""
+    those that are closed; a body with an opening counts by its triangles alone. piece: mm, the longest edge of a triangle
+    once it is cut up."""
     low, high = around.min(axis=0) - reach, around.max(axis=0) + reach
     corners = np.concatenate([np.zeros((0, 3, 3)), *(body.corners() for body in bodies)])
     whole = len(corners)
@@ -65,7 +66,7 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float) -> Bodies:
         edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
         # halves of the longest edges first, so that where there is no room for more the largest are cut
         longest = edges.max(axis=1, initial=0.0)
-        long = longest > max(PIECE, 0.5 * float(longest.max(initial=0.0)))
+        long = longest > max(piece, 0.5 * float(longest.max(initial=0.0)))
         if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * whole):
             break
         corners = np.concatenate([corners[~long], _halves(corners[long], edges[long].argmax(axis=1))])

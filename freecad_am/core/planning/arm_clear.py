@@ -26,6 +26,7 @@ Mask = NDArray[np.bool_]
 Place = tuple[int, int]
 
 FEW, TURNS = 4, 72  # candidates of a bead looked at before there is a map, and rotations of that
+ENDS = 3  # points of a bead looked at before all of them: where no rotation serves one of these, none serves the bead
 POINTS_PER_BEAD = 24  # and turn, at which the links are looked at
 SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way from where the local search began to what it found
 
@@ -52,20 +53,32 @@ def _mapped(
 ) -> Mask:
     """(C, B) for which of the candidates (C, B, degree + 1) of beads asked about a link comes too near at a rotation next to
     one of theirs."""
-    near, every = _map(task, kept, points, places, asked), np.arange(len(points))
-    found = np.zeros(coefficients.shape[:2], dtype=bool)
+    joints = task.raw_joints(points, np.broadcast_to(np.arange(TURNS)[:, None] * (TURN / TURNS), (TURNS, len(points))))
+    near, hopeless = _map(kept, points, places, joints, asked)
+    every, found = np.arange(len(points)), np.zeros(coefficients.shape[:2], dtype=bool)
     for row, candidate in zip(found, coefficients):
         phi = task.rotation(points, points.polynomial(candidate))[0]
         at = np.mod(phi / (TURN / TURNS), TURNS).astype(np.intp) % TURNS
         row[:] = asked & np.logical_or.reduceat(near[at, every] | near[(at + 1) % TURNS, every], points.first)
+    found[:, hopeless] = True
     return found
 
 
-def _map(task: Task, kept: ArmKept, points: Points, places: Sequence[Place], asked: Mask) -> Mask:
-    """(TURNS, T) at which of so many rotations, from 0 on, a link comes too near at the points of the beads asked about."""
-    joints = task.raw_joints(points, np.broadcast_to(np.arange(TURNS)[:, None] * (TURN / TURNS), (TURNS, len(points))))
-    joints = np.where(asked[points.bead, None], joints, np.nan)
-    return np.stack([kept.touches(row, points, places).any for row in joints])
+def _map(kept: ArmKept, points: Points, places: Sequence[Place], joints: Array, asked: Mask) -> tuple[Mask, Mask]:
+    """(TURNS, T) at which rotations, whose joints are (TURNS, T, axes), a link comes too near at points of the beads asked
+    about; and which beads (B,) have a point that no rotation serves. Of these no more than ENDS points are known."""
+    near, hopeless = np.zeros(joints.shape[:2], dtype=bool), np.zeros(points.beads, dtype=bool)
+    last = np.append(points.first[1:], len(points)) - 1
+    share = np.linspace(0.0, 1.0, ENDS)[:, None]
+    ends = np.zeros(len(points), dtype=bool)
+    ends[np.round(points.first + share * (last - points.first)).astype(np.intp)] = True
+    reached = np.isfinite(joints).all(axis=2)
+    for some in (ends, ~ends):
+        columns = np.flatnonzero(some & (asked & ~hopeless)[points.bead])
+        near[:, columns] = kept.rotations_near(joints[:, columns], points.bead[columns], places)
+        closed = (near | ~reached).all(axis=0) & near.any(axis=0)
+        hopeless |= np.logical_or.reduceat(closed, points.first)
+    return near, hopeless
 
 
 def brought_clear(

@@ -21,6 +21,7 @@ from .rapids import evenly
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 Place = tuple[int, int]
 Rods = Sequence[Sequence[Rod]]
 
@@ -38,6 +39,12 @@ class ArmKept:
     def touches(self, joints: Array, points: Points, places: Sequence[Place]) -> Touches:
         """What links come too near with joints (T, axes) at the points of beads at these places."""
         return self.contact.touches(joints, np.array([self.moment(place) for place in places], dtype=np.int64)[points.bead])
+
+    def rotations_near(self, joints: Array, bead: Index, places: Sequence[Place]) -> Mask:
+        """(R, T) with which joints (R, T, axes), of R rotations at points of the beads (T,), a link comes too near."""
+        when = np.array([self.moment(place) for place in places], dtype=np.int64)[bead]
+        met = self.contact.touches(joints.reshape(-1, joints.shape[2]), np.tile(when, len(joints)))
+        return met.any.reshape(joints.shape[:2])
 
     def moment(self, place: Place) -> int:
         """How many points are there before a bead; before its layer, of one that was divided since."""

@@ -18,8 +18,11 @@ from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.planning import arm_clear, arm_kept, search
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.points import gather
+from freecad_am.core.planning.task import Task
 from freecad_am.core.strategies import revolution
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.conftest import sphere
@@ -124,3 +127,34 @@ def test_what_cannot_be_cleared_is_named(dome):
     assert {issue.layer for issue in told} == set(range(len(job.layers)))
     assert all(issue.message.startswith("link q") and "150 mm" in issue.message for issue in told)
     assert any("back wall" in issue.message for issue in told)
+
+
+def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, monkeypatch):
+    """The same candidates are left whether beads are given up at their ends or looked at everywhere."""
+    wall = box(np.array([-140.0, -60.0, -5.0]), np.array([12.0, 120.0, 420.0]), "wall")
+    job = dataclasses.replace(dome, surroundings=(*dome.surroundings, wall))
+    cell = cells.resolve(CellParameters(**CELL, branch=DOWN, arm_clearance=CLEARANCE), job.frame)
+    kept = arm_kept.of_job(job, cell, link_rods.of_robot(cell.robot.chain))
+    beads, places = [bead for _, _, bead in job], [(layer, index) for layer, index, _ in job]
+    points = gather(beads, cell, arm_clear.POINTS_PER_BEAD)
+    found, looked = [], []
+    for branch in range(8):
+        task = Task(cell, branch, JointParameters(), False, kept)
+        candidates = search.everywhere(task, points, task.thresholds(points))
+        for ends in (arm_clear.ENDS, arm_clear.POINTS_PER_BEAD):
+            monkeypatch.setattr(arm_clear, "ENDS", ends)
+            asked = []
+            monkeypatch.setattr(arm_kept.ArmKept, "rotations_near", counting(asked))
+            found.append(arm_clear.without_touching(task, kept, points, places, candidates).margin)
+            looked.append(sum(asked))
+            monkeypatch.undo()
+    assert all(np.array_equal(one, other) for one, other in zip(found[::2], found[1::2]))
+    assert 0 < sum(looked[::2]) < 0.7 * sum(looked[1::2])
+
+
+def counting(asked, own=arm_kept.ArmKept.rotations_near):
+    """`rotations_near` that notes how many joint vectors it is asked about."""
+    def rotations_near(self, joints, bead, places):
+        asked.append(joints.shape[0] * joints.shape[1])
+        return own(self, joints, bead, places)
+    return rotations_near
