@@ -31,6 +31,7 @@ GRID = 6  # decimals of mm that decide between points
 NEEDLESS = 0.02  # share of the chord error that a point has to matter by: offsets leave pairs of points at each node
 SHARES = 0.02  # of a bead's usual width, that points tell
 CLOSE = 2e-3  # mm; points nearer together are one: no controller tells the time of such a move
+AGILE = 500.0  # mm/s^2; what every machine follows, where nothing but the speed sets the width
 BRIEF = 1.0001e-4  # s; no controller is told a shorter move, as narrow beads, which are laid faster, would have
 
 
@@ -90,7 +91,7 @@ def _rolled(
         return Rolled(bead, turned=turned)
     high = np.ones(len(flat)) if heights is None else heights / strategy.layer_height
     section = high if share is None else high * share
-    speed = followed(flat, process.travel_speed / section, closed, process.acceleration)
+    speed = followed(flat, process.travel_speed / section, closed, max(process.acceleration, AGILE))
     section = process.travel_speed / speed  # at one wire feed
     bead = replace(bead, speed=_of_segments(speed))
     if share is None:
