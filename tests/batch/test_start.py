@@ -61,3 +61,79 @@ def test_a_part_of_revolution_loads_nothing_slow_that_others_need(tmp_path):
         cwd=ROOT,
     )
     assert ran.stdout.split("\n")[-2] == "0"
+
+
+PUT_OFF = """
+import dataclasses, sys
+from freecad_am.batch import late
+create, made = dataclasses._create_fn, []
+dataclasses._create_fn = lambda name, args, body, *, globals=None, locals=None, return_type=dataclasses.MISSING: (
+    made.append(name), create(name, args, body, globals=globals, locals=locals, return_type=return_type))[1]
+if sys.argv[1:]:
+    late.functions_of_dataclasses()
+
+@dataclasses.dataclass(frozen=True, order=True)
+class One:
+    "A class."
+    number: int
+    words: list = dataclasses.field(default_factory=list, compare=False)
+    more: dataclasses.InitVar[int] = 2
+    twice: int = dataclasses.field(init=False, default=0)
+
+    def __post_init__(self, more):
+        object.__setattr__(self, "twice", more * self.number)
+
+@dataclasses.dataclass
+class Other(One.__base__):
+    text: str
+    rest: str = "r"
+
+unused = list(made)
+
+def told(act):
+    try:
+        return repr(act())
+    except Exception as error:
+        return f"{type(error).__name__} {error}"
+
+one, same, more = One(3), One(3, ["a"], more=2), One(4, more=5)
+print(one, same, more, one == same, one == more, one < more, one >= more, hash(one) == hash(same), {one: 1}[same])
+print(dataclasses.replace(one, number=7, more=3), dataclasses.asdict(more), dataclasses.astuple(Other("t")))
+print(Other("t") == Other("t"), Other("t") != Other("u"))
+print(*map(told, (lambda: One(), lambda: One(1, 2, 3, 4), lambda: One(1, other=2), lambda: setattr(one, "number", 1),
+                  lambda: delattr(one, "number"), lambda: Other(), lambda: hash(Other("t")), lambda: one < 3)), sep="; ")
+print(One.__init__.__qualname__, One.__repr__.__name__, One.__init__.__name__, one.words is not One(3).words)
+print(len(unused), file=sys.stderr)
+"""
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 13), reason="Python makes them in another way")
+def test_functions_of_dataclasses_that_are_compiled_when_they_are_called_do_the_same():
+    at_once, later = (
+        subprocess.run([sys.executable, "-c", PUT_OFF, *words], capture_output=True, text=True, check=True, cwd=ROOT)
+        for words in ((), ("late",))
+    )
+    assert at_once.stdout == later.stdout and "One(number=3" in later.stdout and "FrozenInstanceError" in later.stdout
+    assert "missing 1 required positional argument" in later.stdout
+    assert int(at_once.stderr) > 8 and later.stderr == "0\n"
+
+
+WHEN_USED = """
+import sys
+from freecad_am.batch import late
+late.modules()
+from scipy.spatial import cKDTree
+print("scipy.sparse.csgraph._laplacian" in sys.modules, "scipy.spatial.transform._rotation" in sys.modules)
+from scipy.sparse import coo_matrix, csgraph
+from scipy.spatial import transform
+print("scipy.sparse.csgraph._laplacian" in sys.modules)
+print(csgraph.connected_components(coo_matrix(([1], ([0], [2])), shape=(4, 4)), directed=False)[1].tolist())
+print(transform.Rotation.from_euler("z", 90, degrees=True).apply([1, 0, 0]).round(6).tolist())
+from scipy.sparse.csgraph import dijkstra
+print(dijkstra(coo_matrix(([2.5], ([0], [1])), shape=(2, 2)).tocsr())[0, 1])
+"""
+
+
+def test_what_scipy_names_in_passing_is_loaded_when_it_is_used():
+    ran = subprocess.run([sys.executable, "-c", WHEN_USED], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert ran.stdout.split("\n")[:-1] == ["False False", "False", "[0, 1, 0, 2]", "[0.0, 1.0, 0.0]", "2.5"]

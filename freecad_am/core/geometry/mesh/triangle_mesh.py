@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse import coo_matrix, csgraph
 from scipy.spatial import cKDTree
 
 from ...issues import InputError
@@ -114,7 +113,7 @@ class Mesh:
         pairs = self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
         pairs = pairs[inside[pairs].all(axis=1)]
         links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(inside), len(inside)))
-        count, label = connected_components(links, directed=False)
+        count, label = csgraph.connected_components(links, directed=False)
         linked = np.zeros(count, dtype=bool)
         linked[label[seeds]] = True
         return inside & linked[label]
