@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 
 from freecad_am.core.issues import Issue, has_errors
+from freecad_am.core.kinematics import opw
 from freecad_am.core.kinematics.cell import Cell
 from freecad_am.core.motion import Motion
-from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.joints import OPTIMISED, JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.planning import comparison, level
+from freecad_am.core.planning import comparison, external_rule, level
 from freecad_am.core.planning.joint_path import JointPath
+from freecad_am.core.planning.task import Task
 from freecad_am.core.process import deposit_balance, predicted
 from freecad_am.core.process import spacing as layer_spacing
 from freecad_am.core.process.deposit_balance import Balance
@@ -102,7 +104,7 @@ def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: J
         "limits": planned.limits,
         "stopped": _reasons(planned),
         **({} if planned.optimality is None else {"optimality": planned.optimality}),
-        **({} if cell.external is None else {"external": level.figures(cell, planned)}),
+        **({} if cell.external is None else {"external": _external(cell, planned, joints)}),
     }
     report["comparison"] = others
     report["machine"] = {
@@ -110,6 +112,15 @@ def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: J
         "axes": list(cell.machine.columns), "labels": list(cell.machine.axes),
         "units": list(cell.machine.units), "controller": cell.machine.controller_remark,
     }
+
+
+def _external(cell: Cell, planned: JointPath, joints: JointParameters) -> dict[str, object]:
+    """What the external axes do, and where they were optimised the same figures of the rule that they began with."""
+    found = level.figures(cell, planned)
+    if planned.of_level is None:
+        return found
+    task = Task(cell, opw.branch_index(planned.branch), joints)
+    return {**found, "rule": OPTIMISED, **external_rule.figures(task, planned.beads), "level": planned.of_level}
 
 
 def text(report: dict[str, Any]) -> str:

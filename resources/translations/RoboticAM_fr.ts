@@ -49,6 +49,11 @@
         <translation>Tableaux du résultat.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Axes beside the robot. level: they turn no more than the angle from the vertical asks for; optimised: one polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.</source>
+        <translation>Axes à côté du robot. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Beads that close gaps are made no shorter than this; others that are shorter are left out.</source>
         <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté.</translation>
@@ -1397,6 +1402,11 @@
         <translation>Axes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Axes beside the robot. level: they turn no more than the angle from the vertical asks for; optimised: one polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.</source>
+        <translation>Axes à côté du robot. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
         <source>Axes on the pendant: -1 where it counts the other way; what it shows at zero</source>
         <translation>Axes sur le pupitre : -1 là où il compte dans l&apos;autre sens ; ce qu&apos;il montre à zéro</translation>
@@ -2200,6 +2210,11 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>External</source>
         <translation>Externes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>External axes</source>
+        <translation>Axes externes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cladding.py"/>
@@ -8107,6 +8122,11 @@
         <translation>joints.certificate : plusieurs solutions de ce bras portent la même configuration, aucune borne inférieure n’est donc connue ; retirez ce paramètre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/external_rule.py"/>
+        <source>joints.external_axes: {0} is of no effect without cell.external; leave it out</source>
+        <translation>joints.external_axes : {0} est sans effet sans cell.external ; à omettre</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/given.py"/>
         <source>joints.given is of no effect on the method {0}; use {1}, or take it out</source>
         <translation>joints.given est sans effet sur la méthode {0} ; utilisez {1}, ou retirez-le</translation>
@@ -8235,6 +8255,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>least allowed</source>
         <translation>minimum permis</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>level</source>
+        <translation>à plat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/look.py"/>
@@ -8890,6 +8915,16 @@
         <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>open, {:.1f} mm</source>
         <translation>ouverte, {:.1f} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>optimised</source>
+        <translation>optimisés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/plan.py"/>
+        <source>optimising the external axes</source>
+        <translation>optimisation des axes externes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
@@ -11055,6 +11090,11 @@
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0} are not {1} numbers; {2}</source>
         <translation>{0} ne sont pas {1} nombres ; {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/external_rule.py"/>
+        <source>{0} are polynomials per bead, the method {1} has none; use method: {2}, or external_axes: {3}</source>
+        <translation>{0} : ce sont des polynômes par cordon, la méthode {1} n&apos;en a pas ; utiliser method : {2}, ou external_axes : {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/front_tree.py"/>

@@ -111,3 +111,29 @@ def test_refused_when_it_is_read(written, change, code, where):
     with pytest.raises(InputError) as error:
         read_job(str(path))
     assert error.value.code == code and where in error.value.where
+
+
+def test_the_rotor_moves_less_with_its_axes_optimised(workshop, root):
+    """The example with thick layers: report and rows, which the program was read back against."""
+    folder = root / "resources" / "examples"
+    job = yaml.safe_load((folder / "rotor-on-positioner.yaml").read_text(encoding="utf-8"))
+    for key in ("part", "substrate"):
+        job[key]["file"] = str(folder / job[key]["file"])
+    job["strategy"].update(layer_height="12 mm", bead_spacing="16 mm")
+    (workshop.folder / "rotor.yaml").write_text(yaml.safe_dump(job), encoding="utf-8")
+    done = workshop.run("plan", "rotor.yaml", "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    told = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))["joints"]["external"]
+    level = told["level"]
+    assert told["rule"] == "optimised" and told["objective_value"] < 0.7 * level["objective_value"]
+    assert told["least_margin"] > 1.1 * level["least_margin"] > 0.0
+    assert told["from_vertical_max_deg"] <= 30.0 + 1e-6
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["kind"] == "deposit"]
+    assert max(map(from_vertical, rows)) <= 30.0 + 1e-4
+    machine = json.loads((root / "freecad_am" / "machines" / "kuka-kr8-r2100-2-arc-hw.json").read_text(encoding="utf-8"))
+    stroke = [np.diff(ends)[0] for ends in machine["limits"]["maker"]["axes"]] + [2 * 134.9946, 2 * 199.9966]
+    angles = np.array([[float(row[name]) for name in list(row)[-8:]] for row in rows])
+    same = np.array([(one["layer"], one["bead"]) == (row["layer"], row["bead"]) for one, row in zip(rows, rows[1:])])
+    moved = float(np.radians(np.diff(angles, axis=0)[same] ** 2 / np.array(stroke)).sum())
+    assert moved == pytest.approx(told["objective_value"], rel=0.05)  # points added in between make less of it

@@ -27,7 +27,7 @@ IN_ROWS = {
 # what there was not then: derived, or None where nobody knows
 ADDED = (
     "role", "bead_width", "unsupported", "wire_feed", "depths", "on_part", "volumes", "feature_label", "features", "feature",
-    "uneven", "twice", "external", "max_from_vertical", "world_up", "optimality", "certificate",
+    "uneven", "twice", "external", "max_from_vertical", "world_up", "optimality", "certificate", "of_level",
     "arm_clearance", "obstacles",
 )
 

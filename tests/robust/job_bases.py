@@ -24,7 +24,7 @@ LAYERS = {
     "tube-on-pipe": 14, "tube-on-pipe-staubli": 14, "thruster": 30, "branched-tube-on-plate": 10, "elbow-on-block": 9,
     "flared-shell-on-dome": 9, "half-shell-on-rod": 10, "skewed-bend": 12, "spatial-pipe-on-cone": 9, "bracket": 15,
     "tube-on-scanned-pipe": 14, "wide-tube-on-pipe": 14, "wye": 9, "finned-hub": 8, "pipe-bend": 8, "rosette": 2,
-    "die": 3,
+    "die": 3, "rotor-on-positioner": 16,
 }
 # fmt: on
 FAMILIES = {

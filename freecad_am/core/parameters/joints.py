@@ -14,6 +14,7 @@ BRANCHES = tuple("-".join(words) for words in itertools.product(("front", "back"
 OF_CELL = "cell"
 HIGHEST = 6  # degree of a polynomial
 EVERY = "*"
+LEVEL, OPTIMISED = "level", "optimised"
 METHODS = ("layer-by-layer", "point-by-point", "constant")
 OBJECTIVES = (
     "displacement", "limits-liegeois", "limits-fournier", "limits-klein", "manipulability", "condition",
@@ -83,6 +84,12 @@ class JointParameters:
         False, f.FLAG,
         "Compare the joint path with a lower bound over all rotations about the tool axis. Takes up to seconds per bead.",
         advanced=True,
+    )
+    external_axes: str = f.parameter(
+        LEVEL, f.CHOICE,
+        "Axes beside the robot. level: they turn no more than the angle from the vertical asks for; optimised: one "
+        "polynomial per bead of each, together with the rotation about the tool, for less motion and larger margins.",
+        choices=(LEVEL, OPTIMISED),
     )
 
     def __post_init__(self) -> None:

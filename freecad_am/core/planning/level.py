@@ -20,7 +20,7 @@ from ..kinematics import rotary_pair
 from ..kinematics.cell import Cell
 from ..kinematics.external import ExternalAxes, tilt_from
 from ..toolpath import Bead, Toolpath
-from .joint_path import JointPath
+from .joint_path import BeadPath, JointPath
 from .points import TURN
 from .reserve import RESERVE
 from .rotary_courses import continuous, kept
@@ -41,7 +41,7 @@ def levelled(cell: Cell, toolpath: Toolpath) -> tuple[list[Bead], list[Issue]]:
     beads = [bead for _, _, bead in toolpath]
     places = [(layer, index) for layer, index, _ in toolpath]
     allowed = _allowed(toolpath)
-    seen = [_on_face(cell, bead.tool) for bead in beads]
+    seen = [on_face(cell, bead.tool) for bead in beads]
     one = _middle(np.concatenate(seen))
     laid: list[Bead] = []
     issues: list[Issue] = []
@@ -76,20 +76,34 @@ def _not_level(external: ExternalAxes, tilt: float, most: float, *place: int) ->
 def figures(cell: Cell, path: JointPath) -> dict[str, object]:
     """What the external axes do along the deposit: how far the tool axis is from the vertical at most, in degrees, and how
     far each of them turns in all, and slides in all, in mm."""
-    external = cell.external
+    farthest = math.degrees(farthest_from_vertical(cell, path.beads))
+    return {"from_vertical_max_deg": farthest, **axes_figures(cell, path.beads)}
+
+
+def farthest_from_vertical(cell: Cell, paths: Sequence[BeadPath]) -> float:
+    """rad, how far the tool axis is from the vertical at most."""
+    external, farthest = cell.external, 0.0
     assert external is not None
-    turned = np.zeros(external.axes)
-    farthest = 0.0
-    for one in path.beads:
+    for one in paths:
         values = cell.external_of(one.joints)
         if values is None or not one.reachable:
             continue
-        turned += np.abs(np.diff(values, axis=0)).sum(axis=0)
-        upright = external.upright(_on_face(cell, one.bead.tool), values)
+        upright = external.upright(on_face(cell, one.bead.tool), values)
         farthest = max(farthest, float(tilt_from(upright, external.up).max()))
+    return farthest
+
+
+def axes_figures(cell: Cell, paths: Sequence[BeadPath]) -> dict[str, object]:
+    """How far each external axis turns in all along the deposit, deg, or slides, mm."""
+    external = cell.external
+    assert external is not None
+    turned = np.zeros(external.axes)
+    for one in paths:
+        values = cell.external_of(one.joints)
+        if values is not None and one.reachable:
+            turned += np.abs(np.diff(values, axis=0)).sum(axis=0)
     names, slides = cell.machine.axes[-len(turned) :], external.slides
     return {
-        "from_vertical_max_deg": math.degrees(farthest),
         "turned_deg": {names[k]: math.degrees(way) for k, way in enumerate(turned.tolist()) if k != slides},
         **({} if slides is None else {"moved_mm": {names[slides]: float(turned[slides])}}),
     }
@@ -97,11 +111,16 @@ def figures(cell: Cell, path: JointPath) -> dict[str, object]:
 
 def _allowed(toolpath: Toolpath) -> list[float]:
     """The largest angle to the vertical, rad, of each bead."""
-    most = {int(number): part.max_from_vertical for part, numbers in toolpath.parts for number in numbers}
+    most = allowed_by_layer(toolpath)
     return [most[layer] for layer, _, _ in toolpath]
 
 
-def _on_face(cell: Cell, tool: Array) -> Array:
+def allowed_by_layer(toolpath: Toolpath) -> dict[int, float]:
+    """The largest angle to the vertical, rad, of each layer."""
+    return {int(number): part.max_from_vertical for part, numbers in toolpath.parts for number in numbers}
+
+
+def on_face(cell: Cell, tool: Array) -> Array:
     """Tool axes (n, 3) of the part as seen from the face that carries it."""
     turned = cell.station[:3, :3] @ cell.mount[:3, :3].T
     return np.asarray(tool @ turned.T)

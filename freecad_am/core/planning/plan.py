@@ -15,7 +15,19 @@ from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
-from . import arm_clear, comparison, constant, given, layer_by_layer, point_by_point, search, table, track, turns
+from . import (
+    arm_clear,
+    comparison,
+    constant,
+    external_rule,
+    given,
+    layer_by_layer,
+    point_by_point,
+    search,
+    table,
+    track,
+    turns,
+)
 from .arm_kept import ArmKept, Rods, of_job
 from .certificate import bound
 from .findings import findings
@@ -35,7 +47,7 @@ METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_poi
 # what there is to choose where a robot is free to turn about the tool
 OF_ROBOTS = (
     "method", "rz", "degree", "parameter", "rotation_range", "objective", "min_condition", "characteristic_length",
-    "tolerance", "max_iterations", "compare", "given", "own_branch", "certificate",
+    "tolerance", "max_iterations", "compare", "given", "own_branch", "certificate", "external_axes",
 )
 BRANCHES = 8
 # with the branch left open: beads looked at in each, and branches planned until one serves
@@ -88,6 +100,7 @@ def _of_robot(
 ) -> JointPath:
     """The joint path of a robot, external axes as the beads have them, in the first of the branches that serves."""
     places, cell, parameters = [(layer, index) for layer, index, _ in toolpath], asked.cell, asked.parameters
+    together, notes = external_rule.asked(parameters, cell)
     task = dataclasses.replace(asked, branch=branches[0])
     paths, issues = _planned(task, toolpath, beads, places, progress)
     failed = _failed(paths, issues, places)
@@ -101,7 +114,10 @@ def _of_robot(
         if not has_errors(found[1]):
             task, (paths, issues) = other, found
             break
-    issues = [*tilted, *issues]
+    level = None
+    if together:
+        (paths, issues), level = _bettered(task, toolpath, beads, places, (paths, issues), progress)
+    issues = [*tilted, *issues, *notes]
     if task.arm.followed:
         issues = [*issues, Issue(
             NOTE, "FOLLOWED", "several solutions of this arm bear the same configuration; along each bead the one it begins "
@@ -116,7 +132,7 @@ def _of_robot(
         issues = [*issues, *notes]
     return JointPath(
         parameters.method, parameters.objective, opw.branch_name(task.branch), cell.limits.name, tuple(paths),
-        tuple(issues), comparisons, optimality,
+        tuple(issues), comparisons, optimality, level,
     )
 
 
@@ -194,10 +210,35 @@ def _planned(
     task: Task, toolpath: Toolpath, beads: Sequence[Bead], places: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
     paths, issues = METHODS[task.parameters.method](task, beads, places, progress)
+    paths, found = _finished(task, toolpath, places, paths)
+    return paths, given.not_used(task.parameters, places) + issues + found
+
+
+def _bettered(
+    task: Task, toolpath: Toolpath, beads: Sequence[Bead], places: Sequence[Place],
+    level: tuple[list[BeadPath], list[Issue]], progress: Progress,
+) -> tuple[tuple[list[BeadPath], list[Issue]], dict[str, object]]:
+    """The same with the external axes optimised, and the figures of `level`."""
+    planned, issues = METHODS[task.parameters.method](task, beads, places, _silent)
+    before = given.not_used(task.parameters, places) + issues
+
+    def finish(paths: list[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
+        done, found = _finished(task, toolpath, places, paths)
+        return done, before + found
+
+    return external_rule.bettered(
+        task, toolpath, level, planned, finish, lambda share: progress(share, "optimising the external axes"),
+    )
+
+
+def _finished(
+    task: Task, toolpath: Toolpath, places: Sequence[Place], paths: Sequence[BeadPath]
+) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths with the points that straight motion asks for, turns counted on, and what is wrong with them."""
     longer = [run_on(task, path, toolpath.overlap) for path in paths]
     straight = [kept_straight(task, path, toolpath.chord_error) for path in longer]
     paths, notes = turns.counted_on(task, [path for path, _ in straight])
-    issues = given.not_used(task.parameters, places) + issues + notes + [issue for _, found in straight for issue in found]
+    issues = notes + [issue for _, found in straight for issue in found]
     for path in paths:
         issues += findings(task, path)
     if task.kept is not None:

@@ -101,7 +101,7 @@ class Points:
 def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None, posed: bool = True) -> Points:
     """The points of the beads, thinned to `most` per bead and turn about the axis, both ends kept; with frames of none where
     they are not posed."""
-    chosen = [_thinned(bead, most) for bead in beads]
+    chosen = [thinned(bead, most) for bead in beads]
     counts = np.array([len(index) for index in chosen])
     position = np.concatenate([bead.points[index] for bead, index in zip(beads, chosen)])
     tool = np.concatenate([bead.tool[index] for bead, index in zip(beads, chosen)])
@@ -121,7 +121,8 @@ def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None, posed: bo
     )
 
 
-def _thinned(bead: Bead, most: int | None) -> NDArray[np.int64]:
+def thinned(bead: Bead, most: int | None) -> NDArray[np.int64]:
+    """Which points of a bead are looked at, `most` per turn about the axis: all with None."""
     if most is None:
         return np.arange(len(bead))
     turns = abs(bead.parameter[-1] - bead.parameter[0]) / TURN

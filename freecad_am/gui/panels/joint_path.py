@@ -13,6 +13,8 @@ import numpy as np
 from ...core.issues import ERROR, InputError, Issue
 from ...core.kinematics import cell as cells
 from ...core.kinematics import machine as machines
+from ...core.parameters.external import externals
+from ...core.parameters.joints import LEVEL
 from ...core.planning.joint_path import JointPath as JointsOfBeads
 from ...core.planning.judgement import Judgement, judged
 from ...core.planning.plan import OF_ROBOTS, plan_joints
@@ -32,7 +34,7 @@ MOST_TOLD = 3  # findings
 METHOD = "joints_method"
 _ENDS = {"joints_rotation_range_low", "joints_rotation_range_high"}
 _OF_ROTARY_AXES = ("lock", "lock_at", "max_residual")
-_OF_METHODS = {"constant": ("rz",), "layer-by-layer": ("degree", "given", "parameter")}
+_OF_METHODS = {"constant": ("rz",), "layer-by-layer": ("degree", "given", "parameter", "external_axes")}
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,8 @@ class JointPathPanel(PreviewPanel):
                 return
             method = self.places[METHOD][0].value
             others = {name for one, names in _OF_METHODS.items() if one != method for name in names}
+            if not externals(cell.External):
+                others.add("external_axes")
             self.leave_out({_place(name) for name in (*_OF_ROTARY_AXES, *others)})
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Trial]]:
@@ -117,11 +121,12 @@ def _place(name: str) -> str:
 
 
 def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement]:
-    """The plan of as many points as are soon planned. Raises what planning raises."""
+    """The plan of as many points as are soon planned, with external axes where optimising them, which takes long, begins.
+    Raises what planning raises."""
     sample = sampled(job.toolpath(), MOST)
     toolpath = sample.toolpath
     cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
-    parameters = replace(job.parameters, compare=(), given=sample.given(job.parameters.given))
+    parameters = replace(job.parameters, compare=(), given=sample.given(job.parameters.given), external_axes=LEVEL)
     planned = plan_joints(toolpath, cell, parameters, progress.report)
     return sample, planned, judged(planned.beads, cell.limits, cell.machine.max_speed)
 
