@@ -228,3 +228,30 @@ def test_a_margin_far_wider_than_the_part_is_told_before_its_layers_are_filled(d
     wide = {"layer_height": 10, "bead_spacing": 10, "chord_error": 0.5}
     told = [api.issues(api.make_solid_feature(doc, part, margin=margin, **wide)) for margin in (5, 360)]
     assert [[issue.code for issue in issues].count("LARGE") for issues in told] == [0, 1]
+
+
+def balanced(doc, shape):
+    """mm3 of the part, of what beads of 6 mm in layers of 4 mm leave of it and of what they lay beside it; and the codes."""
+    toolpath = api.make_toolpath(doc, api.make_solid_feature(
+        doc, part(doc, shape), layer_height=4.0, chord_error=0.1, bead_spacing=6.0))
+    told = {issue.code: issue.message for issue in api.issues(toolpath)}
+    return api.result(toolpath).volumes, told
+
+
+def test_what_beads_leave_of_a_solid_and_lay_beside_it_is_told(doc):
+    """Of a block with a fin of 2 mm the fin, of one 1.5 mm higher than its layers so much; beside a wall half of a bead's
+    width what stands out."""
+    block = Part.makeBox(24, 24, 8)
+    (whole, corners, _), told = balanced(doc, block)
+    assert whole == pytest.approx(block.Volume) and not {"NOT_DEPOSITED", "DEPOSITED_BESIDE"} & set(told)
+    fin = Part.makeBox(30, 2, 8, App.Vector(24, 11, 0))
+    (_, left, _), told = balanced(doc, block.fuse(fin).removeSplitter())
+    assert left - corners == pytest.approx(fin.Volume, rel=0.02)
+    assert f"about {left / 1000.0:.3g} of the 5.09" in told["NOT_DEPOSITED"]
+    (_, left, _), told = balanced(doc, Part.makeBox(24, 24, 9.5))
+    assert left - corners == pytest.approx(24 * 24 * 1.5, rel=0.02) and "NOT_DEPOSITED" in told
+    for high, news in ((8.1, True), (8.01, False)):  # 4.0 and 2.9 % of it
+        (_, left, _), told = balanced(doc, Part.makeBox(24, 24, high))
+        assert left - corners == pytest.approx(24 * 24 * (high - 8.0), rel=0.05) and ("NOT_DEPOSITED" in told) == news
+    (whole, _, beside), told = balanced(doc, Part.makeBox(60, 3.2, 8))
+    assert beside > 0.8 * whole and f"about {beside / 1000.0:.3g} cm3 of beads lie beside the 1.54" in told["DEPOSITED_BESIDE"]

@@ -184,6 +184,20 @@ def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound)
         "The text takes the tool to the planned points", "Between its points the text keeps to the planned path"}
 
 
+@pytest.mark.parametrize(("promise", "level", "codes"), [
+    ("The nozzle stays clear on the rapids", "error", (
+        "RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR")),
+    ("The nozzle stays clear of deposit, part and platform while it deposits", "error", ("CLEARANCE", "OVER_PLATFORM")),
+    ("All of the part is deposited", "warning", ("NOT_DEPOSITED",)),
+    ("Nothing is deposited beside the part", "warning", ("DEPOSITED_BESIDE",)),
+    ("Every bead is carried by what lies below it", "warning", ("UNSUPPORTED",)),
+])
+def test_what_planning_has_found_breaks_its_promise_whatever_the_figures_say(sound, promise, level, codes):
+    for code in codes:
+        found = broken(dataclasses.replace(sound[2], issues=(Issue(level, code, "as planning says", 3, 0),)))
+        assert set(found) == {promise}, code
+
+
 def without(evidence, **parts):
     """The evidence with parts of its toolpath, or of its cell, replaced."""
     return {name: dataclasses.replace(getattr(evidence, name), **values) for name, values in parts.items()}
