@@ -126,6 +126,10 @@ def test_a_hidden_folder_of_somebody_else_stays_and_a_planted_one_reaches_nothin
     (out / ".unfinished-mine").mkdir(parents=True)
     (out / ".unfinished-mine" / "notes.txt").write_text("mine")
     (out / ".unfinished-link").symlink_to(elsewhere)
+    (elsewhere / staging.MARK).touch()  # as if it were one of ours
+    (out / ".unfinished-marked").mkdir()
+    (out / ".unfinished-marked" / "notes.txt").write_text("mine")
+    (out / ".unfinished-marked" / staging.MARK).symlink_to(elsewhere / "OTHER.LS")
     planted = out / ".unfinished-bad"
     (planted / staging.FILES).mkdir(parents=True)
     (planted / staging.FILES / "CUP.LS").write_text("planted")
@@ -137,6 +141,8 @@ def test_a_hidden_folder_of_somebody_else_stays_and_a_planted_one_reaches_nothin
     assert tree(elsewhere) == before
     assert tree(out) == {
         ".unfinished-mine": None, ".unfinished-mine/notes.txt": b"mine", ".unfinished-link": str(elsewhere),
+        ".unfinished-marked": None, ".unfinished-marked/notes.txt": b"mine",
+        f".unfinished-marked/{staging.MARK}": str(elsewhere / "OTHER.LS"),
         "report.json": b"{}",
     }
 

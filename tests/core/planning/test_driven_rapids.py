@@ -216,3 +216,20 @@ def test_rapids_keep_the_least_condition_or_it_says_so(far_away):
     _, issues = made(least=0.9)
     wrong = [issue for issue in issues if issue.level == ERROR]
     assert {issue.code for issue in wrong} == {"RAPID_SINGULAR"} and all(issue.layer is not None for issue in wrong)
+
+
+def test_an_endless_axis_never_has_half_a_turn_to_go_in_one_move(sliced, cell_of):
+    """Its controller takes the shorter way: a bead that begins a turn and a half farther on is come to in several moves."""
+    toolpath = sliced("sphere", 15.0, chord_error=0.3)
+    cell = cell_of(toolpath)
+    path = plan_joints(toolpath, cell, JointParameters())
+    (axis,) = np.flatnonzero(cell.limits.endless)
+    on = np.eye(6)[axis] * 3.0 * np.pi
+    beads = tuple(
+        dataclasses.replace(bead, joints=bead.joints + number * on, phi=bead.phi) for number, bead in enumerate(path.beads))
+    motion, _ = assemble(dataclasses.replace(path, beads=beads), cell, lifting(20.0))
+    turned = np.abs(np.diff(motion.joints[:, axis]))
+    assert turned[~motion.deposit[1:]].max() <= np.radians(170.0) + 1e-9
+    for layer in range(1, len(beads)):
+        way = (motion.layer == layer) & ~motion.deposit & (motion.role == TRAVEL)
+        assert way.sum() >= 2
