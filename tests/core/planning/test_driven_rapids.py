@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import ERROR, has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.motion import APPROACH, DEPOSIT, RETRACT, TRAVEL
@@ -156,6 +157,33 @@ def test_a_limit_that_leaves_room_for_less_is_kept_and_told_and_one_that_leaves_
     bound = none.limits.lower[axis] if end == 0 else none.limits.upper[axis]
     assert all(f"{none.limits.labels[axis]} would be at" in issue.message for issue in wrong)
     assert all(f"{bound:g} mm" in issue.message and "process.between_layers.lift" in issue.message for issue in wrong)
+
+
+def test_the_way_off_the_last_bead_is_looked_at_too(on_table):
+    """A block over the back end of the nozzle, beside its axis, where nothing but that way comes near."""
+    cell, path = on_table
+    nozzle, end = cell.nozzle, path.beads[-1].bead.points[-1]
+    middle = end + [0.0, 15.0, nozzle.length + 8.0]
+    corners = middle + np.array([[a, b, c] for a in (-2.0, 2.0) for b in (-2.0, 2.0) for c in (-2.0, 2.0)])
+    sides = [(0, 1, 3), (0, 3, 2), (4, 7, 5), (4, 6, 7), (0, 5, 1), (0, 4, 5), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
+             (1, 5, 7), (1, 7, 3)]
+    free, issues = assemble(path, cell, lifting(20.0))
+    motion, found = assemble(path, cell, lifting(20.0), [Body("block", corners, np.array(sides))])
+    told = {issue.code for issue in found} - {issue.code for issue in issues}
+    assert told and told <= {"RAPID_COLLISION", "RAPID_ASIDE", "RAPID_OTHER"}, found
+    first = int(np.flatnonzero(motion.deposit)[-1]) + 1
+    same = int(np.flatnonzero(free.deposit)[-1]) + 1
+    assert first == same and np.array_equal(motion.joints[:first], free.joints[:same])  # all before goes as it went
+
+    def deep(of):
+        return max(
+            float(np.minimum(0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle) - across, nozzle.length - height).max())
+            for row in range(first, len(of)) for tip, axis in zip(*places(of, cell, row, 60))
+            for height in [(corners - tip) @ axis]
+            for across in [np.linalg.norm(corners - tip - height[:, None] * axis, axis=1)]
+        )
+
+    assert deep(free) > 3.0 and ("RAPID_COLLISION" in told or deep(motion) < 0.2)
 
 
 def off_beads(motion):
