@@ -163,6 +163,7 @@ def test_the_way_off_the_last_bead_is_looked_at_too(on_table):
     """A block over the back end of the nozzle, beside its axis, where nothing but that way comes near."""
     cell, path = on_table
     nozzle, end = cell.nozzle, path.beads[-1].bead.points[-1]
+    wide = 0.5 * nozzle.diameter
     middle = end + [0.0, 15.0, nozzle.length + 8.0]
     corners = middle + np.array([[a, b, c] for a in (-2.0, 2.0) for b in (-2.0, 2.0) for c in (-2.0, 2.0)])
     sides = [(0, 1, 3), (0, 3, 2), (4, 7, 5), (4, 6, 7), (0, 5, 1), (0, 4, 5), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
@@ -177,7 +178,7 @@ def test_the_way_off_the_last_bead_is_looked_at_too(on_table):
 
     def deep(of):
         return max(
-            float(np.minimum(0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle) - across, nozzle.length - height).max())
+            float(np.minimum(wide + height * np.tan(nozzle.half_angle) - across, nozzle.length - height).max())
             for row in range(first, len(of)) for tip, axis in zip(*places(of, cell, row, 60))
             for height in [(corners - tip) @ axis]
             for across in [np.linalg.norm(corners - tip - height[:, None] * axis, axis=1)]
