@@ -21,13 +21,15 @@ from .part import bring
 from .part_source import PartSource
 
 TOUCHING = 0.01  # mm
+INSTEAD = "; but these end with {}, so planes are laid instead"
 
 
 class Shapes:
     """The part of a feature, its substrate and fixtures, as objects of a document."""
 
-    def __init__(self, document: Any, job: Job, number: int) -> None:
-        self.document, self.job, self.number = document, job, number
+    def __init__(self, document: Any, job: Job, number: int, fails: str = "") -> None:
+        """fails: code of the error that curved layers end with, which then are not chosen."""
+        self.document, self.job, self.number, self.fails = document, job, number, fails
         self.of = job.features[number]
         try:
             self.part = bring(document, self.of.part, meshes=family_of(self.of.strategy).meshes)
@@ -50,7 +52,7 @@ class Shapes:
         """Choose the family where the job leaves it open; a note that says what and why. Raises InputError."""
         if self.of.sections is None:
             return None
-        from freecad_am.objects.proposed_family import proposed  # what it imports takes long
+        from freecad_am.objects.proposed_family import GEODESIC, PLANES, proposed  # what it imports takes long
 
         ground = next(iter(self._touched(earlier)), None) if self.substrate is None else self.substrate
         try:
@@ -61,6 +63,8 @@ class Shapes:
                 base=() if self.of.substrate is None else self.of.substrate.faces, direction=planes.stacking(),
                 layer_height=planes.layer_height,
             )
+            if found.layers == GEODESIC and self.fails:
+                found = replace(found, layers=PLANES, reason=found.reason + INSTEAD.format(self.fails))
             self.of = chosen(self.of, found.kind, found.layers, found.mend, self.job.path)
         except InputError as error:
             raise self.placed(error) from None

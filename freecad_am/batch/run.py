@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
+from freecad_am.core.issues import ERROR, InfeasibleError, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
 
 from . import outputs, paths
@@ -83,10 +83,13 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
     try:
         cell = check(job)
         with one_thread(), outputs.Outputs(folder, session) as files:
-            document = FreeCAD.newDocument("Job")
+            document = _document(job)
             try:
-                document.Label, document.UndoMode = job.name, 0
                 stages = plan(job, document, session)
+                if fails := _curved_in_vain(job, stages):
+                    FreeCAD.closeDocument(document.Name)
+                    document = _document(job)
+                    stages = plan(job, document, session, fails)
                 result = _write(stages.job, stages, cell, files, session, started, page)
             finally:
                 FreeCAD.closeDocument(document.Name)
@@ -126,8 +129,27 @@ def check(job: Job) -> Any:
     return resolved
 
 
-def plan(job: Job, document: Any, session: Any) -> Stages:
-    """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`."""
+def _document(job: Job) -> Any:
+    import FreeCAD
+
+    document = FreeCAD.newDocument("Job")
+    document.Label, document.UndoMode = job.name, 0
+    return document
+
+
+def _curved_in_vain(job: Job, stages: Stages) -> str:
+    """The code of the error that a job ends with for which curved layers were chosen, as it leaves them open; else ''."""
+    from freecad_am.objects.proposed_family import GEODESIC
+
+    chosen = zip(job.features, stages.job.features, strict=True)
+    curved = any(asked.sections is not None and "layers" not in asked.sections["strategy"]
+                 and getattr(one.strategy, "layers", "") == GEODESIC for asked, one in chosen)
+    return next((issue.code for issue in stages.issues if curved and issue.level == ERROR), "")
+
+
+def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
+    """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`. fails: code
+    of the error that curved layers end with, where the job leaves layers open."""
     from freecad_am import api
     from freecad_am.core.process.predicted import HEIGHTS
     from freecad_am.core.strategies.size import LARGE
@@ -136,7 +158,7 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
 
     stages = Stages(document)
     with stages.timed("part", session):
-        shapes = [Shapes(document, job, number) for number in range(len(job.features))]
+        shapes = [Shapes(document, job, number, fails) for number in range(len(job.features))]
     cell = None
     if job.cell is not None:
         with stages.timed("cell", session):

@@ -262,3 +262,22 @@ def test_keys_that_no_family_has_are_refused(tmp_path):
     path.write_text(AUTO.replace("chord_error", "bananas"), encoding="utf-8")
     with pytest.raises(InputError, match="no key 'bananas'"):
         jobs.read_job(str(path))
+
+
+def test_where_curved_layers_cannot_be_carried_out_there_are_planes(workshop):
+    """Curved layers of a T turn the tool through the robot's singularity; the note says so, and what is laid is what planes
+    lay. Layers that the job asks for stay."""
+    tee().exportStep(str(workshop.folder / "part.step"))
+    cell = (
+        "cell: {machine: abb-irb4600-40-255, setup: tool-on-robot, mount: feature, platform_diameter: 150 mm, "
+        "nozzle: {diameter: 12 mm, half_angle: 70, length: 60 mm}}\nprogram: {post: abb}\n"
+    )
+    text = AUTO.replace("auto,", "auto, bead_spacing: 6 mm,") + "process: {bead_width: 6 mm}\n" + cell
+    report, rows = planned(workshop, text)
+    (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "PROPOSED"]
+    assert told.startswith("kind: solid, layers: planes: ") and "these end with SINGULAR, so planes are laid" in told
+    assert not [issue for issue in report["issues"] if issue["level"] == "error"] and report["programs"]
+    assert rows == planned(workshop, text.replace("auto,", "solid, layers: planes,"))[1]
+    (workshop.folder / "job.yaml").write_text(text.replace("auto,", "auto, layers: geodesic,"), encoding="utf-8")
+    refused = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert refused.status == 3 and "SINGULAR" in refused.err
