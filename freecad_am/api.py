@@ -34,7 +34,7 @@ from .core.parameters.inspection import InspectionParameters
 from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
-from .core.planning.program import written_by
+from .core.planning.controllers import written_by
 from .macro.changes import change, recompute
 from .macro.export import (
     export,

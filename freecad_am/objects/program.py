@@ -15,7 +15,7 @@ from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.planning import moving_tool
+from ..core.planning import controllers, moving_tool
 from ..core.planning import program as programs
 from ..core.program import Program as Text
 from ..core.toolpath import Toolpath
@@ -109,9 +109,9 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     if parameters.post == "none":
         return
     post = catalogue.load(parameters.post)
-    programs.check_controller(cell.machine, parameters.post)
-    programs.check_wrist(cell.machine, parameters.motion, parameters.post)
-    programs.check_pulses(cell.machine, parameters.motion, parameters.post)
+    controllers.check_controller(cell.machine, parameters.post)
+    controllers.check_wrist(cell.machine, parameters.motion, parameters.post)
+    controllers.check_pulses(cell.machine, parameters.motion, parameters.post)
     catalogue.refuse(
         parameters.post, parameters.motion, cell.setup, cell.external is not None, programs.on_table(cell, parameters)
     )

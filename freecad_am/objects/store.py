@@ -28,11 +28,9 @@ from numpy.typing import NDArray
 from ..core.issues import InputError
 from . import differences, repeats
 from .former_names import MOVED
+from .store_bytes import bytes_of, floats_of, older_bytes
 
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
-_BYTES_PER_FLOAT = 7
-_HIGHEST_BYTE = 0x40  # makes any seven bytes below it an ordinary number
-_OLDER_BYTES = 6  # of a whole number
 Place = tuple[str | int, ...]
 _DTYPES = ("float64", "int64", "bool")
 # of files that are much alike: hash chains of which but the first place is looked at find them in half the time that the
@@ -56,7 +54,7 @@ def pack(value: Any, key: str) -> tuple[list[float], str]:
     pieces, where = differences.packed(rest), differences.packed(indices)
     data = packer.bytes()
     layout = {"n": sizes, "p": [len(data), [*map(len, pieces)], [*map(len, where)]], "t": packer.told(), "v": tree}
-    floats = np.concatenate([[_mark(key)], _floats_of(b"".join([data, *pieces, *where]))])
+    floats = np.concatenate([[_mark(key)], floats_of(b"".join([data, *pieces, *where]))])
     return floats.tolist(), f"{key} {json.dumps(layout, separators=(',', ':'))}"
 
 
@@ -101,7 +99,7 @@ def _newer(layout: Any, floats: NDArray[np.float64], all_of_it: bool) -> tuple[A
     """The tree of a layout, and what reads it, or parts of it, from the floats."""
     packed, *lengths = layout["p"]
     ends = np.cumsum([packed, *lengths[0], *lengths[1]]).tolist()
-    data = _bytes_of(floats[1:], ends[-1])
+    data = bytes_of(floats[1:], ends[-1])
     pieces = [data[begin:end] for begin, end in zip(ends, ends[1:])]
     rest, once, copies, runs = layout["n"]
     numbers = differences.Unpacked(pieces[: len(lengths[0])], rest)
@@ -126,7 +124,7 @@ def _older(tree: Any, floats: NDArray[np.float64]) -> tuple[Any, _Reader]:
     if isinstance(tree, dict) and "z" in tree:
         data, tree = tuple(tree["z"]), tree["v"]
     unfolded = repeats.Unfolded(numbers, copies, size, runs)
-    return tree, _Reader(unfolded, lambda: _older_bytes(unfolded, *data), ())
+    return tree, _Reader(unfolded, lambda: older_bytes(unfolded, *data), ())
 
 
 def _split(numbers: NDArray[np.float64], count: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -237,7 +235,7 @@ class _Reader:
                 raise ValueError("it is cut short")
             return self.bytes[start : start + length]
         if "b" in tree:  # as older documents have them
-            return zlib.decompress(_older_bytes(self.numbers, *tree["b"]))
+            return zlib.decompress(older_bytes(self.numbers, *tree["b"]))
         if "t" in tree:
             return tuple(self.value(entry, all_of_it) for entry in tree["t"])
         if "d" in tree:
@@ -288,23 +286,3 @@ def _class(name: str) -> Any:
     if not (isinstance(kind, type) and dataclasses.is_dataclass(kind)):
         raise ValueError(f"{name} is not a result")
     return kind
-
-
-def _floats_of(data: bytes) -> NDArray[np.float64]:
-    count, over = divmod(len(data), _BYTES_PER_FLOAT)
-    whole = np.full((count + (over > 0), 8), _HIGHEST_BYTE, dtype=np.uint8)
-    seven = np.frombuffer(data, dtype=np.uint8)
-    whole[:count, :_BYTES_PER_FLOAT] = seven[: len(data) - over].reshape(count, _BYTES_PER_FLOAT)
-    whole[count:, :over] = seven[len(data) - over :]
-    return whole.view("<f8").ravel().astype(np.float64, copy=False)
-
-
-def _bytes_of(floats: NDArray[np.float64], length: int) -> bytes:
-    whole = floats[: -(-length // _BYTES_PER_FLOAT)].astype("<f8", copy=False).view(np.uint8).reshape(-1, 8)
-    return np.ascontiguousarray(whole[:, :_BYTES_PER_FLOAT]).ravel()[:length].tobytes()
-
-
-def _older_bytes(numbers: repeats.Unfolded, length: int, start: int) -> bytes:
-    """Bytes that stand among the numbers, six to a whole number."""
-    whole = numbers.part(start, -(-length // _OLDER_BYTES)).astype("<u8").view(np.uint8).reshape(-1, 8)
-    return whole[:, :_OLDER_BYTES].tobytes()[:length]

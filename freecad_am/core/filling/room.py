@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import Array, steps
-from ..geometry.regions.region import telling
+from ..geometry.regions.telling import telling
 from .curve import Beads, PlaneCurve
 
 STEP = 0.2  # of the spacing, mm between places at which rooms are looked at

@@ -23,12 +23,12 @@ from ..issues import InputError
 from . import calibration, check_poses, urdf_machine
 from .chain import Chain
 from .five_axis import is_five_axis
-from .inverse import recognition
 from .inverse.calibrated import CalibratedArm
 from .inverse.parallel_axes import ParallelAxesArm
 from .inverse.serial_arm import SerialArm
 from .limits import Limits
 from .link_shape import LinkShape, link_shapes
+from .machine_entries import limits_of, most_of, name_of, opw_arm, pulses_of, recognised, slides, speed_unit_of, unit_of
 from .machine_file import Node, read
 from .opw import OpwArm
 from .urdf_reference import Reference, reference
@@ -36,7 +36,6 @@ from .urdf_reference import Reference, reference
 BUILT_IN = Path(__file__).resolve().parents[2] / "machines"
 MAKER = "maker"
 NOT_TOLD = "a URDF does not tell what the controller shows"
-SPEED_UNITS = ("mm/s", "cm/min", "mm/min")
 REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is no machine file
 KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "payload",
@@ -217,36 +216,36 @@ def _parse(top: Node) -> Machine:
     if not joints:
         raise top["joints"].bad("there is no joint")
     count = len(joints)
-    sliding = np.array([_slides(joint) for joint in joints])
+    sliding = np.array([slides(joint) for joint in joints])
     units = unit_values(sliding)
     # the axes of a robot go by number unless the file has what its pendant shows; those of a machine tool have names
-    names = tuple(_called(joint, f"q{index + 1}", bool(sliding.any())) for index, joint in enumerate(joints))
+    names = tuple(name_of(joint, f"q{index + 1}", bool(sliding.any())) for index, joint in enumerate(joints))
     controller = top["controller"].only("matrix", "offset", "remark", "posts", "pulses_per_degree", "speed_unit")
     chain = Chain(
         np.stack([joint.pose() for joint in joints]),
-        np.stack([_unit(joint["axis"]) for joint in joints]),
+        np.stack([unit_of(joint["axis"]) for joint in joints]),
         top["flange"].only("origin", "rpy").pose(),
         sliding,
     )
-    arm, no_arm = (_opw(top["opw"], count), "") if top.has("opw") else _recognised(chain)
+    arm, no_arm = (opw_arm(top["opw"], count), "") if top.has("opw") else recognised(chain)
     machine = Machine(
         id=top["id"].text(),
         title=top["title"].text(),
         axes=names,
         chain=chain, arm=arm, no_arm=no_arm,
         base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
-        max_speed=np.array([_most(joint, "max_speed", "a speed") for joint in joints]) * units,
-        limit_sets={name: _limits(name, node, names, units) for name, node in top["limits"].pairs()},
+        max_speed=np.array([most_of(joint, "max_speed", "a speed") for joint in joints]) * units,
+        limit_sets={name: limits_of(name, node, names, units) for name, node in top["limits"].pairs()},
         controller_matrix=controller["matrix"].matrix(count, count),
         controller_offset=controller["offset"].numbers(count) * units,
         controller_remark=controller["remark"].text(),
         posts=controller["posts"].texts() if controller.has("posts") else None,
-        pulses_per_degree=_pulses(controller["pulses_per_degree"], count) if controller.has("pulses_per_degree") else (),
-        speed_unit=_speed_unit(controller["speed_unit"]) if controller.has("speed_unit") else "",
+        pulses_per_degree=pulses_of(controller["pulses_per_degree"], count) if controller.has("pulses_per_degree") else (),
+        speed_unit=speed_unit_of(controller["speed_unit"]) if controller.has("speed_unit") else "",
         sources=top["sources"].texts(),
         remarks=top["remarks"].texts() if top.has("remarks") else (),
-        max_acceleration=np.array([_most(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
-        max_jerk=np.array([_most(joint, "max_jerk", "a jerk") for joint in joints]) * units,
+        max_acceleration=np.array([most_of(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
+        max_jerk=np.array([most_of(joint, "max_jerk", "a jerk") for joint in joints]) * units,
         shapes=link_shapes(top, tuple(joint["name"].text() for joint in joints)),
     )
     if MAKER not in machine.limit_sets:
@@ -289,93 +288,4 @@ def _of_urdf(meant: Reference) -> Machine:
         controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=NOT_TOLD, posts=(),
         pulses_per_degree=(), speed_unit="",
         sources=(f"{meant}",), remarks=found.notes, max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes,
-    )
-
-
-def _pulses(node: Node, count: int) -> tuple[float, ...]:
-    pulses = node.numbers(count)
-    if (pulses == 0.0).any():
-        raise node.bad(f"{node.value} has a 0; give the pulses of a degree of each axis, negative where they count down")
-    return tuple(pulses.tolist())
-
-
-def _speed_unit(node: Node) -> str:
-    if node.text() not in SPEED_UNITS:
-        raise node.bad(f"{node.value!r} is not a unit of path speeds; use {', '.join(SPEED_UNITS)}")
-    return node.text()
-
-
-def _called(joint: Node, numbered: str, has_name: bool) -> str:
-    """What messages and curves call an axis."""
-    if joint.has("label"):
-        return joint["label"].text()
-    return joint["name"].text() if has_name else numbered
-
-
-def _unit(node: Node) -> Array:
-    axis = node.numbers(3)
-    length = float(np.linalg.norm(axis))
-    if abs(length - 1.0) > 1e-6:
-        raise node.bad(f"{node.value} is not a unit vector")
-    return axis / length
-
-
-def _slides(joint: Node) -> bool:
-    kind = joint["type"].text() if joint.has("type") else "revolute"
-    if kind not in ("revolute", "prismatic"):
-        raise joint["type"].bad(f"{kind!r} is not a type of joint; use revolute or prismatic")
-    return kind == "prismatic"
-
-
-def _most(joint: Node, key: str, what: str) -> float:
-    if not joint.has(key):
-        return math.inf
-    most = joint[key].number()
-    if most <= 0.0:
-        raise joint[key].bad(f"{most:g} is not {what}; give more than 0, or null where not known")
-    return most
-
-
-def _recognised(chain: Chain) -> tuple[SerialArm | None, str]:
-    """The inverse of a robot whose file has no `opw`, or why there is none; that of rotary axes is in `five_axis`."""
-    if is_five_axis(chain.sliding):
-        return None, ""
-    try:
-        return recognition.arm_of(chain), ""
-    except InputError as error:
-        return None, error.message
-
-
-def _opw(node: Node, count: int) -> OpwArm:
-    lengths = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
-    node.only(*lengths, "offsets", "signs")
-    if count != 6:
-        raise node.bad(f"the closed form is for six joints, there are {count}")
-    signs = node["signs"].numbers(6)
-    if (np.abs(signs) != 1.0).any():
-        raise node["signs"].bad(f"{node['signs'].value} must be 1 or -1 each")
-    offsets = node["offsets"].numbers(6)
-    if (np.abs(offsets) > 180.0).any():
-        raise node["offsets"].bad(f"{node['offsets'].value} must lie within +-180")
-    for name in ("c2", "c3"):
-        if node[name].number() <= 0.0:
-            raise node[name].bad(f"{node[name].value} is not the length of an arm; give more than 0 mm")
-    return OpwArm(
-        **{name: node[name].number() for name in lengths},
-        offsets=tuple(np.radians(offsets).tolist()), signs=tuple(int(sign) for sign in signs),
-    )
-
-
-def _limits(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Limits:
-    node.only("axes", "coupled", "source")
-    count = len(axes)
-    spans = np.array([axis.span(unit) for axis, unit in zip(node["axes"].items(count), units, strict=True)])
-    coupled = [c.only("label", "coefficients", "range") for c in node["coupled"].items()] if node.has("coupled") else []
-    ranges = np.array([row["range"].span() for row in coupled]).reshape(len(coupled), 2)
-    coefficients = np.array([row["coefficients"].numbers(count) for row in coupled]).reshape(len(coupled), count)
-    return Limits(
-        name=name, lower=spans[:, 0].copy(), upper=spans[:, 1].copy(), coefficients=coefficients,
-        coupled_lower=ranges[:, 0].copy(), coupled_upper=ranges[:, 1].copy(),
-        labels=axes + tuple(row["label"].text() for row in coupled),
-        source=node["source"].text(),
     )

@@ -13,8 +13,7 @@ from .. import motion as motions
 from ..geometry import frames
 from ..issues import InputError
 from ..kinematics import opw
-from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell
-from ..kinematics.machine import NOT_TOLD, Machine
+from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, Cell
 from ..motion import Motion
 from ..parameters.process import BetweenLayersParameters, ProcessParameters
 from ..parameters.program import ProgramParameters, StartParameters
@@ -43,16 +42,10 @@ from ..program import (
     WaitInput,
 )
 from ..toolpath import Toolpath
+from .controllers import FLANGE_TOLD, UNITS, check_controller, check_pulses, check_wrist
 from .joint_path import BeadPath
+from .program_remarks import frames_of, remarks_of, six_of
 
-Array = NDArray[np.float64]
-
-# posts whose programs count on where the flange is, and those whose positions need no words for configurations of the arm
-FLANGE_TOLD, WITHOUT_CONFIGURATIONS = frozenset({"ur"}), frozenset({"ur"})
-# posts that write positions in pulses of the axes, and Cartesian speeds in the unit of the controller
-IN_PULSES = frozenset({"yaskawa"})
-# what controllers call the first positioner of a cell: mechanical unit, motion group, number of MACHINE_DEF
-UNITS = {"abb": "STN1", "fanuc": "2", "kuka": "2", "yaskawa": "ST1"}
 # what the rows of a motion are for, by its numbers
 ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
@@ -74,7 +67,7 @@ def build(
     check_wrist(cell.machine, parameters.motion, parameters.post)
     check_pulses(cell.machine, parameters.motion, parameters.post)
     blocks = _blocks(motion, cell, process, parameters, waits, returns)
-    remarks = _remarks(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
+    remarks = remarks_of(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
     return replace(without_moves(cell, parameters, name), blocks=blocks, remarks=remarks)
 
 
@@ -95,8 +88,8 @@ def without_moves(cell: Cell, parameters: ProgramParameters, name: str) -> Progr
         dry_run=parameters.dry_run,
         max_speed=tuple(cell.machine.max_speed.tolist()),
         pulses_per_degree=cell.machine.pulses_per_degree, speed_unit=cell.machine.speed_unit,
-        station=_six(frames.inverse(cell.machine.base) @ _frames(cell, parameters)[0]),
-        carried=_six(_frames(cell, parameters)[1]),
+        station=six_of(frames.inverse(cell.machine.base) @ frames_of(cell, parameters)[0]),
+        carried=six_of(frames_of(cell, parameters)[1]),
         axis_names=tuple(_letter(name) for name in cell.machine.axes) if cell.machine.is_table else (),
         axis_kinds=tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding)
         if cell.machine.is_table else (),
@@ -134,54 +127,11 @@ def _letter(axis: str) -> str:
     return (axis[1:] if len(axis) == 2 and axis[0] == "m" else axis).upper()
 
 
-def check_controller(machine: Machine, post: str) -> None:
-    """InputError WRONG_CONTROLLER when the machine file says that its controller does not read that post's programs."""
-    if machine.posts is None or post in machine.posts:
-        return
-    if machine.controller_remark == NOT_TOLD:
-        raise InputError("WRONG_CONTROLLER", "program.post", f"{machine.title} is a URDF, which does not tell what the "
-                         "controller shows; plan without a program, or make a machine file of it with New Machine…")
-    known = f"use one of {', '.join(machine.posts)}" if machine.posts else (
-        "there is no post for it yet: plan without a program; waypoints.csv has its axes")
-    raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
-
-
-def check_wrist(machine: Machine, motion: str, post: str) -> None:
-    """InputError NOT_FOR_WRIST: Cartesian programs of robots without a spherical wrist by posts that name configurations."""
-    if motion == "cartesian" and not machine.is_table and machine.opw is None and post not in WITHOUT_CONFIGURATIONS:
-        raise InputError(
-            "NOT_FOR_WRIST", "program.motion", f"{machine.title} has no spherical wrist, and what its controller calls the "
-            "configurations of cartesian positions is not known; use joint",
-        )
-
-
-def check_pulses(machine: Machine, motion: str, post: str) -> None:
-    """InputError NO_PULSES, NO_SPEED_UNIT where a post needs what only the controller of that very robot tells."""
-    if post in IN_PULSES and not machine.pulses_per_degree:
-        raise InputError(
-            "NO_PULSES", "cell.machine", f"how many pulses {machine.title} counts to a degree of each axis is not known, "
-            "and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the "
-            "pendant tells (a position in pulses over the same in degrees), or plan without a program",
-        )
-    if post in IN_PULSES and motion == "cartesian" and not machine.speed_unit:
-        raise InputError(
-            "NO_SPEED_UNIT", "cell.machine", f"the unit of V is a setting of the controller of {machine.title}, and another "
-            "one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`",
-        )
-
-
-def written_by(machine: Machine) -> tuple[str, ...] | None:
-    """The posts that programs for a machine can be written by, with what its file tells; None for any."""
-    if machine.posts is None or machine.pulses_per_degree:
-        return machine.posts
-    return tuple(post for post in machine.posts if post not in IN_PULSES)
-
-
 def on_table(cell: Cell, parameters: ProgramParameters) -> Six | None:
     """Where the program's origin is on the table as a program tells it; None where it is known only with the toolpath."""
     if not cell.machine.is_table or not isinstance(parameters.origin, str):
         return None
-    return _six(_frames(cell, parameters)[1])
+    return six_of(frames_of(cell, parameters)[1])
 
 
 def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
@@ -279,11 +229,11 @@ def _moves(
     if parameters.post in FLANGE_TOLD and cell.setup == PART_ON_ROBOT:
         flange = frames.inverse(cell.machine.base) @ cell.machine.chain.forward(motion.joints[rows])
     if parameters.motion == "cartesian" and cell.setup == ROTARY_TABLE:
-        station, carried = _frames(cell, parameters)
+        station, carried = frames_of(cell, parameters)
         seen = frames.inverse(cell.machine.chain.forward(motion.joints[rows]) @ carried) @ station
         position, direction = seen[:, :3, 3], seen[:, :3, 2]
     elif parameters.motion == "cartesian":
-        station, carried = _frames(cell, parameters)
+        station, carried = frames_of(cell, parameters)
         tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
         seen = frames.inverse(tip) @ station if cell.setup == PART_ON_ROBOT else frames.inverse(station) @ tip
         position, rotation = seen[:, :3, 3], seen[:, :3, :3]
@@ -308,61 +258,3 @@ def _roles(role: NDArray[np.int64]) -> tuple[str, ...]:
     if (role == role[0]).all():
         return (ROLES[int(role[0])],) * len(role)
     return tuple(ROLES[one] for one in role.tolist())
-
-
-def _frames(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
-    """(4, 4) what stands in base_link and what the flange carries, whichever is the part taken at the program's origin."""
-    if isinstance(parameters.origin, str):
-        return cell.station, cell.carried
-    origin = frames.inverse(cell.mount) @ frames.bryant(parameters.origin)
-    if cell.setup != TOOL_ON_ROBOT:
-        return cell.station, cell.carried @ origin
-    return cell.station @ origin, cell.carried
-
-
-def _six(pose: Array) -> Six:
-    x, y, z = pose[:3, 3].tolist()
-    rx, ry, rz = frames.to_bryant(pose[:3, :3]).tolist()
-    return (x, y, z, rx, ry, rz)
-
-
-def _remarks(cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]) -> tuple[str, ...]:
-    moved = not isinstance(parameters.origin, str)
-    station, carried = _frames(cell, parameters)
-    if cell.setup == ROTARY_TABLE:
-        where, frame = "Work offset" if parameters.motion == "cartesian" else "Platform on the table", carried
-    else:
-        where = "Deposition point" if cell.setup == PART_ON_ROBOT else "User frame" if moved else "Platform"
-        where += " on the face" if cell.external is not None and cell.external.turning else ""
-        frame = frames.inverse(cell.machine.base) @ station
-    return (
-        cell.machine.title,
-        f"Limits: {cell.limits.name}",
-        *_pose_remarks(where, _six(frame)),
-        *(() if isinstance(parameters.origin, str) else _pose_remarks("Program origin on the part", parameters.origin)),
-        *_ranges(moves),
-        *((cell.machine.controller_remark,) if cell.machine.controller_remark else ()),
-    )
-
-
-def _ranges(moves: Sequence[Moves]) -> list[str]:
-    """What the program itself tells: the speeds of its beads and, where it tells them, of their wire."""
-    beads = [run for run in moves if run.kind == DEPOSIT]
-    if not beads:
-        return []
-    wires = [run.wire for run in beads if run.wire is not None]
-    return [
-        f"Travel speed {_range(np.concatenate([run.speed for run in beads]))} mm/s",
-        *([f"Wire in proportion to it {_range(np.concatenate(wires))} mm/s"] if wires else []),
-    ]
-
-
-def _range(values: Array) -> str:
-    low, high = (f"{float(value):.4g}" for value in (values.min(), values.max()))
-    return low if low == high else f"{low} to {high}"
-
-
-def _pose_remarks(what: str, six: Six) -> tuple[str, str]:
-    x, y, z, *angles = six
-    rx, ry, rz = np.degrees(angles) + 0.0
-    return f"{what} {x:.3f} {y:.3f} {z:.3f}", f"RX RY RZ {rx:.3f} {ry:.3f} {rz:.3f}"

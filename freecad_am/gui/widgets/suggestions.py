@@ -10,7 +10,7 @@ from ...core.issues import InputError
 from ...core.kinematics import machine
 from ...core.kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE
 from ...core.parameters.program import ProgramParameters
-from ...core.planning.program import written_by
+from ...core.planning.controllers import written_by
 from ...core.process import bead_table
 from ...objects import preferences, user_machines
 from ...posts import catalogue

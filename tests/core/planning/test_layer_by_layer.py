@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.kinematics import opw
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
-from freecad_am.core.planning import comparison, constant, refine, search
+from freecad_am.core.planning import comparison, constant, refine_state, search
 from freecad_am.core.planning import plan as planner
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
@@ -116,13 +116,13 @@ def test_gradients_against_differences(sliced, cell_of, objective, parameter):
     checked = smooth = 0
     for _ in range(40):
         coefficients = np.array([[rng.uniform(-3, 3), rng.uniform(-1.2, -0.8), rng.uniform(-0.02, 0.02)]])
-        state = refine._state(task, points, threshold, coefficients)
+        state = refine_state.state_of(task, points, threshold, coefficients)
         if not np.isfinite(state.objective).all() or state.constraints.min() < 0.001:
             continue
         for k in range(3):
             step = np.zeros((1, 3))
             step[0, k] = 1e-6
-            later, earlier = (refine._state(task, points, threshold, coefficients + s * step) for s in (1, -1))
+            later, earlier = (refine_state.state_of(task, points, threshold, coefficients + s * step) for s in (1, -1))
             slope = (later.objective - earlier.objective) / 2e-6
             assert state.gradient[0, k] == pytest.approx(slope[0], rel=2e-4, abs=1e-6 * max(1.0, abs(state.objective[0])))
             # a maximum over points has a kink where two points tie: any slope between the two sides is right

@@ -13,9 +13,10 @@ from freecad_am.core.kinematics import machine, opw
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters, StartParameters
+from freecad_am.core.planning.controllers import check_controller
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build, check_controller
+from freecad_am.core.planning.program import build
 from freecad_am.core.planning.rapids import Moves as Driven
 from freecad_am.core.planning.rapids import Surroundings
 from freecad_am.core.planning.straight import kept_straight

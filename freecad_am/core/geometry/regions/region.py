@@ -28,7 +28,6 @@ AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at on
 LEAST_ARC = 8  # segments of a full turn
 EIGHT = 2.8  # times the squared radius, a hair less than the area of a regular octagon in a circle
 WIDTH = 0.005  # relative tolerance of a region's width
-FLAT = 1e-3  # slope of a curve of values, so that they count and their places do not
 FINE_SLIT, LONG_SLIT = 0.1, 20.0  # of a slit's width: chord error of what closes it; how much border it takes away
 
 
@@ -230,16 +229,6 @@ def simplified(points: Array, tolerance: float) -> Array:
     line = shapely().geometry.LineString(points).simplify(tolerance, preserve_topology=False)
     found: Array = np.array(line.coords, dtype=float)
     return found
-
-
-def telling(at: Array, values: Array, tolerance: float) -> Mask:
-    """Which of values (n,) at places (n,), in order, are needed so that straight lines between them tell all within the
-    tolerance."""
-    stretch = float(np.ptp(values)) / (FLAT * max(float(np.ptp(at)), 1e-300))
-    if not stretch > 0.0:
-        return np.asarray(np.isin(np.arange(len(at)), (0, len(at) - 1)), dtype=bool)
-    line = np.stack([at * stretch, values], axis=1)
-    return np.asarray(np.isin(line[:, 0], simplified(line, tolerance)[:, 0]), dtype=bool)
 
 
 def _buffered(shape: Any, distance: float, chord_error: float) -> Any:

@@ -19,10 +19,10 @@ import numpy as np
 
 from ..columns import columns
 from ..curves.plane_curve import Array, doubled_area, winding
+from .chained import NEAR, chained
 from .region import Region, regions
 
 HALF_TURN = 2.6  # rad; a window is no wider, room included
-NEAR = 1e-7  # of the period; cuts meet there
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ class Strip:
                     cover = [self._cut(ring, about, (low - about, high - about)) for ring in whole.rings()]
                     found += [ring for inner in regions(cover) for ring in _boxed(inner, low, high)]
             pieces.append(found)
-        return parts(*_chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])), period)
+        return parts(*chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])), period)
 
     def between(self, low: float, high: float) -> tuple[Region, ...]:
         """The strip from u = low to u = high as regions in (u, v)."""
@@ -265,54 +265,3 @@ def _boxed(region: Region, low: float, high: float) -> list[Array]:
     v = region.rings()[0][:, 1]
     box = regions([_box(low, high, float(v.min()), float(v.max()))])
     return [ring for part in region.common(box) for ring in part.rings()]
-
-
-def _chained(pieces: Sequence[Sequence[Array]], cuts: Array) -> tuple[list[tuple[Array, int]], list[Array]]:
-    """Rings of windows put together where cuts went through: those that go round with their sense, and closed ones."""
-    turn = float(cuts[-1] - cuts[0])
-    near, count = NEAR * turn, len(cuts) - 1
-    runs: list[Array] = []
-    closed: list[Array] = []
-    starts: list[tuple[int, float, int]] = []
-    ends: list[tuple[int, float, int]] = []
-    for window, rings in enumerate(pieces):
-        for ring in rings:
-            side = np.where(np.abs(ring[:, 0] - cuts[window]) < near, 1, 0)
-            side = np.where(np.abs(ring[:, 0] - cuts[window + 1]) < near, 2, side)
-            on_cut = (side > 0) & (side == np.roll(side, -1))
-            if not on_cut.any():
-                closed.append(ring)
-                continue
-            first = int(np.flatnonzero(on_cut)[0]) + 1
-            ring, side, on_cut = (np.roll(part, -first, axis=0) for part in (ring, side, on_cut))
-            borders = np.r_[-1, np.flatnonzero(on_cut)]
-            for a, b in zip(borders + 1, borders[1:]):
-                if b > a:
-                    starts.append(((window + int(side[a] == 2)) % count, float(ring[a, 1]), len(runs)))
-                    ends.append(((window + int(side[b] == 2)) % count, float(ring[b, 1]), len(runs)))
-                    runs.append(ring[a : b + 1])
-    after = {}
-    for (_, _, run), (_, _, following) in zip(sorted(ends), sorted(starts)):
-        after[run] = following
-    rounds = []
-    left = set(range(len(runs)))
-    while left:
-        run = min(left)
-        points: list[Array] = []
-        while run in left:
-            left.remove(run)
-            piece = runs[run]
-            if points:
-                shift = round((points[-1][-1, 0] - piece[0, 0]) / turn) * turn
-                piece = piece + np.array([shift, 0.0])
-                points[-1] = points[-1][:-1]
-            points.append(piece)
-            run = after[run]
-        loop = np.vstack(points)
-        turns = round(float(loop[-1, 0] - loop[0, 0]) / turn)
-        loop = loop[:-1]
-        if turns:
-            rounds.append((loop, turns))
-        else:
-            closed.append(loop)
-    return rounds, closed

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from ...filling.curve import PlaneCurve
 from ...geometry.developable import TURN, Array
 from ...geometry.on_hub import Base
-from ...geometry.regions.region import simplified, telling
+from ...geometry.regions.region import simplified
+from ...geometry.regions.telling import telling
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
