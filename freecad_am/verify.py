@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from .core.issues import ERROR, Issue
 from .core.kinematics.cell import ROTARY_TABLE, Cell
 from .core.motion import Motion
-from .core.program import Program, ReadMoves
+from .core.program import Program
+from .core.read_moves import ReadMoves
 from .posts.catalogue import Post
 from .read_back import between, points, text_path
 from .read_back.events import event_issues

@@ -15,6 +15,7 @@ PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
 OURS = {
     "core/issues": set(),
     "core/program": set(),
+    "core/read_moves": set(),
     "core/motion": set(),
     "core/one_thread": set(),
     "core/parameters": {"core/issues"},
@@ -43,10 +44,15 @@ OURS = {
         "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/process", "core/kinematics", "core/motion",
         "core/simulation", "core/strategies",
     },
-    "posts": {"core/issues", "core/program"},
+    "posts": {"core/issues", "core/program", "core/read_moves"},
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},
-    "read_back": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "kdl"},
-    "verify": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "posts", "read_back"},
+    "read_back": {
+        "core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "core/read_moves", "kdl",
+    },
+    "verify": {
+        "core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "core/read_moves", "posts",
+        "read_back",
+    },
     "brep": {"core/issues", "core/geometry", "core/one_thread", "core/collision"},
     "objects": {"core", "brep", "posts", "verify", "kdl"},
     "interop": {"core", "objects"},

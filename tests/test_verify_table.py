@@ -19,7 +19,7 @@ from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build
-from freecad_am.core.program import Event, ReadMoves
+from freecad_am.core.read_moves import Event, ReadMoves
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.read_back import text_path
 

@@ -27,7 +27,7 @@ from freecad_am.core.planning.program import without_moves
 from freecad_am.core.planning.task import CONDITION_FLOOR
 from freecad_am.core.preflight import clearance, joints
 from freecad_am.core.preflight.promise import Promise, row_place
-from freecad_am.core.program import ReadMoves
+from freecad_am.core.read_moves import ReadMoves
 from freecad_am.core.simulation import rapid_look, waypoints
 from freecad_am.core.simulation.margins import on_deposit
 from freecad_am.posts import catalogue

@@ -22,6 +22,7 @@ from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, ha
 from ..core.one_thread import one_thread
 from . import expressions, faults, hooks, progress, properties, staleness, store
 from .findings import as_text, first_message, issues_of, say
+from .link_targets import broken_link, is_there
 from .properties import HIDDEN, OUTPUT, READ_ONLY
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
@@ -29,8 +30,7 @@ from .stored import Stored
 
 SCHEMA_VERSION = 2
 CLASS_PROPERTY = "StageClass"
-_RESULT = "Result"
-_deferred = 0
+_RESULT, _deferred = "Result", 0
 
 
 class Stage(Stored):
@@ -119,7 +119,7 @@ class Stage(Stored):
                 else:
                     say(obj, INFEASIBLE if has_errors(found) else UP_TO_DATE, first_message(found))
         except progress.Cancelled:
-            if _there(obj) and key != obj.Key:
+            if is_there(obj) and key != obj.Key:
                 with self._own_changes():
                     say(obj, STALE, "cancelled; recompute")
             raise
@@ -147,10 +147,10 @@ class Stage(Stored):
         try:
             made = hooks.carry_out(packed, obj.Label)
         except AmError:
-            if _there(obj):
+            if is_there(obj):
                 raise
             raise progress.Cancelled from None
-        if not _there(obj):
+        if not is_there(obj):
             raise progress.Cancelled
         with self._own_changes():
             self._store(obj, *made, key, time.perf_counter() - started)
@@ -187,7 +187,7 @@ class Stage(Stored):
         for link in self.links:
             if link.required and not getattr(obj, link.name):
                 return f"{link.name} is missing; choose {link.help[0].lower()}{link.help[1:].rstrip('.')}"
-            broken = _broken(getattr(obj, link.name))
+            broken = broken_link(getattr(obj, link.name))
             if broken:
                 return f"{broken} links to nothing, what it showed is gone or was not loaded; choose another {link.name}"
         return expressions.broken(obj)
@@ -224,7 +224,7 @@ class Stage(Stored):
         except AmError as error:
             App.Console.PrintError(error.line() + "\n")
         except progress.Cancelled:
-            if _there(obj):
+            if is_there(obj):
                 App.Console.PrintWarning(f"{obj.Label}: cancelled\n")
 
     def _linked_stages(self, obj: Any) -> list[Any]:
@@ -277,23 +277,6 @@ def stage_of(obj: Any) -> Stage | None:
     return proxy if isinstance(proxy, Stage) else None
 
 
-def _broken(value: Any) -> str:
-    """The label of a FreeCAD link whose object is gone, '' when all is well."""
-    for one in value if isinstance(value, list) else [value]:
-        linked = one[0] if isinstance(one, tuple) else one
-        if getattr(linked, "TypeId", "") == "App::Link" and linked.getLinkedObject() in (None, linked):
-            return str(linked.Label)
-    return ""
-
-
-def _there(obj: Any) -> bool:
-    """Whether an object is still part of an open document."""
-    try:
-        return obj.Document is not None and obj.Document.getObject(obj.Name) is not None
-    except (ReferenceError, RuntimeError, AttributeError, TypeError):
-        return False
-
-
 def checked(obj: Any, link: Link) -> Any:
     """The linked stage, or a list of them: of the right kind, and computed; None without one. InputError BAD_INPUT,
     INPUT_FAILED; InfeasibleError INPUT_INFEASIBLE."""
@@ -310,9 +293,8 @@ def _checked(obj: Any, link: Link, linked: Any) -> Any:
     if stage is None or stage.kind != link.kind:
         raise InputError("BAD_INPUT", f"{obj.Label}.{link.name}", f"{linked.Label} is no {link.kind}; choose one")
     if linked.Status == INFEASIBLE:
-        raise InfeasibleError(
-            "INPUT_INFEASIBLE", obj.Label, f"{linked.Label} cannot be carried out: {linked.Message}", issues_of(linked)
-        )
+        why = f"{linked.Label} cannot be carried out: {linked.Message}"
+        raise InfeasibleError("INPUT_INFEASIBLE", obj.Label, why, issues_of(linked))
     if linked.Status == FAILED or not linked.Key:
         raise InputError("INPUT_FAILED", obj.Label, f"waits for {linked.Label}: {linked.Message or 'recompute it'}")
     return linked

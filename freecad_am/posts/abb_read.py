@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.program import Event, ReadMoves
+from ..core.read_moves import Event, ReadMoves
 from .abb_modules import Frames, Module, modules, turned, unreadable
 
 Array = NDArray[np.float64]

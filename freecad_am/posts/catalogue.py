@@ -9,7 +9,8 @@ from collections.abc import Iterable
 from typing import Any, Protocol
 
 from ..core.issues import InputError
-from ..core.program import Program, ReadMoves
+from ..core.program import Program
+from ..core.read_moves import ReadMoves
 
 NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb", "kuka")  # of the modules beside this one
 # whose linear moves with the part on the robot run straight as the part sees them: their beads need no points in between

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.program import Configuration, Event, ReadMoves
+from ..core.read_moves import Configuration, Event, ReadMoves
 from .fanuc_parsed import UNITS, Listing, listing_of, name_of
 from .fanuc_records import unreadable
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from ..core.program import ReadMoves
+from ..core.read_moves import ReadMoves
 from .nc_read import SLIDES, TIME, TIP, Shape, Track, unreadable
 
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"

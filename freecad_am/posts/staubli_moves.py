@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.program import ReadMoves
+from ..core.read_moves import ReadMoves
 from .staubli_files import AXES, POSE, Application, Data, numbers, poses, rotations, unreadable
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.program import Event, ReadMoves
+from ..core.read_moves import Event, ReadMoves
 from .staubli_files import Application, Data, applications, unreadable
 from .staubli_moves import Step, moves_of
 

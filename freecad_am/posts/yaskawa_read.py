@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import InputError
-from ..core.program import Event, ReadMoves
+from ..core.read_moves import Event, ReadMoves
 
 Array = NDArray[np.float64]
 

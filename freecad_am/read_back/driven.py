@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from ..core.kinematics.cell import ROTARY_TABLE, Cell
 from ..core.motion import Motion
-from ..core.program import Event, Program, ReadMoves
+from ..core.program import Program
+from ..core.read_moves import Event, ReadMoves
 from . import followed, text_path
 from .text_path import Path
 

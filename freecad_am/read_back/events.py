@@ -9,20 +9,8 @@ import numpy as np
 
 from ..core.issues import ERROR, Issue
 from ..core.kinematics.cell import ROTARY_TABLE
-from ..core.program import (
-    Block,
-    Call,
-    DepositOff,
-    DepositOn,
-    Event,
-    LayerStart,
-    Moves,
-    Program,
-    ReadMoves,
-    Wait,
-    WaitBelow,
-    WaitInput,
-)
+from ..core.program import Block, Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitBelow, WaitInput
+from ..core.read_moves import Event, ReadMoves
 from .planned import COMPUTED_AXIS, Planned
 
 # code and message of what is off, and the kinds of events that it is about

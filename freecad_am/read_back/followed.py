@@ -12,7 +12,7 @@ from ..core.issues import InputError
 from ..core.kinematics import opw
 from ..core.kinematics.cell import Cell
 from ..core.kinematics.five_axis import FiveAxis
-from ..core.program import ReadMoves
+from ..core.read_moves import ReadMoves
 from .planned import pieces
 from .text_path import Path
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..core.geometry.columns import lengths
 from ..core.issues import NOTE, Issue
 from ..core.kinematics.cell import Cell
-from ..core.program import ReadMoves
+from ..core.read_moves import ReadMoves
 from ..kdl import chain as kdl_chain
 from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned, pieces
 from .text_path import Joints, Path, digits, told_by_position

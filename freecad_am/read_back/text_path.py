@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from ..core.geometry import frames
 from ..core.kinematics.cell import ROTARY_TABLE, Cell
 from ..core.kinematics.chain import JointFrames
-from ..core.program import Program, ReadMoves
+from ..core.program import Program
+from ..core.read_moves import ReadMoves
 from .planned import COMPUTED_AXIS, COMPUTED_MM, pieces
 
 Array = NDArray[np.float64]

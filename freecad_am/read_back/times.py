@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from ..core.issues import Issue
 from ..core.kinematics.cell import ROTARY_TABLE, Cell
-from ..core.program import FIRST_SHARE, FIRST_TIME, ReadMoves
+from ..core.program import FIRST_SHARE, FIRST_TIME
+from ..core.read_moves import ReadMoves
 from .planned import COMPUTED_AXIS, Planned
 
 Array = NDArray[np.float64]

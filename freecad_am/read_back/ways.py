@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from ..core.issues import ERROR, Issue
 from ..core.kinematics import opw
 from ..core.kinematics.cell import ROTARY_TABLE, Cell
-from ..core.program import LINEAR_MOVE, Configuration, Program, ReadMoves
+from ..core.program import LINEAR_MOVE, Program
+from ..core.read_moves import Configuration, ReadMoves
 from .planned import COMPUTED_AXIS, Planned, pieces
 
 Array = NDArray[np.float64]

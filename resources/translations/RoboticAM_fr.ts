@@ -7102,7 +7102,7 @@
         <translation>la façon dont un job attend une entrée analogique dépend des options de la commande, et le post-processeur yaskawa n&apos;en connaît aucune</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program.py"/>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
         <source>how many pulses {0} counts to a degree of each axis is not known, and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant tells (a position in pulses over the same in degrees), or plan without a program</source>
         <translation>combien d&apos;impulsions {0} compte par degré de chaque axe n&apos;est pas connu, et deux modèles diffèrent toujours ; faites-en un fichier machine à vous, avec controller.pulses_per_degree d&apos;après le pupitre (une position en impulsions divisée par la même en degrés), ou planifiez sans programme</translation>
     </message>
@@ -9497,7 +9497,7 @@
         <translation>le cercle à {0} mm n&apos;a pas été mesuré sur tout le tour : {1} deg entre voisins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
         <source>the closed form is for six joints, there are {0}</source>
         <translation>la forme explicite est pour six articulations, il y en a {0}</translation>
     </message>
@@ -9512,12 +9512,12 @@
         <translation>la commande a des numéros jusqu&apos;à {0}, pas {1} ; prenez l&apos;un de ceux-ci</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program.py"/>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
         <source>the controller of {0} does not read {1}; there is no post for it yet: plan without a program; waypoints.csv has its axes</source>
         <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle : planifiez sans programme ; waypoints.csv a ses axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program.py"/>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
         <source>the controller of {0} does not read {1}; use one of {2}</source>
         <translation>la commande de {0} ne lit pas {1} ; utilisez l&apos;un de {2}</translation>
     </message>
@@ -10307,7 +10307,7 @@
         <translation>la transformation change pendant que le dépôt est en marche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program.py"/>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
         <source>the unit of V is a setting of the controller of {0}, and another one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`</source>
         <translation>l&apos;unité de V est un réglage de la commande de {0}, et une autre unité est une autre vitesse ; donnez controller.speed_unit dans un fichier machine à vous, ou utilisez `motion: joint`</translation>
     </message>
@@ -11267,7 +11267,7 @@
         <translation>{0} donne {1}, qui n&apos;est pas un nombre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
         <source>{0} has a 0; give the pulses of a degree of each axis, negative where they count down</source>
         <translation>{0} contient un 0 ; donnez les impulsions d&apos;un degré de chaque axe, négatives là où elles décroissent</translation>
     </message>
@@ -11307,7 +11307,7 @@
         <translation>{0} n&apos;a pas de numéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program.py"/>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
         <source>{0} has no spherical wrist, and what its controller calls the configurations of cartesian positions is not known; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
     </message>
@@ -11357,7 +11357,7 @@
         <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program.py"/>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
         <source>{0} is a URDF, which does not tell what the controller shows; plan without a program, or make a machine file of it with New Machine…</source>
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
     </message>
@@ -11747,17 +11747,17 @@
         <translation>{0} n&apos;est pas un texte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
         <source>{0} is not a type of joint; use revolute or prismatic</source>
         <translation>{0} n&apos;est pas un type d&apos;articulation ; utilisez revolute ou prismatic</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
         <source>{0} is not a unit of path speeds; use {1}</source>
         <translation>{0} n&apos;est pas une unité de vitesse ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
         <source>{0} is not a unit vector</source>
         <translation>{0} n&apos;est pas un vecteur unitaire</translation>
     </message>
@@ -11837,7 +11837,7 @@
         <translation>{0} n&apos;est pas lu ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
         <source>{0} is not the length of an arm; give more than 0 mm</source>
         <translation>{0} n&apos;est pas la longueur d&apos;un bras ; donnez plus de 0 mm</translation>
     </message>
@@ -11907,7 +11907,7 @@
         <translation>{0} n&apos;est pas une donnée {1} du projet, ou n&apos;a pas autant de valeurs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
         <source>{0} is not {1}; give more than 0, or null where not known</source>
         <translation>{0} n&apos;est pas {1} ; donnez plus de 0, ou null si elle n&apos;est pas connue</translation>
     </message>
@@ -12102,12 +12102,12 @@
         <translation>{0} mouvements prennent {1} s en tout et ne peuvent pas durer moins de 1 ms chacun ; prenez une plus grande erreur de corde ou une vitesse plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
         <source>{0} must be 1 or -1 each</source>
         <translation>{0} doivent être 1 ou -1 chacun</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
         <source>{0} must lie within +-180</source>
         <translation>{0} doit être compris entre -180 et 180</translation>
     </message>
