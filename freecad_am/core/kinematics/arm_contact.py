@@ -38,7 +38,7 @@ WORLD = "world"
 NONE = -1
 PIECE = 4096  # joint vectors done together
 SIDES = 24  # of a nozzle
-LINK_PIECE = 50.0  # mm, longest edge of a triangle that links are looked at against: these are not slender
+LINK_PIECE, SHARE = 50.0, 0.01  # longest edge of a triangle that links are looked at against, mm, and of the body's size
 SLICES = 8  # rods about a deposit that moves
 
 
@@ -250,7 +250,9 @@ def _nozzle(cell: Cell) -> Body:
 
 
 def _of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> _Group:
-    return _Group(Scene(of_bodies([body], body.vertices, 0.0, LINK_PIECE)), links, *_ball(body.vertices), seen_from)
+    centre, radius = _ball(body.vertices)
+    scene = Scene(of_bodies([body], body.vertices, 0.0, max(LINK_PIECE, SHARE * 2.0 * radius)))
+    return _Group(scene, links, centre, radius, seen_from)
 
 
 def _about(link: Sequence[_Solid]) -> tuple[Array, float]:

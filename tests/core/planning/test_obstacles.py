@@ -125,6 +125,30 @@ def test_rapids_of_a_carried_nozzle_go_over_an_obstacle_that_links_are_not_kept_
         assert near == 0.0 if not obstacles_ else near > low
 
 
+def test_a_floor_is_a_box_that_the_elbow_stays_above(dome):
+    """A plan with the elbow down goes through the floor that the robot stands on; the lowest points of links by PyKDL."""
+    foot = np.linalg.inv(cells.resolve(CellParameters(**CELL), dome.frame).machine.base)[2, 3]
+    size = (5000.0, 5000.0, 100.0)
+    pose = frames.pose(np.eye(3), np.array([0.0, 0.0, foot - 0.5 * size[2]]))
+    lowest = []
+    for more in ({"branch": DOWN}, {"branch": "auto", "arm_clearance": CLEARANCE}):
+        cell = cell_with(dome, pose, "floor", size, **CELL, **more)
+        motion, issues = planned(dome, cell)
+        assert not has_errors(issues)
+        arm, frame, above = KdlArm(cell.machine), PyKDL.Frame(), np.inf
+        links = [(k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if k and rods]
+        joints, shares = motion.joints, np.linspace(0.1, 1.0, 10)
+        dense = np.concatenate([joints[:-1] + share * np.diff(joints, axis=0) for share in shares])
+        for q in dense[::23]:
+            angles = arm.angles(q)
+            for number, points in links:
+                arm._forward.JntToCart(angles, frame, 2 * number)
+                place = kdl_pose(frame)
+                above = min(above, (points @ place[2, :3] + place[2, 3]).min())
+        lowest.append(above)
+    assert lowest[0] < 0.0 and lowest[1] >= CLEARANCE
+
+
 def test_an_impossible_one_is_refused_by_name(dome):
     pose = frames.pose(np.eye(3), np.array([450.0, 0.0, 0.0]))
     cell = cell_with(dome, pose, "screen", (40.0, 3000.0, 3000.0), **CELL, branch=DOWN, arm_clearance=CLEARANCE)
