@@ -8673,8 +8673,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/standing.py"/>
-        <source>none of its solids stands on a cylinder or cone of another; solids are built up on those alone, not yet on a flat base: name the hub as substrate, choose a face of it, or give strategy.base</source>
-        <translation>aucun de ses solides ne repose sur un cylindre ou un cône d&apos;un autre ; les solides ne se construisent que sur ceux-ci, pas encore sur une base plane : nommez le moyeu comme substrat, choisissez une face de celui-ci, ou donnez strategy.base</translation>
+        <source>none of its solids stands on a cylinder or cone of another: name the hub as substrate, choose a face of it, or give strategy.base; what stands on a flat base is deposited by kind: solid</source>
+        <translation>aucun de ses solides ne repose sur un cylindre ou un cône d&apos;un autre : nommez le moyeu comme substrat, choisissez une face de celui-ci, ou donnez strategy.base ; ce qui repose sur une base plane est déposé par kind: solid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
@@ -9683,8 +9683,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>the hub is not known; solids are built up on a cylinder or cone, not yet on a flat base: choose the hub as substrate, choose faces of it, or give strategy.base</source>
-        <translation>le moyeu est inconnu ; les solides se construisent sur un cylindre ou un cône, pas encore sur une base plane : choisissez le moyeu comme substrat, choisissez-en des faces, ou donnez strategy.base</translation>
+        <source>the hub, a cylinder or cone that the solids stand on, is not known: choose it as substrate, choose faces of it, or give strategy.base; what stands on a flat base is deposited by kind: solid</source>
+        <translation>le moyeu, un cylindre ou un cône sur lequel reposent les solides, est inconnu : choisissez-le comme substrat, choisissez-en des faces, ou donnez strategy.base ; ce qui repose sur une base plane est déposé par kind: solid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb_read.py"/>

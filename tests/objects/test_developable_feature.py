@@ -217,7 +217,7 @@ def test_solids_from_exact_shapes_are_told_what_to_do_with_shapes(thruster):
     for arguments, code, told, untold in (
         ((small, hub), "NOT_ON_HUB", "does not stand on the hub", "unit"),
         ((touching, hub), "NON_MANIFOLD", "touches itself along an edge", "mesh"),
-        ((bracket,), "NO_HUB", "on a cylinder or cone, not yet on a flat base", "mesh"),
+        ((bracket,), "NO_HUB", "on a flat base is deposited by kind: solid", "mesh"),
     ):
         with pytest.raises(InputError) as caught:
             api.make_developable_feature(doc, *arguments, **FAST)

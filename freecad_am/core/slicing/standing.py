@@ -113,7 +113,7 @@ def hub_among(bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_err
             votes[k] += 1
     if not votes.any():
         raise InputError(
-            "NO_HUB", label, "none of its solids stands on a cylinder or cone of another; solids are built up on those "
-            "alone, not yet on a flat base: name the hub as substrate, choose a face of it, or give strategy.base",
+            "NO_HUB", label, "none of its solids stands on a cylinder or cone of another: name the hub as substrate, choose "
+            "a face of it, or give strategy.base; what stands on a flat base is deposited by kind: solid",
         )
     return int(np.argmax(votes))
