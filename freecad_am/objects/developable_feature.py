@@ -164,8 +164,8 @@ def _bases(of: _Given, solids: Sequence[Body], strategy: DevelopableParameters) 
     owned = [_faces(one, solid) for one in of.objects for solid in _parts(one)]
     if len(solids) < 2 or len(owned) != len(solids):
         raise InputError(
-            "NO_HUB", of.label, "the hub, a cylinder or cone that the solids stand on, is not known: choose it as substrate, "
-            "choose faces of it, or give strategy.base; what stands on a flat base is deposited by kind: solid"
+            "NO_HUB", of.label, "the hub, a cylinder or cone that the solids stand on, is not known: choose it as "
+            "substrate, choose faces of it, or give strategy.base; what stands on a flat base is deposited by kind: solid"
         )
     own = [seats(some, False) for some in owned]
     hub = hub_among(solids, own, SHARE * strategy.chord_error, of.label)

@@ -262,3 +262,13 @@ def test_an_endless_axis_never_has_half_a_turn_to_go_in_one_move(sliced, cell_of
     for layer in range(1, len(beads)):
         way = (motion.layer == layer) & ~motion.deposit & (motion.role == TRAVEL)
         assert way.sum() >= 2
+
+
+def test_a_retract_beyond_all_reach_is_refused_with_its_place(sliced, cell_of):
+    toolpath = sliced("sphere", 15.0, chord_error=0.3)
+    cell = cell_of(toolpath)
+    motion, issues = assemble(plan_joints(toolpath, cell, JointParameters()), cell, lifting(100_000.0))
+    wrong = [issue for issue in issues if issue.level == ERROR]
+    assert {issue.code for issue in wrong} == {"RAPID_UNREACHABLE"} and not motion.reachable.all()
+    assert [issue.layer for issue in wrong] == list(range(len(toolpath.layers)))
+    assert all("cannot be reached at any height" in issue.message for issue in wrong)
