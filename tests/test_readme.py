@@ -96,7 +96,7 @@ def test_tools_have_the_names_of_the_toolbar():
     source = (ROOT / "freecad_am" / "gui" / "tools" / "commands.py").read_text(encoding="utf-8")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     tools = re.findall(r'Tool\(\s*"\w+", marked\("([^"]+)"\)', source)
-    assert len(tools) == len(re.findall(r"\bTool\(", source.split("def register")[1]))
+    assert len(tools) == len(re.findall(r"\bTool\(", source.split("TOOLS = {")[1].split("def register")[0]))
     assert [tool for tool in tools if f"**{tool}**" not in readme and f"**[{tool}]" not in readme] == []
 
 
