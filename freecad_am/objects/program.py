@@ -109,7 +109,8 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     if parameters.post == "none":
         return
     post = catalogue.load(parameters.post)
-    controllers.check_controller(cell.machine, parameters.post)
+    controllers.check_controller(cell.robot, parameters.post)
+    controllers.check_external(cell, parameters.post)
     controllers.check_wrist(cell.machine, parameters.motion, parameters.post)
     controllers.check_pulses(cell.machine, parameters.motion, parameters.post)
     catalogue.refuse(

@@ -9062,6 +9062,36 @@
         <translation>programme</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <source>programs of {0} are not written with a positioner; plan without a program; waypoints.csv has all axes</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; planifier sans programme ; waypoints.csv a tous les axes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <source>programs of {0} are not written with a positioner; use one of {1}</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; utiliser {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <source>programs of {0} are not written with a track and a positioner together; plan without a program; waypoints.csv has all axes</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; planifier sans programme ; waypoints.csv a tous les axes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <source>programs of {0} are not written with a track and a positioner together; use one of {1}</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; utiliser {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <source>programs of {0} are not written with a track; plan without a program; waypoints.csv has all axes</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail ; planifier sans programme ; waypoints.csv a tous les axes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <source>programs of {0} are not written with a track; use one of {1}</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail ; utiliser {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>proportional</source>
         <translation>proportionnelle</translation>

@@ -105,6 +105,16 @@ SETUPS = {
         external="motoman-motopos-d500 at 850 60 -100 0 0 20 carries part", branch="auto",
         nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
     ), FLAT, 50.0, math.radians(3.0)),
+    "kuka track": Setup(CellParameters(
+        machine="kuka-kr16-2", setup="tool-on-robot", mount="part", platform_diameter=100.0, branch="auto",
+        external="kuka-kl100-2 at 0 0 -356 0 0 90 carries robot", deposition_point=(1050.0, 500.0, 200.0, 0.0, 0.0, 0.0),
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0),
+    "abb track": Setup(CellParameters(
+        machine="abb-irb1600-6-12", setup="tool-on-robot", mount="part", platform_diameter=100.0, branch="auto",
+        external="kuka-kl100-2 at 0 0 -356 0 0 90 carries robot", deposition_point=(800.0, 500.0, 100.0, 0.0, 0.0, 0.0),
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0),
     "table": Setup(CellParameters(
         machine="table-xyzac", setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part",
     ), STEEP, 90.0),
@@ -123,10 +133,11 @@ WAYS = (
     ("ur", "joint", "time", "ur part-on-robot"), ("ur", "joint", "time", "ur tool-on-robot"),
     ("ur", "cartesian", "time", "ur tool-on-robot"),
     *(("abb", motion, "time", f"abb {setup}") for motion in ("joint", "cartesian")
-      for setup in ("part-on-robot", "tool-on-robot", "positioner")),
+      for setup in ("part-on-robot", "tool-on-robot", "positioner", "track")),
     ("yaskawa", "joint", "time", "yaskawa part-on-robot"), ("yaskawa", "joint", "time", "yaskawa tool-on-robot"),
     ("yaskawa", "cartesian", "time", "yaskawa tool-on-robot"), ("yaskawa", "joint", "time", "yaskawa positioner"),
     ("kuka", "cartesian", "time", "kuka tool-on-robot"), ("kuka", "cartesian", "time", "kuka positioner"),
+    ("kuka", "cartesian", "time", "kuka track"),
     *(("siemens", motion, feed, setup) for setup in ("table", "head")
       for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
     *(("linuxcnc", motion, feed, "table") for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..issues import InputError
+from ..kinematics.cell import Cell
 from ..kinematics.machine import NOT_TOLD, Machine
 
 # posts whose programs count on where the flange is, and those whose positions need no words for configurations of the arm
@@ -24,6 +25,17 @@ def check_controller(machine: Machine, post: str) -> None:
     known = f"use one of {', '.join(machine.posts)}" if machine.posts else (
         "there is no post for it yet: plan without a program; waypoints.csv has its axes")
     raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
+
+
+def check_external(cell: Cell, post: str) -> None:
+    """InputError UNSUPPORTED_AXES when a post of the robot does not write the axes beside it."""
+    written = cell.machine.posts
+    if cell.external is None or written is None or post in written:
+        return
+    beside = "a positioner" if cell.external.slides is None else (
+        "a track and a positioner together" if cell.external.turning else "a track")
+    known = f"use one of {', '.join(written)}" if written else "plan without a program; waypoints.csv has all axes"
+    raise InputError("UNSUPPORTED_AXES", "program.post", f"programs of {post} are not written with {beside}; {known}")
 
 
 def check_wrist(machine: Machine, motion: str, post: str) -> None:

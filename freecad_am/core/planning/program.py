@@ -42,7 +42,7 @@ from ..program import (
     WaitInput,
 )
 from ..toolpath import Toolpath
-from .controllers import FLANGE_TOLD, UNITS, check_controller, check_pulses, check_wrist
+from .controllers import FLANGE_TOLD, UNITS, check_controller, check_external, check_pulses, check_wrist
 from .joint_path import BeadPath
 from .program_remarks import frames_of, remarks_of, six_of
 
@@ -63,7 +63,8 @@ def build(
     Raises InputError: START_AT for a start past the last bead, WRONG_CONTROLLER for a post the machine cannot read,
     NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT.
     """
-    check_controller(cell.machine, parameters.post)
+    check_controller(cell.robot, parameters.post)
+    check_external(cell, parameters.post)
     check_wrist(cell.machine, parameters.motion, parameters.post)
     check_pulses(cell.machine, parameters.motion, parameters.post)
     blocks = _blocks(motion, cell, process, parameters, waits, returns)

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Every post for robots x motion x what moves part and robot: written, read back and damaged elsewhere (WAYS), or refused
+with a reason before anything is planned."""
+
+import dataclasses
+import itertools
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.planning import controllers
+from freecad_am.posts import catalogue
+from tests.posts.planned_jobs import PULSES, WAYS
+
+ROBOTS = {
+    "fanuc": "fanuc-arcmate120ic", "staubli": "staubli-rx60bl", "ur": "ur-ur10e", "abb": "abb-irb1600-6-12",
+    "yaskawa": "motoman-ma2010", "kuka": "kuka-kr16-2",
+}
+POSITIONER = "motoman-motopos-d500 at 1100 60 -600 0 0 20 carries part"
+TRACK = "kuka-kl100-2 at 0 0 -356 0 0 90 carries robot"
+SETUPS = {
+    "part-on-robot": {"setup": "part-on-robot"},
+    "tool-on-robot": {"setup": "tool-on-robot"},
+    "positioner": {"setup": "tool-on-robot", "external": POSITIONER},
+    "track": {"setup": "tool-on-robot", "external": TRACK},
+    "track and positioner": {"setup": "tool-on-robot", "external": f"{POSITIONER}; {TRACK}"},
+}
+# what is refused, by its code and a word of its reason
+NOT_WRITTEN, BOTH = ("UNSUPPORTED_AXES", "not written with a"), "track and positioner"
+REFUSED = {
+    ("fanuc", "cartesian", "part-on-robot"): ("REMOTE_TCP", "what the position records of such moves"),
+    ("fanuc", "cartesian", "positioner"): ("COORDINATED_MOTION", "which user frame"),
+    ("ur", "cartesian", "part-on-robot"): ("REMOTE_TCP", "no documented instruction"),
+    ("yaskawa", "cartesian", "part-on-robot"): ("REMOTE_TCP", "external reference point"),
+    ("yaskawa", "cartesian", "positioner"): ("COORDINATED_MOTION", "SMOVL"),
+    ("kuka", "joint", "part-on-robot"): ("REMOTE_TCP", "fixed tool"),
+    ("kuka", "cartesian", "part-on-robot"): ("REMOTE_TCP", "fixed tool"),
+    ("kuka", "joint", "tool-on-robot"): ("JOINT_DEPOSIT", "whole percents"),
+    ("kuka", "joint", "positioner"): ("JOINT_DEPOSIT", "whole percents"),
+    ("kuka", "joint", "track"): ("JOINT_DEPOSIT", "whole percents"),
+} | {(post, motion, BOTH): NOT_WRITTEN for post in ROBOTS for motion in ("joint", "cartesian")} | {
+    (post, motion, "track"): NOT_WRITTEN
+    for post in ("fanuc", "staubli", "ur", "yaskawa") for motion in ("joint", "cartesian")
+} | {(post, motion, "positioner"): NOT_WRITTEN for post in ("staubli", "ur") for motion in ("joint", "cartesian")}
+
+
+def refusal(post, motion, setup):
+    """The error that a program of this kind ends with before it is planned, None of one that is written."""
+    cell = cells.resolve(CellParameters(machine=ROBOTS[post], mount="part", **SETUPS[setup]), np.eye(4), "developable")
+    if post == "yaskawa":  # what only a user's machine file tells
+        cell = dataclasses.replace(cell, machine=dataclasses.replace(
+            cell.machine, pulses_per_degree=PULSES[: cell.machine.chain.axes], speed_unit="mm/s"))
+    try:
+        controllers.check_controller(cell.robot, post)
+        controllers.check_external(cell, post)
+        controllers.check_wrist(cell.machine, motion, post)
+        controllers.check_pulses(cell.machine, motion, post)
+        catalogue.refuse(post, motion, cell.setup, cell.external is not None, None)
+    except InputError as error:
+        return error
+    return None
+
+
+@pytest.mark.parametrize("cell", itertools.product(ROBOTS, ("joint", "cartesian"), SETUPS), ids=" ".join)
+def test_written_or_refused_with_its_reason(cell):
+    post, motion, setup = cell
+    error = refusal(*cell)
+    if error is None:
+        assert (post, motion, "time", f"{post} {setup}") in WAYS
+        assert cell not in REFUSED
+        return
+    assert (post, motion, "time", f"{post} {setup}") not in WAYS
+    code, word = REFUSED[cell]
+    assert error.code == code and word in error.message and "; " in error.message  # a reason, and what to do
