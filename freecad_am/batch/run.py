@@ -174,13 +174,7 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
         stages.issues += api.issues(feature)
     session.issues(issue for issue in stages.issues if issue.code == LARGE)  # before the work that takes long
     with stages.timed("toolpath", session):
-        if len(job.features) == 1:
-            stages.toolpath = api.make_toolpath(document, stages.features[0], cell, process=job.process)
-        else:
-            stages.toolpath = api.make_toolpath(
-                document, stages.features, cell, sequence=job.sequence, process=job.process,
-                processes=[one.process for one in job.features],
-            )
+        stages.toolpath = _toolpath(stages, cell)
     # a toolpath repeats the findings about its wall
     stages.issues += [issue for issue in api.issues(stages.toolpath) if issue not in stages.issues]
     if cell is None or has_errors(stages.issues):
@@ -194,12 +188,31 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     if job.program is None or has_errors(stages.issues):
         return stages
     with stages.timed("program", session):
-        try:
-            stages.program = api.make_program(document, stages.joint_path, name=job.name, program=job.program)
-            stages.issues += api.issues(stages.program)
-        except InfeasibleError as error:
-            stages.issues += error.issues or [Issue("error", error.code, error.message)]
+        _make_program(stages)
     return stages
+
+
+def _toolpath(stages: Stages, cell: Any) -> Any:
+    from freecad_am import api
+
+    job = stages.job
+    if len(job.features) == 1:
+        return api.make_toolpath(stages.document, stages.features[0], cell, process=job.process)
+    return api.make_toolpath(
+        stages.document, stages.features, cell, sequence=job.sequence, process=job.process,
+        processes=[one.process for one in job.features],
+    )
+
+
+def _make_program(stages: Stages) -> None:
+    from freecad_am import api
+
+    job = stages.job
+    try:
+        stages.program = api.make_program(stages.document, stages.joint_path, name=job.name, program=job.program)
+        stages.issues += api.issues(stages.program)
+    except InfeasibleError as error:
+        stages.issues += error.issues or [Issue("error", error.code, error.message)]
 
 
 def _as_chosen(job: Job, shapes: Sequence[Any]) -> Job:
