@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..collision.inside import inside_of
+from ..geometry.columns import columns
 from ..geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ..geometry.plane import Plane
 from ..geometry.surroundings import Body
@@ -23,6 +24,7 @@ LARGEST = 12  # flat faces that the part may be laid on, beside the axes
 ALIKE = np.cos(np.radians(2.0))
 STANDING = 0.5  # layer heights above the lowest place; what is no higher stands there
 CLOSE = 0.01  # of the area of the part; areas nearer together are the same
+LEVEL = 1e-3  # of a height; heights nearer together are the same, whatever chords a mesh has
 PLACES = 20_000  # on all facets of a part of several bodies, at which it is looked whether others cover them, about
 MOST = 64  # parts of an edge of a facet between such places
 
@@ -53,14 +55,21 @@ def stacked(bodies: Sequence[Body], strategy: SolidParameters, label: str, issue
 
 
 def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
-    """The axes and the directions out of large flat faces, the best first: the least area over nothing, then the least
-    height, then in their order."""
+    """The axes and the directions out of large flat faces, the best first: of those with the least area over nothing, but
+    for CLOSE, the one with the least height, but for LEVEL, and of these the first; then of the others likewise. Any mesh of
+    the same part has the same order."""
     vertices, normals, areas = facets(bodies, strategy.chord_error if strategy.fuse == "auto" else None)
     ways = _candidates(normals, areas)
     steep, standing = float(np.sin(strategy.max_overhang)), STANDING * strategy.layer_height
     found = [judged(way, vertices, normals, areas, steep, standing) for way in ways]
-    total = max(float(areas.sum()), 1e-300)
-    return sorted(found, key=lambda one: (round(one.area / total / CLOSE), round(one.height, 6)))
+    ranked: list[Stacked] = []
+    while found:
+        least = min(one.area for one in found) + CLOSE * float(areas.sum())
+        few = [one for one in found if one.area <= least]
+        low = min(one.height for one in few)
+        ranked.append(next(one for one in few if one.height <= low * (1.0 + LEVEL)))
+        found = [one for one in found if one is not ranked[-1]]
+    return ranked
 
 
 def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
@@ -108,12 +117,15 @@ def _middles(count: int) -> Array:
 
 
 def _candidates(normals: Array, areas: Array) -> list[Array]:
-    """Unit directions to look at: the axes first, then against the normals of the largest flat faces."""
+    """Unit directions to look at: the axes first, then against the normals of the largest flat faces, in the same order
+    whatever triangles these are made of."""
     keys = np.round(normals, 4) + 0.0
     faces, number = np.unique(keys, axis=0, return_inverse=True)
     size = np.bincount(np.ravel(number), weights=areas)
     ways = list(AXES)
-    for k in np.argsort(-size, kind="stable")[: 4 * LARGEST]:
+    shares = np.round(size / max(float(areas.sum()), 1e-300), 3)
+    # of faces as large as one another the first comes by its direction, of which a mesh has no more than some digits
+    for k in np.lexsort(np.vstack([columns(faces.round(2)), -shares]))[: 4 * LARGEST]:
         way = -faces[k] / np.linalg.norm(faces[k])
         if size[k] > CLOSE * areas.sum() and max(float(way @ other) for other in ways) < ALIKE:
             ways.append(way)
