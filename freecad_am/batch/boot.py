@@ -70,11 +70,9 @@ def run(words):
     # numpy up to 1.24 looks in every call for array classes with functions of their own, which for a few numbers takes as
     # long as the work on them; there are none here
     os.environ.setdefault("NUMPY_EXPERIMENTAL_ARRAY_FUNCTION", "0")
-    from freecad_am.batch import allocation, cli, late
+    from freecad_am.batch import allocation, cli
 
     allocation.keep_freed()
-    late.functions_of_dataclasses()
-    late.modules()
     status = cli.main(words)
     if demo and status == 0:
         folder = words[3]
