@@ -46,17 +46,21 @@ def winding(rings: Sequence[Array], points: Array) -> NDArray[np.intp]:
     for ring in rings:
         low, high = ring.min(axis=0), ring.max(axis=0)
         near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+        near = near[np.argsort(points[near, 1], kind="stable")]
         following = np.roll(ring, -1, axis=0)
-        size = max(AT_ONCE // len(ring), 1)
-        for some in (near[k : k + size] for k in range(0, len(near), size)):
-            x, y = points[some, :1], points[some, 1:]
-            up = (ring[:, 1] <= y) & (following[:, 1] > y)
-            down = (ring[:, 1] > y) & (following[:, 1] <= y)
-            row, edge = np.nonzero(up | down)
+        # the points that an edge is beside are neighbours in the order of y
+        span = np.searchsorted(points[near, 1], np.sort(np.stack([ring[:, 1], following[:, 1]]), axis=0))
+        many = span[1] - span[0]
+        ends = np.cumsum(many)
+        for some in np.split(np.arange(len(ring)), np.flatnonzero(np.diff(ends // AT_ONCE)) + 1):
+            edge = np.repeat(some, many[some])
+            row = near[np.arange(len(edge)) - np.repeat(ends[some] - many[some] - span[0][some], many[some])
+                       + (ends[some[0]] - many[some[0]])]
             a, b = ring[edge], following[edge]
-            side = (b[:, 0] - a[:, 0]) * (y[row, 0] - a[:, 1]) - (x[row, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
-            turned = np.where(up[row, edge], (side > 0.0).astype(int), -(side < 0.0).astype(int))
-            count[some] += np.bincount(row, weights=turned, minlength=len(some)).astype(np.intp)
+            side = (b[:, 0] - a[:, 0]) * (points[row, 1] - a[:, 1]) - (points[row, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
+            up = a[:, 1] < b[:, 1]
+            turned = np.where(up, (side > 0.0).astype(int), -(side < 0.0).astype(int))
+            count += np.bincount(row, weights=turned, minlength=len(count)).astype(np.intp)
     return count
 
 
