@@ -52,7 +52,8 @@ class Shapes:
         """Choose the family where the job leaves it open; a note that says what and why. Raises InputError."""
         if self.of.sections is None:
             return None
-        from freecad_am.objects.proposed_family import GEODESIC, PLANES, proposed  # what it imports takes long
+        from freecad_am.core.parameters.filled import GEODESIC, PLANES
+        from freecad_am.objects.proposed_family import proposed  # what it imports takes long
 
         ground = next(iter(self._touched(earlier)), None) if self.substrate is None else self.substrate
         try:

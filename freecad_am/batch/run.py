@@ -139,7 +139,7 @@ def _document(job: Job) -> Any:
 
 def _curved_in_vain(job: Job, stages: Stages) -> str:
     """The code of the error that a job ends with for which curved layers were chosen, as it leaves them open; else ''."""
-    from freecad_am.objects.proposed_family import GEODESIC
+    from freecad_am.core.parameters.filled import GEODESIC
 
     chosen = zip(job.features, stages.job.features, strict=True)
     curved = any(asked.sections is not None and "layers" not in asked.sections["strategy"]

@@ -25,7 +25,7 @@ from ..core.geometry.told import at_least, place
 from ..core.issues import InputError
 from ..core.layers.curved import STANDING
 from ..core.layers.stacking import best, facets, judged
-from ..core.parameters.filled import DevelopableParameters, SolidParameters
+from ..core.parameters.filled import GEODESIC, PLANES, DevelopableParameters, SolidParameters
 from ..core.parameters.strategy import SurfaceParameters
 from ..core.process.deposit_balance import LITTLE, MM3, of_wall
 from .developable_feature import found_in
@@ -44,7 +44,6 @@ LYING = 0.95  # of its area; an open mesh of which more is less than STEEP from 
 WIDEST = 10000.0  # mm; the bound of `strategy.mend`
 ROUND = ("Part::GeomCylinder", "Part::GeomCone")
 UP = (0.0, 0.0, 1.0)
-PLANES, GEODESIC = "planes", "geodesic"
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -10,6 +10,8 @@ from ..issues import InputError
 from . import field as f
 from .strategy import MEND, LayerParameters
 
+PLANES, GEODESIC = "planes", "geodesic"  # layers that are proposed by themselves
+
 
 @dataclass(frozen=True)
 class BaseParameters:

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from ...core.parameters.cell import CellParameters
+from ...core.parameters.filled import GEODESIC
 from ...objects import preferences
-from ...objects.proposed_family import GEODESIC
 from .. import recorded
 from .proposal import DEVELOPABLE, REVOLUTION, SOLID, JobProposal
 

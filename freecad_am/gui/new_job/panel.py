@@ -13,9 +13,9 @@ from PySide import QtCore, QtGui
 
 from ... import api
 from ...core.issues import AmError, Issue
+from ...core.parameters.filled import GEODESIC
 from ...objects import preferences
 from ...objects.progress import Cancelled
-from ...objects.proposed_family import GEODESIC
 from .. import icons, recorded
 from ..background.busy import carry_out
 from ..background.later import Background

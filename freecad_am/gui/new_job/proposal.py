@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from ...core.parameters.filled import GEODESIC, PLANES
 from ...objects import deposit
-from ...objects.proposed_family import GEODESIC, PLANES, Proposal, proposed, stands_on_hub
+from ...objects.proposed_family import Proposal, proposed, stands_on_hub
 from ...objects.shapes import Taken, global_shape, taken
 from ..picking import picking
 from ..picking.picking import Pick
