@@ -17,6 +17,10 @@ Array = NDArray[np.float64]
 
 INSIDE = np.array([0.25, 0.5, 0.75])
 MORE = np.array([1.0, 2.0, 4.0, 5.0]) / 6.0  # of segments that use up more than half of the chord error
+# what the polynomials through both ends, where the tip is on the bead, and INSIDE are there: (4, 3)
+BETWEEN = np.array([
+    [np.prod([(x - node) / (own - node) for node in (0.0, *INSIDE, 1.0) if node != own]) for own in INSIDE] for x in MORE
+])
 ROUNDS = 8
 # rounding room: beads of revolution use their chord error up by themselves, mm
 ROUNDING = 1e-6
@@ -43,23 +47,24 @@ def kept_straight(task: Task, path: BeadPath, chord_error: float) -> tuple[BeadP
 
 def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Array:
     """(n - 1,) how far the nozzle's tip leaves each segment of the bead when the joints run straight, mm."""
-    away = _looked_at(task, bead, joints, np.arange(len(joints) - 1), INSIDE)
-    near = np.flatnonzero(away > 0.5 * chord_error)
+    seen = _looked_at(task, bead, joints, np.arange(len(joints) - 1), INSIDE)
+    away: Array = np.maximum.reduce(seen)
+    # nearly all leave it evenly, most in the middle: between what was seen it is no more
+    near = np.flatnonzero((away > 0.5 * chord_error) & (np.maximum.reduce(BETWEEN @ seen) > away))
     if len(near):
-        away[near] = np.maximum(away[near], _looked_at(task, bead, joints, near, MORE))
+        away[near] = np.maximum.reduce([away[near], *_looked_at(task, bead, joints, near, MORE)])
     return away
 
 
 def _looked_at(task: Task, bead: Bead, joints: Array, segments: NDArray[np.intp], shares: Array) -> Array:
-    """The same of the segments (k,), at shares of their length: (k,) mm."""
+    """The same of the segments (k,), at shares (s,) of their length: (s, k) mm."""
     start, way = joints[segments], joints[segments + 1] - joints[segments]
     away = task.cell.tip_at(start[:, None] + way[:, None] * shares[:, None]) - bead.points[segments, None]
     along = bead.points[segments + 1] - bead.points[segments]
     length = np.maximum(np.einsum("ni,ni->n", along, along), 1e-18)
     share = np.clip(np.einsum("nki,ni->nk", away, along) / length[:, None], 0.0, 1.0)
     away -= share[..., None] * along[:, None]
-    squared = np.einsum("nki,nki->nk", away, away)
-    distance: Array = np.sqrt(np.maximum.reduce([squared[:, k] for k in range(len(shares))]))
+    distance: Array = np.sqrt(np.einsum("nki,nki->kn", away, away))
     return distance
 
 
