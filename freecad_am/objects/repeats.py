@@ -175,12 +175,14 @@ def _candidates(words: Words) -> tuple[Index, Index]:
     shift = np.uint64(64 - bits)
     table = np.zeros(1 << bits, dtype=bool)
     table[(known >> shift).astype(np.intp)] = True
-    found = []
+    packed, found = np.packbits(table, bitorder="little"), []  # small enough to stay near the processor
     for start in range(0, count, PIECE):
         stop = min(start + PIECE, count)
         marks = _marks([words[start + k : stop + k] for k in range(len(FACTORS))])
-        places = np.flatnonzero(table[(marks >> shift).astype(np.intp)])
-        at = np.minimum(np.searchsorted(known, marks[places]), len(known) - 1)
+        entry = (marks >> shift).view(np.int64)
+        places = np.flatnonzero(packed[entry >> 3] >> (entry & 7).astype(np.uint8) & 1)
+        at, order = np.empty(len(places), dtype=np.int64), np.argsort(marks[places])  # in order they are found sooner
+        at[order] = np.minimum(np.searchsorted(known, marks[places[order]]), len(known) - 1)
         source = anchors[first[at]]
         good = (known[at] == marks[places]) & (source + SHORTEST <= places + start)
         places, source = places[good] + start, source[good]
