@@ -12,7 +12,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..core.geometry.developable import TURN, Developable
-from ..core.geometry.mesh.repair import crossing_told, mended_issues, repaired
+from ..core.geometry.mesh.manifold import holes, told_apart
+from ..core.geometry.mesh.repair import Repaired, crossing_told, mended_issues, repaired
 from ..core.geometry.mesh.solid import Array, SolidMesh
 from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
 from ..core.geometry.surroundings import Body
@@ -21,6 +22,7 @@ from .axis import from_normals
 from .fine_mesh import fine
 from .kernel import refuse_bare
 from .kernel_process import beside
+from .tessellate import WELDED
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
 CROSSED = 5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin
@@ -53,29 +55,48 @@ def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching
         return Bodies(_named(found.solids, label), found.issues)
     if source is None or source.isNull() or not source.Solids:
         raise InputError("NO_SOLID", label, "it has no solid; choose solids or closed meshes to deposit")
-    made: list[tuple[Any, SolidMesh]] = []
+    made: list[tuple[Any, tuple[SolidMesh, ...]]] = []
     crossing: list[str] = []
+    issues: list[Issue] = []
     for solid in source.Solids:
         first = next((entry for entry in made if entry[0].isPartner(solid)), None)
-        mesh = _placed(*first, solid) if first is not None else _meshed(solid, source, chord_error, label, touching)
-        made.append((solid, mesh))
-        if first is None and touching:
-            crossing += crossing_told(made[-1][1], CROSSED * chord_error)
-    return Bodies(_named([mesh for _, mesh in made], label), mended_issues(label, crossing))
+        if first is not None:
+            made.append((solid, tuple(_placed(first[0], mesh, solid) for mesh in first[1])))
+            continue
+        found = _meshed(solid, source, chord_error, label, mend, touching)
+        made.append((solid, found.solids))
+        issues += found.issues
+        if touching and not found.issues:
+            crossing += crossing_told(found.solids[0], CROSSED * chord_error)
+    return Bodies(_named([mesh for _, meshes in made for mesh in meshes], label), (*issues, *mended_issues(label, crossing)))
 
 
-def _meshed(solid: Any, source: Any, chord_error: float, label: str, touching: bool) -> SolidMesh:
+def _meshed(solid: Any, source: Any, chord_error: float, label: str, mend: float, touching: bool) -> Repaired:
+    """The mesh of a solid; of one whose faces do not meet, what mending its triangles makes of it."""
     made = beside(fine, solid.copy(), SHARE * chord_error)
     vertices, corners = made.vertices, made.triangles
     if len(np.unique(made.owner)) < len(solid.Faces):
         numbers = {face.hashCode(): number for number, face in enumerate(source.Faces, start=1)}
-        refuse_bare([(f"Face{numbers[face.hashCode()]}", face) for face in solid.Faces], made.owner, label)
+        named = [(f"Face{numbers[face.hashCode()]}", face) for face in solid.Faces]
+        refuse_bare(named, made.owner, label, WELDED)
     mesh = SolidMesh(vertices, corners)
     mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
-    mesh.refuse_unsound(label, of_shape=True, touching=touching)
+    try:
+        mesh.refuse_unsound(label, of_shape=True, touching=touching)
+    except InputError as unsound:
+        try:
+            return repaired(vertices, mesh.triangles, label, mend, touching)
+        except InputError:
+            widest = max((hole.size for hole in holes(told_apart(vertices, mesh.triangles))), default=0.0)
+        if widest <= mend:
+            raise
+        raise InputError(
+            unsound.code, label, f"{unsound.message}; up to strategy.mend, {mend:g} mm, what is open is closed, and the widest "
+            f"place is {widest:.4g} mm across",
+        ) from None
     if not touching:
         mesh.refuse_crossing(label, CROSSED * chord_error)
-    return mesh
+    return Repaired((mesh,), ())
 
 
 def _placed(first: Any, mesh: SolidMesh, solid: Any) -> SolidMesh:

@@ -38,11 +38,11 @@ def told(label: str) -> Iterator[None]:
         ) from error
 
 
-def refuse_bare(named: Sequence[tuple[str, Any]], owner: Index, label: str) -> None:
+def refuse_bare(named: Sequence[tuple[str, Any]], owner: Index, label: str, narrow: float = 0.0) -> None:
     """InputError where the kernel has made no triangles of a face: SELF_INTERSECTION if an edge of it crosses itself, else
-    BAD_SHAPE. owner: (m,) the number of the face of each triangle."""
+    BAD_SHAPE. owner: (m,) the number of the face of each triangle. narrow: a face no wider, mm, needs none."""
     for k, (name, face) in enumerate(named):
-        if (owner == k).any():
+        if (owner == k).any() or face.Area < 0.5 * narrow * face.Length:
             continue
         for edge in face.Edges:
             found = _crossing(np.array([tuple(point) for point in edge.discretize(SAMPLES)]))

@@ -85,3 +85,37 @@ def test_a_face_of_which_there_are_no_triangles_at_all_is_named(monkeypatch):
     with pytest.raises(InputError) as caught:
         hub.bodies_of(two, "boxes", 0.1, 0.0)
     assert caught.value.code == "BAD_SHAPE" and caught.value.where == "boxes Face11"
+
+
+def test_a_face_no_wider_than_vertices_are_made_one_needs_no_triangles():
+    """As of a body whose side was drawn with a step of two millionths of a millimetre."""
+    step = [Vector(0, 0, 0), Vector(20, 0, 0), Vector(20, 6, 0), Vector(10, 6, 0), Vector(10, 6.000002, 0), Vector(0, 6.000002, 0)]
+    solid = Part.Face(Part.makePolygon([*step, step[0]])).extrude(Vector(0, 0, 3))
+    assert min(face.Area for face in solid.Faces) == pytest.approx(6e-6, rel=1e-3)
+    (body,), issues = hub.bodies_of(solid, "plate", 0.1, 0.0, True)
+    assert not issues and (Edges(body.triangles).count == 2).all()
+    a, b, c = body.vertices[body.triangles].transpose(1, 0, 2)
+    assert (np.cross(a, b) * c).sum() / 6.0 == pytest.approx(360.0, rel=1e-6)
+
+
+@pytest.fixture(scope="module")
+def topless():
+    """A solid of FreeCAD without the square of 3 by 4 mm at the top of its knob."""
+    solid = Part.makeBox(20, 20, 5).fuse(Part.makeBox(3, 4, 10, Vector(5, 5, 0)))
+    return Part.Solid(Part.Shell([face for face in solid.Faces if face.CenterOfMass.z < 9.9]))
+
+
+@pytest.mark.parametrize("touching", [False, True])
+def test_a_solid_whose_faces_do_not_meet_is_mended_as_a_mesh_is(topless, touching):
+    (body,), (mended,) = hub.bodies_of(topless, "knob", 0.1, 5.0, touching)
+    assert (mended.level, mended.code) == ("warning", "MENDED")
+    assert mended.message == "knob: 1 holes were closed, the largest 5 mm across at (6.5, 7, 10)"
+    a, b, c = body.vertices[body.triangles].transpose(1, 0, 2)
+    assert (np.cross(a, b) * c).sum() / 6.0 == pytest.approx(2060.0, rel=1e-9)
+
+
+def test_what_of_it_is_wider_is_told(topless):
+    with pytest.raises(InputError) as caught:
+        hub.bodies_of(topless, "knob", 0.1, 4.9, True)
+    assert caught.value.code == "OPEN_MESH" and caught.value.where == "knob"
+    assert "up to strategy.mend, 4.9 mm, what is open is closed, and the widest place is 5 mm across" in caught.value.message
