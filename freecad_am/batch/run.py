@@ -179,6 +179,10 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     stages.issues += [issue for issue in api.issues(stages.toolpath) if issue not in stages.issues]
     if cell is None or has_errors(stages.issues):
         return stages
+    if job.program is not None:
+        from freecad_am.core.planning import controllers
+
+        controllers.check_beads(api.result(stages.toolpath), job.program.post, job.program.max_points)
     with stages.timed("joint_path", session):
         stages.joint_path = api.make_joint_path(document, stages.toolpath, cell, joints=job.joints)
     found = api.issues(stages.joint_path)

@@ -12,7 +12,7 @@ from ..core.issues import Issue
 from ..core.kinematics.cell import PART_ON_ROBOT, Cell
 from ..core.motion import Motion
 from ..core.parameters.program import ProgramParameters
-from ..core.planning import moving_tool
+from ..core.planning import moving_tool, steps
 from ..core.planning import program as programs
 from ..core.simulation.margins import on_deposit
 from ..posts import catalogue
@@ -34,8 +34,8 @@ class AsRun:
 def as_run(
     planned: Planned, cell: Cell, chord_error: float, settings: ProgramParameters | None, issues: tuple[Issue, ...]
 ) -> AsRun:
-    """All of a joint path without `settings`; of a program with the points that moves in a line get, and only from where it
-    starts."""
+    """All of a joint path without `settings`; of a program with the points that moves in a line get, without those too
+    soon after others for its controller, and only from where it starts."""
     motion = planned.motion
     condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
     if settings is None:
@@ -47,13 +47,18 @@ def as_run(
         motion = moving_tool.kept_straight(motion, cell, chord_error, beads)
         condition, threshold = condition[origin], threshold[origin]
         issues = tuple(_renumbered(issue, planned.motion, motion, origin) for issue in issues)
+    whole = motion
+    motion, kept = steps.told(motion, settings.post, chord_error, settings.blend)
+    if len(motion) < len(whole):
+        condition, threshold = condition[kept], threshold[kept]
+        issues = tuple(_renumbered(issue, whole, motion, kept) for issue in issues)
     rows = programs.rows_from(motion, settings.start_at)
     motion = Motion(**{field.name: getattr(motion, field.name)[rows] for field in fields(motion)})
     return AsRun(motion, condition[rows], threshold[rows], issues)
 
 
 def _renumbered(issue: Issue, before: Motion, after: Motion, origin: NDArray[np.int64]) -> Issue:
-    """A finding by the number that its point has among added ones."""
+    """A finding by the number that its point has among added ones, or of the last one before it where it is left out."""
     here = before.deposit & (before.layer == issue.layer) & (before.bead == issue.bead) & (before.point == issue.point)
     if issue.point is None or not here.any():
         return issue

@@ -102,7 +102,7 @@ class JointPath(Stage):
             resolved = cells.resolve(cell.Proxy.value(cell), np.eye(4), folders=user_machines.folders())
             process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
             for program in programs:
-                program.Proxy.refuse_early(program, resolved, process)
+                program.Proxy.refuse_early(program, resolved, process, toolpath)
 
     def job(self, obj: Any) -> Job:
         """Read the inputs. Raises InputError and InfeasibleError where there is nothing to plan of."""

@@ -15,7 +15,7 @@ from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.planning import controllers, moving_tool
+from ..core.planning import controllers, moving_tool, steps
 from ..core.planning import program as programs
 from ..core.program import Program as Text
 from ..core.toolpath import Toolpath
@@ -93,10 +93,13 @@ class Program(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         return [obj.ProgramName]
 
-    def refuse_early(self, obj: Any, cell: cells.Cell, process: ProcessParameters) -> None:
-        """Say at once, before its joint path is planned, what makes the program impossible in the cell."""
+    def refuse_early(self, obj: Any, cell: cells.Cell, process: ProcessParameters, toolpath: Any) -> None:
+        """Say at once, before its joint path is planned, what makes the program impossible in the cell, or for a toolpath."""
         try:
-            refuse(cell, process, self.parameters(obj, ProgramParameters))
+            parameters = self.parameters(obj, ProgramParameters)
+            refuse(cell, process, parameters)
+            if parameters.post in controllers.WHOLE_BEADS:
+                controllers.check_beads(toolpath.Proxy.value(toolpath), parameters.post, parameters.max_points)
         except InputError as error:
             self.say_failed(obj, error)
 
@@ -133,6 +136,7 @@ def posted(job: Job) -> Posted:
     if straight and cell.setup == PART_ON_ROBOT:
         beads = [path.bead for path in planned.joint_path.beads]
         motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
+    motion, _ = steps.told(motion, parameters.post, toolpath.chord_error, parameters.blend)
     waits = [layer.wait for layer in toolpath.layers]
     returns = programs.returning(toolpath, planned.joint_path.beads)
     program = programs.build(motion, cell, job.process, parameters, job.name, waits, returns)

@@ -3,6 +3,7 @@
 
 import csv
 import json
+import re
 import shutil
 
 import FreeCAD
@@ -117,3 +118,29 @@ def test_a_mesh_file_of_several_bodies(workshop):
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["counts"]["layers"] == 2
     assert report["deposit"]["part_cm3"] == pytest.approx(13.0, rel=1e-3)
+
+
+def test_a_small_part_by_a_robot_that_takes_no_short_moves(workshop):
+    """Beads of 0.6 mm have points hundredths of a millimetre apart at corners; the script tells those that matter."""
+    import Mesh
+
+    tube = Part.makeCylinder(3, 1).cut(Part.makeBox(2.2, 2.2, 1, FreeCAD.Vector(-1.1, -1.1, 0))).cut(
+        Part.makeCylinder(1.2, 1, FreeCAD.Vector(3, 0, 0)))
+    Mesh.Mesh(tube.tessellate(0.01)).write(str(workshop.folder / "nut.stl"))
+    job = (
+        "part: {file: nut.stl}\nstrategy: {kind: solid, layer_height: 0.5 mm, bead_spacing: 0.6 mm, chord_error: 0.01 mm}\n"
+        "process: {bead_width: 0.6 mm, travel_speed: 20 mm/s}\n"
+        "cell: {machine: %s, setup: tool-on-robot, mount: feature, branch: auto, platform_diameter: 100 mm}\n"
+        "program: {post: %s, max_points: 40}\n"
+    )
+    (workshop.folder / "job.yaml").write_text(job % ("ur-ur10e", "ur"), encoding="utf-8")
+    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    counts = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))["counts"]
+    script = (workshop.folder / "out" / "program" / "job.script").read_text(encoding="ascii")
+    times = [float(time) for time in re.findall(r"t=([\d.]+), r=0\.0*[1-9]", script)]  # within beads the robot does not stop
+    assert min(times) >= 0.002 and 0.5 < len(times) / (counts["points"] - 2 * counts["beads"]) < 0.9
+    (workshop.folder / "job.yaml").write_text(job % ("abb-irb4600-40-255", "abb"), encoding="utf-8")
+    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert done.status == 2 and "error[BEAD_TOO_LONG] job.yaml: program.max_points: layer 1 bead 7 has 293 points, and" in done.err
+    assert "with its approach" not in done.err  # told before joints were planned

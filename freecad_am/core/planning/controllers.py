@@ -6,11 +6,15 @@ from __future__ import annotations
 from ..issues import InputError
 from ..kinematics.cell import Cell
 from ..kinematics.machine import NOT_TOLD, Machine
+from ..toolpath import Toolpath
 
 # posts whose programs count on where the flange is, and those whose positions need no words for configurations of the arm
 FLANGE_TOLD, WITHOUT_CONFIGURATIONS = frozenset({"ur"}), frozenset({"ur"})
 # posts that write positions in pulses of the axes, and Cartesian speeds in the unit of the controller
 IN_PULSES = frozenset({"yaskawa"})
+# posts whose files are loaded one after the other, each with whole beads
+WHOLE_BEADS = frozenset({"abb", "staubli"})
+BESIDE = 50  # points of the ways to a bead, which are counted with it, at most
 # what controllers call the first positioner of a cell: mechanical unit, motion group, number of MACHINE_DEF
 UNITS = {"abb": "STN1", "fanuc": "2", "kuka": "2", "yaskawa": "ST1"}
 
@@ -25,6 +29,20 @@ def check_controller(machine: Machine, post: str) -> None:
     known = f"use one of {', '.join(machine.posts)}" if machine.posts else (
         "there is no post for it yet: plan without a program; waypoints.csv has its axes")
     raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
+
+
+def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
+    """InputError BEAD_TOO_LONG when a bead alone has more points than a file of the program may have: programs tell all
+    points of beads."""
+    if post not in WHOLE_BEADS:
+        return
+    points, layer, index = max(((len(bead), layer, index) for layer, index, bead in toolpath), default=(0, 0, 0))
+    if points > max_points:
+        raise InputError(
+            "BEAD_TOO_LONG", "program.max_points", f"layer {layer} bead {index} has {points} points, and loading another part "
+            f"within a bead would stop the robot while it deposits; use at least {points + BESIDE}, or a larger "
+            "strategy.chord_error",
+        )
 
 
 def check_external(cell: Cell, post: str) -> None:
