@@ -94,7 +94,7 @@ class Program(Stage):
         return [obj.ProgramName]
 
     def refuse_early(self, obj: Any, cell: cells.Cell, process: ProcessParameters, toolpath: Any) -> None:
-        """Say at once, before its joint path is planned, what makes the program impossible in the cell, or for a toolpath."""
+        """Say at once, before joints are planned, what makes the program impossible in the cell, or of a toolpath."""
         try:
             parameters = self.parameters(obj, ProgramParameters)
             refuse(cell, process, parameters)

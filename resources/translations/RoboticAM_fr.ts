@@ -8182,6 +8182,11 @@
         <translation>couche {0} cordon {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <source>layer {0} bead {1} has {2} points, and loading another part within a bead would stop the robot while it deposits; use at least {3}, or a larger strategy.chord_error</source>
+        <translation>couche {0} cordon {1} a {2} points, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {3}, ou une plus grande strategy.chord_error</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/issues.py"/>
         <source>layer {0} bead {1} point {2}</source>
         <translation>couche {0} cordon {1} point {2}</translation>
@@ -12610,6 +12615,11 @@
         <location filename="../../freecad_am/gui/nodes/machine_links.py"/>
         <source>{0}; the link has its plain solid for now</source>
         <translation>{0} ; le corps garde pour l&apos;instant son solide simple</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>{0}; up to strategy.mend, {1} mm, what is open is closed, and the widest place is {2} mm across</source>
+        <translation>{0} ; jusqu&apos;à strategy.mend, {1} mm, ce qui est ouvert est fermé, et l&apos;endroit le plus large a {2} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>

@@ -142,5 +142,6 @@ def test_a_small_part_by_a_robot_that_takes_no_short_moves(workshop):
     assert min(times) >= 0.002 and 0.5 < len(times) / (counts["points"] - 2 * counts["beads"]) < 0.9
     (workshop.folder / "job.yaml").write_text(job % ("abb-irb4600-40-255", "abb"), encoding="utf-8")
     done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
-    assert done.status == 2 and "error[BEAD_TOO_LONG] job.yaml: program.max_points: layer 1 bead 7 has 293 points, and" in done.err
+    assert done.status == 2
+    assert "error[BEAD_TOO_LONG] job.yaml: program.max_points: layer 1 bead 7 has 293 points, and" in done.err
     assert "with its approach" not in done.err  # told before joints were planned

@@ -89,8 +89,8 @@ def test_a_face_of_which_there_are_no_triangles_at_all_is_named(monkeypatch):
 
 def test_a_face_no_wider_than_vertices_are_made_one_needs_no_triangles():
     """As of a body whose side was drawn with a step of two millionths of a millimetre."""
-    step = [Vector(0, 0, 0), Vector(20, 0, 0), Vector(20, 6, 0), Vector(10, 6, 0), Vector(10, 6.000002, 0), Vector(0, 6.000002, 0)]
-    solid = Part.Face(Part.makePolygon([*step, step[0]])).extrude(Vector(0, 0, 3))
+    step = [(0, 0), (20, 0), (20, 6), (10, 6), (10, 6.000002), (0, 6.000002), (0, 0)]
+    solid = Part.Face(Part.makePolygon([Vector(x, y, 0) for x, y in step])).extrude(Vector(0, 0, 3))
     assert min(face.Area for face in solid.Faces) == pytest.approx(6e-6, rel=1e-3)
     (body,), issues = hub.bodies_of(solid, "plate", 0.1, 0.0, True)
     assert not issues and (Edges(body.triangles).count == 2).all()

@@ -39,8 +39,8 @@ def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
     points, layer, index = max(((len(bead), layer, index) for layer, index, bead in toolpath), default=(0, 0, 0))
     if points > max_points:
         raise InputError(
-            "BEAD_TOO_LONG", "program.max_points", f"layer {layer} bead {index} has {points} points, and loading another part "
-            f"within a bead would stop the robot while it deposits; use at least {points + BESIDE}, or a larger "
+            "BEAD_TOO_LONG", "program.max_points", f"layer {layer} bead {index} has {points} points, and loading another "
+            f"part within a bead would stop the robot while it deposits; use at least {points + BESIDE}, or a larger "
             "strategy.chord_error",
         )
 

@@ -21,12 +21,12 @@ def bead(layer, points, speed=SPEED):
     joints = np.zeros((len(rows), 6))
     joints[:, :2] = points[rows, :2] / LEVER
     up = np.tile([0.0, 0.0, 1.0], (len(rows), 1))
-    return dict(
-        deposit=deposit, layer=np.full(len(rows), layer), bead=np.zeros(len(rows), int),
-        point=np.r_[0, 0, np.arange(len(points))], position=points[rows], build=up, tool=up,
-        speed=np.where(deposit, speed, 100.0), width=np.full(len(rows), np.nan), joints=joints,
-        duration=np.r_[0.5, 0.1, way / speed], role=np.r_[TRAVEL, APPROACH, np.full(len(points), DEPOSIT)],
-    )
+    return {
+        "deposit": deposit, "layer": np.full(len(rows), layer), "bead": np.zeros(len(rows), int),
+        "point": np.r_[0, 0, np.arange(len(points))], "position": points[rows], "build": up, "tool": up,
+        "speed": np.where(deposit, speed, 100.0), "width": np.full(len(rows), np.nan), "joints": joints,
+        "duration": np.r_[0.5, 0.1, way / speed], "role": np.r_[TRAVEL, APPROACH, np.full(len(points), DEPOSIT)],
+    }
 
 
 def motion(*beads):
@@ -61,7 +61,7 @@ def test_what_comes_late_enough_stays_to_the_bit():
 
 
 def test_no_move_is_shorter_than_a_step_and_no_point_lies_off_the_way(wild):
-    told, rows = steps.told(wild, "ur", CHORD, 50.0)
+    told, _ = steps.told(wild, "ur", CHORD, 50.0)
     assert 0.5 * len(wild) < len(told) < 0.9 * len(wild)
     inside = told.deposit & (told.point > 0)
     assert told.duration[inside].min() >= 0.002
