@@ -176,8 +176,8 @@ class Program:
     empty for robots, whose axes go by number. nc: for five-axis machines alone.
     external_kinds: 'linear' or 'rotary' of each axis beside the robot, which are the last ones of all. With rotary ones the
     part is on the last mechanism, and station is the program's origin on its face; a linear one is a track that carries the
-    robot. unit: what the controller calls that mechanism; first_external: the number there of the first of these axes,
-    from 1.
+    robot. unit: what the controller calls the mechanism of the part, or a track alone; first_external: the number there of
+    the first of these axes, from 1.
     """
 
     name: str
@@ -212,13 +212,18 @@ class Program:
 
     @property
     def on_track(self) -> bool:
-        """Whether the axes beside the robot carry it, and not the part."""
+        """Whether an axis beside the robot carries it."""
         return LINEAR in self.external_kinds
 
     @property
     def on_positioner(self) -> bool:
         """Whether axes beside the robot carry the part, which its positions then are seen from."""
-        return bool(self.external_kinds) and not self.on_track
+        return ROTARY in self.external_kinds
+
+    @property
+    def slides(self) -> Mask:
+        """(axes,) bool: the track among all axes of a robot and those beside it."""
+        return np.array([*(False,) * self.own_axes, *(kind == LINEAR for kind in self.external_kinds)], dtype=np.bool_)
 
     @property
     def moves(self) -> tuple[Moves, ...]:

@@ -117,7 +117,7 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     controllers.check_wrist(cell.machine, parameters.motion, parameters.post)
     controllers.check_pulses(cell.machine, parameters.motion, parameters.post)
     catalogue.refuse(
-        parameters.post, parameters.motion, cell.setup, cell.external is not None, programs.on_table(cell, parameters)
+        parameters.post, parameters.motion, cell.setup, programs.external_kinds(cell), programs.on_table(cell, parameters)
     )
     if process.wire.feed_mode != "constant" and post.NO_WIRE and not parameters.dry_run:
         raise refusals.wire_refused(post.NO_WIRE)

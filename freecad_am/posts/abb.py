@@ -10,6 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..core.issues import InputError
 from ..core.program import (
     LINEAR_MOVE,
@@ -130,9 +133,10 @@ def _refuse(program: Program) -> None:
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
-    if program.on_track:
-        yield f"eax_{'abcdef'[program.first_external - 1]} is the track in mm, which moves the base frame of the robot"
-    elif program.external_kinds:
+    for axis in np.flatnonzero(program.slides).tolist():
+        letter = "abcdef"[program.first_external + axis - AXES - 1]
+        yield f"eax_{letter} is the track in mm, which moves the base frame of the robot"
+    if program.on_positioner:
         yield f"{text.WORK_OBJECT} is on the face of {program.unit}, and seen from its user frame"
     if program.setup == "part-on-robot":
         yield f"{text.TOOL} is the nozzle, which stands; {text.WORK_OBJECT} is what the robot holds"
@@ -169,7 +173,7 @@ def _module(
     used: set[str] = set()
     for piece in pieces:
         if isinstance(piece, Run):
-            lines += _motion(piece, program.first_external, program.on_track)
+            lines += _motion(piece, program.first_external, program.slides)
             used.update(word.rpartition(",")[2] for word in piece.words[piece.start : piece.stop])
         else:
             lines += piece
@@ -179,13 +183,13 @@ def _module(
     return text.module(name, routine, remarks, text.data(tool, work_object, held, zones, moved_by), lines)
 
 
-def _motion(run: Run, first: int, on_track: bool) -> list[str]:
-    """Lines through all points of a run. first: the number of the first axis beside the robot, which is a track or not."""
+def _motion(run: Run, first: int, slides: NDArray[np.bool_]) -> list[str]:
+    """Lines through all points of a run. first: the number of the first axis beside the robot; slides: (axes,) the track."""
     moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation != LINEAR_MOVE:
-        return text.joint_moves(numbers.shown(moves.joints[rows], on_track), run.words[rows], first)
+        return text.joint_moves(numbers.shown(moves.joints[rows], slides), run.words[rows], first)
     assert moves.position is not None and moves.rotation is not None
     return text.linear_moves(
         numbers.positions(moves.position[rows]), numbers.quaternions(moves.rotation[rows]),
-        numbers.shown(moves.joints[rows, AXES:], on_track), run.words[rows], first,
+        numbers.shown(moves.joints[rows, AXES:], slides[AXES:]), run.words[rows], first,
     )

@@ -16,6 +16,7 @@ from ..core.issues import InputError
 Array = NDArray[np.float64]
 
 _DECLARED = re.compile(r"LOCAL (?:PERS (tooldata|wobjdata)|CONST (speeddata|zonedata)) (\w+):=(\[.*\]);$")
+_TRACK = re.compile(r"! eax_([a-f]) is the track in mm\b")
 _MODULE_LINE, _PROC_LINE = re.compile(r"MODULE ([A-Za-z]\w*)$"), re.compile(r"PROC ([A-Za-z]\w*)\(\)$")
 # deg/s: a move that turns the tool faster would be slowed down
 _TURNING = 500.0
@@ -39,7 +40,8 @@ class Frames:
 
 @dataclass
 class Module:
-    """A file: the statements of its one routine with the numbers of their lines, and its data by name."""
+    """A file: the statements of its one routine with the numbers of their lines, and its data by name. slides: numbers of
+    the axes beside the robot that a remark calls the track."""
 
     file: str
     name: str
@@ -50,6 +52,7 @@ class Module:
     speeds: set[str] = field(default_factory=set)
     zones: dict[str, float] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
+    slides: tuple[int, ...] = ()
     _paired: dict[tuple[str, str], Frames] = field(default_factory=dict)
 
     def tool_and_object(self, tool: str, work_object: str, where: str) -> Frames:
@@ -85,7 +88,9 @@ def _module(file: str, lines: list[str]) -> Module:
     assert routine is not None
     module = Module(file, title[1].lower(), routine[1], numbered[routines[0] + 1 : -2])
     for number, line in numbered[1 : routines[0]]:
-        if not line.startswith("!"):
+        if track := _TRACK.match(line):
+            module.slides += ("abcdef".index(track[1]) + 1,)
+        elif not line.startswith("!"):
             _declare(module, line, f"{file} line {number}")
     return module
 

@@ -19,6 +19,7 @@ from .parts import place
 from .refusals import speeds_within
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS = 4, 3, 7
 # mm/s: the least that its three decimals tell well, and the largest of RAPID's own speeds (v7000)
@@ -37,11 +38,9 @@ class Pose(NamedTuple):
     quaternion: tuple[float, ...]
 
 
-def shown(joints: Array, on_track: bool) -> Array:
-    """Joint values (n, axes) in degrees as the text has them, the last one in mm where it is a track."""
-    values = np.degrees(joints)
-    if on_track:
-        values[:, -1] = joints[:, -1]
+def shown(joints: Array, slides: Mask) -> Array:
+    """Joint values (n, axes) in degrees as the text has them, those that slide (axes,) in mm."""
+    values = np.where(slides, joints, np.degrees(joints))
     rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
     return rounded
 

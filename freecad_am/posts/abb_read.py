@@ -46,8 +46,8 @@ def _floats() -> array[float]:
 @dataclass
 class _Run:
     """What happened so far while the routines are followed, column by column. beside: axes beside the robot as they stand,
-    of which those `used` have values, `unit` theirs, and whether they are a track; active: the mechanical unit that the
-    module has activated.
+    of which those `used` have values, `unit` theirs, and `slides` those that a remark calls the track; active: the
+    mechanical unit that the module has activated.
 
     told: s of joint moves, mm/s of linear ones, half: of its last digit. rounding: mm, NaN of moves that stop. joints,
     places, turns: the numbers of a move as they stand. nearest: ConfL is off, and positions are taken as the arm reaches
@@ -69,7 +69,7 @@ class _Run:
     beside: list[str] = field(default_factory=list)
     used: tuple[int, ...] | None = None
     unit: str = ""
-    on_track: bool = False
+    slides: tuple[int, ...] = ()
     active: str = ""
     output: str = ""
     on: bool = False
@@ -94,7 +94,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     first = [module for module in found.values() if module.routine.lower() == _ROUTINE]
     if len(first) != 1:
         raise unreadable("program", f"{len(first)} modules have a routine main, expected one")
-    run = _Run(found)
+    run = _Run(found, slides=first[0].slides)
     _follow(first[0], run)
     if not run.told:
         raise unreadable("program", "there are no moves")
@@ -188,16 +188,18 @@ def _move(module: Module, move: re.Match[str], run: _Run, where: str) -> None:
 
 def _beside(texts: list[str], frames: Frames, run: _Run, where: str) -> None:
     """Keep the values of the axes beside the robot: of the same ones in all moves, those of the unit that the work object is
-    on, which is active. Where the work object stands, it is one axis, the track."""
+    on, which is active, and the track. Where the work object stands, the track is the only one."""
     used = tuple(number for number, text in enumerate(texts, 1) if text != "9E9")
     if used != tuple(range(used[0], used[0] + len(used)) if used else ()) or run.used not in (None, used):
         raise unreadable(where, "other axes beside the robot have values than in moves before, or not all in a row")
-    on_track = not frames.unit and len(used) == 1
-    if not on_track and (bool(used) != bool(frames.unit) or run.active != frames.unit):
+    if len(run.slides) > 1 or not {*run.slides} <= {*used}:
+        raise unreadable(where, "more than one axis is called the track, or it has no value")
+    moved = set(used) - set(run.slides)
+    if bool(moved) != bool(frames.unit) or (run.active != frames.unit and (moved or not used)):
         raise unreadable(where, "axes beside the robot have no value, or their unit is not active, or not the object's")
     if run.used is not None and run.unit != run.active:
         raise unreadable(where, "another unit is active than in moves before")
-    run.used, run.unit, run.on_track = used, run.active, on_track
+    run.used, run.unit = used, run.active
     run.beside += [",".join(texts[number - 1] for number in used)] if used else []
 
 
@@ -209,15 +211,15 @@ def _moves(run: _Run) -> ReadMoves:
     joints[~linear, :6] = np.radians(_numbers(run.joints, 6))
     if used:
         beside = _numbers(run.beside, len(used))
-        joints[:, 6:] = beside if run.on_track else np.radians(beside)
-    turning = run.joints if run.on_track else run.joints + run.beside
+        joints[:, 6:] = np.where(np.isin(used, run.slides), beside, np.radians(beside))
+    turning = run.joints if used == run.slides else run.joints + run.beside
     read_moves = ReadMoves(
         None if np.isnan(joints).all() else joints, float(np.radians(_half_digit(turning))),
         np.where(linear, np.nan, told),
         deposit, linear, np.isnan(rounding), tuple(run.events), speed=np.where(linear, told, np.nan),
         speed_digits=float(half[linear].max(initial=0.0)), duration_digits=half, rounding=rounding,
         unit=run.unit if used else "", first_external=used[0] if used else 1,
-        linear_digits=_half_digit(run.beside) if run.on_track else 0.0,
+        linear_digits=_half_digit(run.beside) if run.slides else 0.0,
     )
     return _seen(read_moves, run) if linear.any() else read_moves
 

@@ -49,13 +49,13 @@ def load(name: str) -> Post:
     return found
 
 
-def refuse(name: str, motion: str, setup: str, coordinated: bool, carried: tuple[float, ...] | None) -> None:
-    """InputError of a post for what it cannot say: this motion of this set-up, with external axes, or on a rotary table, its
-    `carried` frame None on others."""
+def refuse(name: str, motion: str, setup: str, beside: tuple[str, ...], carried: tuple[float, ...] | None) -> None:
+    """InputError of a post for what it cannot say: this motion of this set-up, with external axes of the kinds `beside`, as
+    programs have them, or on a rotary table, its `carried` frame None on others."""
     post: Any = load(name)
     post.refuse_setup(motion, setup)
-    if coordinated and name in _COORDINATED_IN_JOINTS:
-        post.refuse_coordinated(motion)
+    if beside and name in _COORDINATED_IN_JOINTS:
+        post.refuse_coordinated(motion, beside)
     if carried is not None and motion == "cartesian" and name in _LEVEL_TABLE:
         post.refuse_tilt(carried)
 

@@ -18,6 +18,7 @@ from ..core.issues import InputError
 from ..core.program import (
     FIRST_SHARE,
     LINEAR_MOVE,
+    ROTARY,
     Block,
     Call,
     DepositOff,
@@ -35,7 +36,15 @@ from .fanuc_read import read
 from .names import Naming
 from .on_controller import on_controller
 from .parts import Piece, Run, continued, grouped, packed
-from .refusals import CALL, refuse_calls_of_own, refuse_cooling, refuse_external, refuse_incomplete, refuse_wire
+from .refusals import (
+    CALL,
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_external,
+    refuse_incomplete,
+    refuse_named_track,
+    refuse_wire,
+)
 
 __all__ = ["read", "write"]
 
@@ -110,14 +119,15 @@ def refuse_setup(motion: str, setup: str) -> None:
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post fanuc cannot write {setup}")
 
 
-def refuse_coordinated(motion: str) -> None:
-    """Raises InputError COORDINATED_MOTION for what cannot be said of a part on a positioner."""
-    if motion == "cartesian":
-        raise InputError(
-            "COORDINATED_MOTION", "program.motion",
-            "linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions"
-            " are then seen from was not confirmed; use `motion: joint`, whose times hold the speed",
-        )
+def refuse_coordinated(motion: str, beside: tuple[str, ...]) -> None:
+    """Raises InputError COORDINATED_MOTION for what cannot be said with axes of these kinds beside the robot."""
+    if motion != "cartesian":
+        return
+    why = ("linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions"
+           " are then seen from was not confirmed") if ROTARY in beside else (
+        "whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up,"
+        " and was not confirmed")
+    raise InputError("COORDINATED_MOTION", "program.motion", f"{why}; use `motion: joint`, whose times hold the speed")
 
 
 def _refuse(program: Program) -> None:
@@ -125,7 +135,8 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "fanuc", AXES + len(program.external_kinds))
     refuse_external(program, len(program.external_kinds), f"[2-{text.GROUPS}]", f"its motion group, 2 to {text.GROUPS}")
     if program.external_kinds:
-        refuse_coordinated(program.motion)
+        refuse_coordinated(program.motion, program.external_kinds)
+    refuse_named_track(program, "E1 of the robot's own motion group")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
     for block in program.blocks:
@@ -158,6 +169,8 @@ def _refuse_endless_steps(program: Program) -> None:
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
+    for axis in np.flatnonzero(program.slides).tolist():
+        yield f"E1 is the track e{axis - AXES + 1}"
     for axis in np.flatnonzero(program.endless):
         yield f"axis {axis + 1} turns without end: set it up for Continuous Turn (option)"
     if program.dry_run:
@@ -210,8 +223,8 @@ def _file(program: Program, name: str, comment: str, head: list[str], pieces: Se
 
 
 def _group(program: Program) -> int:
-    """The motion group of the axes beside the robot; the robot's own where there are none."""
-    return int(program.unit) if program.external_kinds else 1
+    """The motion group of the axes that carry the part; the robot's own where there are none."""
+    return int(program.unit) if program.on_positioner else 1
 
 
 def _motion_lines(program: Program, run: Run, points_before: int) -> list[str]:
@@ -229,9 +242,14 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
         return ""
     if program.motion == "joint":
         joints = np.concatenate([run.moves.joints[run.start : run.stop] for run in runs])
-        degrees, endless = np.round(np.degrees(joints), 3), np.array(program.endless)
-        degrees[:, endless] = numbers.within_half_turn(degrees[:, endless])
-        return text.joint_records(degrees + 0.0, program.user_frame, program.tool_frame, _group(program))
+        slides, endless = program.slides, np.array(program.endless)
+        told = np.round(np.where(slides, joints, np.degrees(joints)), 3)
+        told[:, endless] = numbers.within_half_turn(told[:, endless])
+        told += 0.0
+        return text.joint_records(
+            told[:, :AXES], told[:, slides], told[:, AXES:][:, ~slides[AXES:]], program.user_frame, program.tool_frame,
+            _group(program),
+        )
     poses, configuration = [], []
     for run in runs:
         moves, part = run.moves, slice(run.start, run.stop)

@@ -24,13 +24,14 @@ Index = NDArray[np.intp]
 
 _TOLD = np.array([(1.0, np.nan, np.nan), (0.001, np.nan, np.nan), (np.nan, 1.0, np.nan), (np.nan, np.nan, 0.01)])
 _SPEED, _SHARE = UNITS.index("mm/sec"), UNITS.index("%")
-_MOST_CNT = 100.0
+_MOST_CNT, _OWN = 100.0, 6
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
 _CALL = re.compile(r"CALL (\w+)$")
 _CALLS = re.compile(r"^ *\d*: *CALL (\w+) *; *\r?$", re.MULTILINE)
 _FRAME = re.compile(r"U(FRAME|TOOL)_NUM=(\d+)$")
 _COOL = re.compile(r"WAIT AI\[(\d+)(?::[^\]]*)?\]<(-?\d+(?:\.\d*)?)$")
 _LAYER = re.compile(r"!layer (\d+)$")
+_TRACK = re.compile(r"!E1 is the track e(\d)$")
 _WAIT = re.compile(r"WAIT +(\d*\.(\d+))\(sec\)$")
 _INPUT = re.compile(r"WAIT DI\[(\d+)(?::[^\]]*)?\]=ON$")
 _HARMLESS = re.compile(r"$|!|//|--eg:")
@@ -45,13 +46,16 @@ class _Run:
     """What happened so far while the programs are followed: packed, for a list of floats takes four times the memory.
 
     pending: records of the listing at hand that were moved to and are not among `values` yet. recorded, numbers: frames of
-    the record that was looked at last, and the numbers of those selected.
+    the record that was looked at last, and the numbers of those selected. track: which of the axes beside the robot a remark
+    calls the track, 0 for none, and whether positions have one. moved: groups that headers name.
     """
 
     cartesian: bool = False
     values: list[Array] = field(default_factory=list)
     configuration: list[tuple[str, ...]] = field(default_factory=list)
+    moved: frozenset[str] | None = None
     group: str | None = None
+    track: tuple[int, bool] = (0, False)
     digits: float = 0.0
     pending: list[Index] = field(default_factory=list)
     duration: array[float] = field(default_factory=_floats)
@@ -73,13 +77,20 @@ class _Run:
         """Something happens before the next move."""
         self.events.append(Event(len(self.duration), kind, value, digits))
 
+    def begin(self, listing: Listing) -> None:
+        """Look at the groups of a listing; one without moves may name none."""
+        groups = listing.records.moved
+        if groups and self.moved not in (None, groups):
+            raise unreadable(listing.file, "its header names other motion groups than programs before")
+        self.moved = groups or self.moved
+
     def take(self, listing: Listing) -> None:
         """Take over the records that are pending."""
         if self.pending:
             rows, told = np.concatenate(self.pending), listing.records
             if self.values and (self.group, self.values[0].shape[1]) != (told.group, told.values.shape[1]):
                 raise unreadable(listing.file, "it moves other groups than those before")
-            self.group = told.group
+            self.group, self.track = told.group, (self.track[0], told.track)
             self.values.append(told.values[rows])
             self.digits = max(self.digits, told.digits)
             if self.cartesian:
@@ -109,13 +120,14 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 def _moves(run: _Run) -> ReadMoves:
     cartesian, values, digits = run.cartesian, np.concatenate(run.values), run.digits
-    joints, half_turn = (None, 0.0) if cartesian else (np.radians(values), float(np.radians(digits)))
+    joints, half_turn = (None, 0.0) if cartesian else (_joints(run, values), float(np.radians(digits)))
     deposit, linear = (np.array(column, dtype=np.bool_) for column in (run.deposit, run.linear))
     blend = np.array(run.blend)
     told = ReadMoves(
         joints, half_turn, np.array(run.duration), deposit, linear, np.isnan(blend), tuple(run.events),
         speed=np.array(run.speed), share=np.array(run.share), share_digits=0.005, blend=blend,
         user_frame=np.array(run.user_frame), tool_frame=np.array(run.tool_frame), unit=run.group or "",
+        linear_digits=digits if run.track[1] else 0.0,
     )
     if not cartesian:
         return told
@@ -127,6 +139,17 @@ def _moves(run: _Run) -> ReadMoves:
             words[:, 0] == "F", words[:, 1] == "U", words[:, 2] == "T", words[:, 3:].astype(np.float64)
         ),
     )
+
+
+def _joints(run: _Run, values: Array) -> Array:
+    """(n, axes) rad and mm of the values of records, the track where a remark says that it is among the axes beside."""
+    number, told = run.track
+    if told != bool(number) or number > values.shape[1] - _OWN:
+        raise unreadable("program", "positions have a track and no remark says which axis it is, or the other way round")
+    if not told:
+        return np.asarray(np.radians(values))
+    rest = np.radians(np.delete(values, _OWN, axis=1))
+    return np.asarray(np.insert(rest, _OWN + number - 1, values[:, _OWN], axis=1))
 
 
 def _rotation(wpr: Array) -> Array:
@@ -146,6 +169,7 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
     if name in callers:
         raise unreadable(files[name][0], "it calls itself")
     listing = listing_of(*files[name])
+    run.begin(listing)
     for position, (number, statement, first, end) in enumerate(listing.instructions):
         if end > first:
             _move(listing, slice(first, end), run)
@@ -168,6 +192,8 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
             run.happens("input", float(given[1]))
         elif layer := _LAYER.match(statement):
             run.happens("layer", float(layer[1]))
+        elif track := _TRACK.match(statement):
+            run.track = int(track[1]), run.track[1]
         elif frame := _FRAME.match(statement):
             if run.frame.setdefault(frame[1], frame[2]) != frame[2]:
                 raise unreadable(f"{listing.file} line {number}", f"a second U{frame[1]} is selected")

@@ -32,10 +32,10 @@ _ONE = re.compile(
     r"\s*\n" + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)") + r"\s*"
 )
 _NUMBERED, _GROUP, _NAMES, _VALUES = 1, 2, range(5, 17, 2), range(6, 17, 2)
-# the same with the axes of another motion group, in the same frames
-_TWO = re.compile(
-    _FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6)
-    + r"\s*GP([2-8]):\s*UF : (\d+|F), UT : (\d+|F),((?:\s*J\d ?= *-?\d*\.\d+ *deg,?)+)\s*\};"
+# the same with a track, and the axes of another motion group, in the same frames
+_MORE = re.compile(
+    _FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"(?:,\s*E1 ?= *(-?\d*\.\d+) *mm)?"
+    r"(?:\s*GP([2-8]):\s*UF : (\d+|F), UT : (\d+|F),((?:\s*J\d ?= *-?\d*\.\d+ *deg,?)+))?\s*\};"
 )
 _AXIS = re.compile(r"J(\d) ?= *(-?\d*\.\d+) *deg(,?)")
 _CONFIGURATION = r"CONFIG : '([NF]) ([UD]) ([TB]), *(-?\d), *(-?\d), *(-?\d)',\s*"
@@ -43,8 +43,9 @@ _POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm d
 
 
 class Records(NamedTuple):
-    """Positions of a file by their numbers (n,), values (n, 6 and those of another motion group), configurations, frames,
-    half a last digit, and the number of that group."""
+    """Positions of a file by their numbers (n,), values (n, 6, that of a track, and those of another motion group),
+    configurations, frames, half a last digit, the number of that group, whether there is a track, and the numbers of all
+    groups that the header names."""
 
     point: Index
     values: Array
@@ -53,6 +54,8 @@ class Records(NamedTuple):
     digits: float
     cartesian: bool
     group: str = ""
+    track: bool = False
+    moved: frozenset[str] = frozenset()
 
 
 def records_of(file: str, lines: list[str], text: str, positions: int) -> Records:
@@ -60,7 +63,8 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
     from 0. InputError UNREADABLE_PROGRAM for what is not understood, or recorded twice."""
     # counting is many times as fast as looking at every line
     several = text.count("GP") > text.count("GP1:") and re.search(r"^ *GP[2-8]:", text, re.MULTILINE)
-    found = _of_two_groups(file, text) if several else _joint_records(text) or _any_records(file, text, positions)
+    more = several or "E1" in text
+    found = _with_more(file, text) if more else _joint_records(text) or _any_records(file, text, positions)
     _check_groups(file, lines, found)
     order = np.argsort(found.point, kind="stable")
     if (np.diff(found.point[order]) == 0).any():
@@ -68,38 +72,45 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
     some = order.tolist()
     return found._replace(
         point=found.point[order], values=found.values[order], frames=[found.frames[row] for row in some],
-        configuration=[found.configuration[row] for row in some],
+        configuration=[found.configuration[row] for row in some], moved=_groups_of(lines),
     )
+
+
+def _groups_of(lines: list[str]) -> frozenset[str]:
+    """The motion groups that a program moves, by its header."""
+    told = next((line.partition("=")[2].strip(" ;").split(",") for line in lines if line.startswith("DEFAULT_GROUP")), ["1"])
+    return frozenset(str(number) for number, word in enumerate(told, 1) if word == "1")
 
 
 def _check_groups(file: str, lines: list[str], found: Records) -> None:
     """The groups that a program moves are those that it has positions of."""
-    told = next((line.partition("=")[2].strip(" ;").split(",") for line in lines if line.startswith("DEFAULT_GROUP")), ["1"])
-    moved = {str(number) for number, word in enumerate(told, 1) if word == "1"}
+    moved = _groups_of(lines)
     if len(found.point) and moved != {"1", found.group or "1"}:
         raise unreadable(file, f"it moves groups {', '.join(sorted(moved))}, and has positions of others")
 
 
-def _of_two_groups(file: str, text: str) -> Records:
-    """The joint positions of a text of two motion groups, all alike."""
+def _with_more(file: str, text: str) -> Records:
+    """The joint positions of a text with a track or two motion groups, all alike."""
     values, frames, groups, decimals, points = [], [], set(), 99, []
-    for record in _TWO.finditer(text):
-        point, user, tool, *own, group, other_user, other_tool, rest = record.groups()
-        beside = _AXIS.findall(rest)
+    for record in _MORE.finditer(text):
+        point, user, tool, *own, track, group, other_user, other_tool, rest = record.groups()
+        beside = _AXIS.findall(rest or "")
         count = len(beside)
         due = [(str(axis), "," if axis < count else "") for axis in range(1, count + 1)]
-        if [(axis, comma) for axis, _, comma in beside] != due or (user, tool) != (other_user, other_tool):
+        if [(axis, comma) for axis, _, comma in beside] != due or (group and (user, tool) != (other_user, other_tool)):
             raise unreadable(file, f"the second group of P[{point}] is not understood")
-        texts = [*own, *(value for _, value, _ in beside)]
+        texts = [*own, *([track] if track else []), *(value for _, value, _ in beside)]
         points.append(int(point))
         values.append([float(value) for value in texts])
         frames.append((user, tool))
-        groups.add((group, count))
+        groups.add((group or "", count, bool(track)))
         decimals = min(decimals, *(len(value.partition(".")[2]) for value in texts))
     if len(points) != len(_RECORD_START.findall(text)) or len(groups) != 1:
         raise unreadable(file, "its positions are not all of the same motion groups, or one is not understood")
-    number, half = groups.pop()[0], 0.5 * 10.0**-decimals
-    return Records(np.array(points, dtype=np.intp), np.array(values), [()] * len(points), frames, half, False, number)
+    (number, _, track_told), half = groups.pop(), 0.5 * 10.0**-decimals
+    return Records(
+        np.array(points, dtype=np.intp), np.array(values), [()] * len(points), frames, half, False, number, track_told,
+    )
 
 
 def _joint_records(text: str) -> Records | None:

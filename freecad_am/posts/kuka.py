@@ -34,6 +34,7 @@ from .refusals import (
     refuse_endless,
     refuse_external,
     refuse_incomplete,
+    refuse_named_track,
     refuse_wire,
     refuse_without_positions,
     refuse_without_speeds,
@@ -123,9 +124,7 @@ def _refuse(program: Program) -> None:
     axes = AXES + len(program.external_kinds)
     refuse_incomplete(program, "kuka", axes)
     refuse_external(program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16")
-    if program.on_track and program.unit:
-        raise InputError("UNSUPPORTED_AXES", "program.axes.unit", "a track has no MACHINE_DEF to be named: the robot's own "
-                         "base is on it; leave unit out")
+    refuse_named_track(program, "what the robot's own base is on, which is not told by a MACHINE_DEF")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     for what, number, last in (("tool_frame", program.tool_frame, LAST_TOOL), ("user_frame", program.user_frame, LAST_BASE)):
@@ -152,8 +151,10 @@ def _own_remarks(program: Program) -> Iterator[str]:
         if six is not None:
             values = text.frames(np.array([six[:3]]), text.turned(six[3:])[None])[0]
             yield what + "".join(f" {axis} {value:.3f}" for axis, value in zip("XYZABC", values.tolist(), strict=True))
-    if program.on_track:
-        yield f"E{program.first_external} is the track in mm, which carries $ROBROOT; BASE_DATA stands in the world"
+    for axis in np.flatnonzero(program.slides).tolist():
+        stands = f"the base of MACHINE_DEF[{program.unit}]" if program.on_positioner else "BASE_DATA"
+        yield (f"E{program.first_external + axis - AXES} is the track in mm, which carries $ROBROOT; {stands} stands in the"
+               " world")
     if program.dry_run:
         yield "dry run: no deposit"
 

@@ -32,6 +32,7 @@ _SELECTED = re.compile(r"BAS\(#(BASE|TOOL),(\d+)\)$")
 _SWITCHED, _PAUSE = re.compile(r"\$OUT\[(\d+)\]=(TRUE|FALSE)$"), re.compile(r"WAIT SEC (\d+(?:\.(\d+))?)$")
 _AWAITED, _LAYERED = re.compile(r"WAIT FOR \$IN\[(\d+)\]==TRUE$"), re.compile(r"; layer (\d+)$")
 _CALLED, _HEADED = re.compile(r"([A-Za-z]\w*)\(\)$"), re.compile(r"DEF ([A-Za-z]\w*)\(\)$")
+_TRACK = re.compile(r"; E([1-6]) is the track in mm\b")
 _INITIAL, _ON_FLANGE, _TURNING = "BAS(#INITMOV,0)", "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR"
 
 
@@ -45,7 +46,7 @@ class _Run:
 
     state: what was set last, by its name; a module counts on nothing that another one has set. standing: nothing moves, for
     the program has waited. beside: values of the axes beside the robot at each move; unit: the mechanism that BASE
-    is coupled to, and numbers of its axes.
+    is coupled to, and numbers of all these axes; slides: of the one that a remark calls the track.
     """
 
     files: dict[str, tuple[str, list[str]]]
@@ -64,6 +65,7 @@ class _Run:
     beside: list[Array] = field(default_factory=list)
     unit: str | None = None
     numbers: tuple[int, ...] = ()
+    slides: tuple[int, ...] = ()
     output: str = ""
     on: bool = False
     standing: bool = True
@@ -135,6 +137,8 @@ def _go(name: str, run: _Run) -> None:
             run.state[line] = 1.0
         elif layer := _LAYERED.match(line):
             run.happens("layer", float(layer[1]))
+        elif track := _TRACK.match(line):
+            run.slides += (int(track[1]),)
         elif not line.startswith(";"):
             _done(line, run, where)
     if not run.standing:
@@ -190,8 +194,8 @@ def _moved(line: str, run: _Run, where: str) -> None:
     beside = _EXTERNAL.findall(match[7])
     _beside(tuple(int(number) for number, _ in beside), 100.0 if straight else state["percent"], run, where)
     run.beside.append(np.array([value for _, value in beside], dtype=np.float64))
-    if beside:
-        run.counted("joints" if run.unit else "slides", tuple(value for _, value in beside))
+    for number, value in beside:
+        run.counted("slides" if int(number) in run.slides else "joints", (value,))
     if straight:
         run.counted("places", texts[:3])
         run.counted("turns", texts[3:])
@@ -211,12 +215,12 @@ def _beside(numbers: tuple[int, ...], share: float, run: _Run, where: str) -> No
     """Look at the axes beside the robot of a move: the same ones in all of them, coupled, and as fast as the move needs, in
     percent: a linear one goes at its own speed only where they may be as fast as they can."""
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
-    on_track = len(numbers) == 1 and not unit
-    in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
-    if not in_order or (bool(numbers) != bool(unit) and not on_track):
-        raise _not_read(where, "the axes beside the robot are not told in order, or BASE is not coupled to what they move")
     if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):
         raise _not_read(where, "moves with other axes beside the robot are mixed")
+    moved = set(numbers) - set(run.slides)
+    in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
+    if not in_order or bool(moved) != bool(unit) or len(run.slides) > 1 or not {*run.slides} <= {*numbers}:
+        raise _not_read(where, "the axes beside the robot are not told in order, or BASE is not coupled to what they move")
     if any(run.state.get(f"E{number}") != share for number in numbers):
         raise _not_read(where, f"axes beside the robot do not run at {share:.0f} % of their speeds")
     run.unit, run.numbers = unit, numbers
@@ -230,8 +234,7 @@ def _told(run: _Run) -> ReadMoves:
     any_line = bool(linear.any())
     beside = np.array(run.beside)
     joints = np.radians(np.hstack((np.where(seen, np.nan, values), beside)))
-    if run.numbers and not run.unit:
-        joints[:, 6:] = beside
+    joints[:, 6:] = np.where(np.isin(run.numbers, run.slides), beside, joints[:, 6:])
     return ReadMoves(
         None if np.isnan(joints).all() else joints, float(np.radians(half.get("joints", 0.0))),
         np.full(len(linear), np.nan), deposit, linear, np.isnan(rounding), tuple(run.events),

@@ -17,6 +17,7 @@ from .parts import place
 from .refusals import speeds_within
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 END_OF_LINE = "\r\n"
 WIDTH = 80  # of remarks
@@ -47,11 +48,9 @@ def wait(seconds: float) -> list[str]:
     return [f"WAIT SEC {max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
 
 
-def shown(joints: Array, on_track: bool) -> Array:
-    """Axis values (n, axes) in degrees as the text has them, the last one in mm where it is a track."""
-    values = np.degrees(joints)
-    if on_track:
-        values[..., -1] = joints[..., -1]
+def shown(joints: Array, slides: Mask) -> Array:
+    """Axis values (n, axes) in degrees as the text has them, those that slide (axes,) in mm."""
+    values = np.where(slides, joints, np.degrees(joints))
     rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
     return rounded
 
@@ -86,10 +85,8 @@ class Lines:
 
     def __init__(self, program: Program) -> None:
         self._blend = program.blend
-        self._on_track = program.on_track
-        self._nominal = np.degrees(np.array(program.max_speed))
-        if self._on_track:
-            self._nominal[-1] = program.max_speed[-1]
+        self._slides = program.slides
+        self._nominal = np.where(self._slides, program.max_speed, np.degrees(np.array(program.max_speed)))
         self._before: Array | None = None
         self._own = program.own_axes
         numbers = [program.first_external + k for k in range(len(program.external_kinds))]
@@ -102,7 +99,7 @@ class Lines:
 
     def __call__(self, moves: Moves) -> Sequence[str]:
         """`settings|move` of each move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
-        values = shown(moves.joints, self._on_track)
+        values = shown(moves.joints, self._slides)
         if moves.interpolation == LINEAR_MOVE:
             assert moves.position is not None and moves.rotation is not None
             size = self._rounding(moves)

@@ -67,9 +67,17 @@ def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
             "UNSUPPORTED_AXES", "program.axes.first",
             f"the axes beside the robot would end with number {end}, and the controller has {last}; use a smaller first one",
         )
-    if not re.fullmatch(unit, program.unit) and not (program.on_track and not program.unit):
+    if not re.fullmatch(unit, program.unit) and (program.on_positioner or program.unit):
         raise InputError(
             "UNSUPPORTED_AXES", "program.axes.unit", f"{program.unit!r} is no positioner of this controller; give {form}"
+        )
+
+
+def refuse_named_track(program: Program, what: str) -> None:
+    """Raises InputError UNSUPPORTED_AXES where a track that has no name is given one: it is `what`."""
+    if program.unit and program.on_track and not program.on_positioner:
+        raise InputError(
+            "UNSUPPORTED_AXES", "program.axes.unit", f"a track has no name of its own here, it is {what}; leave unit out",
         )
 
 

@@ -20,6 +20,7 @@ from ..core.program import (
     DEPOSIT,
     FIRST_SHARE,
     LINEAR_MOVE,
+    ROTARY,
     Block,
     Call,
     DepositOff,
@@ -32,7 +33,7 @@ from ..core.program import (
 )
 from .names import Naming, plain
 from .on_controller import on_controller
-from .parts import Piece, Run, continued, grouped, packed, place
+from .parts import continued, grouped, packed, place
 from .refusals import (
     CALL,
     refuse_calls_of_own,
@@ -40,10 +41,12 @@ from .refusals import (
     refuse_endless,
     refuse_external,
     refuse_incomplete,
+    refuse_named_track,
     refuse_wire,
     refuse_without_speeds,
 )
 from .yaskawa_read import read
+from .yaskawa_text import AXES, BASE, job, pulses
 
 __all__ = ["read", "write"]
 
@@ -58,7 +61,7 @@ ON_CONTROLLER = on_controller(
     "The tool file of the number in the job is the nozzle's tip, and speeds have the unit of the remarks",
     "The deposit output switches the process",
 )
-AXES, MOST_EXTERNAL = "SLURBT", 6
+MOST_EXTERNAL = 6
 MOST_LINES = 9999
 OUTPUTS = 4096
 LONGEST_WAIT = 600.0  # s of one TIMER
@@ -68,8 +71,6 @@ LEVELS = 8  # of rounded corners
 # what a unit of path speed is in mm/s, its decimals, and the largest number written
 UNITS = {"mm/s": (1.0, 1), "cm/min": (1.0 / 6.0, 0), "mm/min": (1.0 / 60.0, 0)}
 FASTEST = 1500.0  # mm/s
-
-_END_OF_LINE = "\r\n"
 _COMMENT = 32
 # names of 8 characters at most on older controllers
 NAMING = Naming(str.upper, "[A-Z]", "a letter", longest=32, spare=4, prefix="AM_")
@@ -95,14 +96,14 @@ def write(program: Program) -> dict[str, bytes]:
     parts = packed(groups, min(program.max_points, room), room, continued(_remark))
     if len(parts) == 1:
         refuse_calls_of_own(program, {name}, program_name)
-        return {f"{name}.JBI": _job(program, name, [*remarks, *meaning], parts[0])}
+        return {f"{name}.JBI": job(program, name, [*remarks, *meaning], parts[0])}
     names = NAMING.parts(name, len(parts))
     refuse_calls_of_own(program, {name, *names}, program_name)
     told = [*remarks, *_remark(f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts")]
-    files = {f"{name}.JBI": _job(program, name, [*told, *(f"CALL JOB:{part}" for part in names)], [])}
+    files = {f"{name}.JBI": job(program, name, [*told, *(f"CALL JOB:{part}" for part in names)], [])}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         head = [*_remark(f"part {number} of {len(parts)}"), *meaning]
-        files[f"{part}.JBI"] = _job(program, part, head, pieces)
+        files[f"{part}.JBI"] = job(program, part, head, pieces)
     return files
 
 
@@ -123,14 +124,16 @@ def refuse_setup(motion: str, setup: str) -> None:
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post yaskawa cannot write {setup}")
 
 
-def refuse_coordinated(motion: str) -> None:
-    """Raises InputError COORDINATED_MOTION for what cannot be said of a part on a positioner."""
-    if motion == "cartesian":
-        raise InputError(
-            "COORDINATED_MOTION", "program.motion",
-            "linear moves over a part on a positioner are coordinated motion (SMOVL), and what their speed is of was not"
-            " confirmed; use `motion: joint`, whose shares of the joint speeds hold it",
-        )
+def refuse_coordinated(motion: str, beside: tuple[str, ...]) -> None:
+    """Raises InputError COORDINATED_MOTION for what cannot be said with axes of these kinds beside the robot."""
+    if motion != "cartesian":
+        return
+    why = "over a part on a positioner are coordinated motion (SMOVL), and what their speed is of" if ROTARY in beside else (
+        "of a robot on a track have the base axis go along, and whether their speed counts its way")
+    raise InputError(
+        "COORDINATED_MOTION", "program.motion",
+        f"linear moves {why} was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it",
+    )
 
 
 def _refuse(program: Program) -> None:
@@ -138,11 +141,12 @@ def _refuse(program: Program) -> None:
     axes = len(AXES) + len(program.external_kinds)
     refuse_incomplete(program, "yaskawa", axes)
     if program.external_kinds:
-        refuse_coordinated(program.motion)
+        refuse_coordinated(program.motion, program.external_kinds)
         refuse_external(program, MOST_EXTERNAL, r"ST[1-9]\d?", "the name of its station, such as ST1")
+        refuse_named_track(program, f"the base axis {BASE} of the robot")
         if program.first_external != 1:
-            raise InputError("UNSUPPORTED_AXES", "program.axes.first", "a position of a station has a value for each of its "
-                             f"axes from the first one on; use 1, not {program.first_external}")
+            raise InputError("UNSUPPORTED_AXES", "program.axes.first", "a position of a station or of base axes has a value "
+                             f"for each of them from the first one on; use 1, not {program.first_external}")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     refuse_endless(program)
@@ -168,8 +172,8 @@ def _own_remarks(program: Program, off: float) -> Iterator[str]:
 def _meaning(program: Program) -> Iterator[str]:
     """What the numbers of a job mean, which its own words do not tell."""
     beside = [f"E{number + 1}" for number in range(len(program.external_kinds))]
-    for axis, pulses in zip([*AXES, *beside], program.pulses_per_degree, strict=True):
-        yield f"pulses/deg {axis} {pulses!r}"
+    for axis, slides, count in zip([*AXES, *beside], program.slides.tolist(), program.pulses_per_degree, strict=True):
+        yield f"pulses/{'mm' if slides else 'deg'} {axis} {count!r}"
     if program.motion == "cartesian":
         yield f"V in {program.speed_unit}"
 
@@ -177,12 +181,6 @@ def _meaning(program: Program) -> Iterator[str]:
 def _remark(text: str) -> list[str]:
     """A comment on as many lines as its width needs."""
     return [f"'{line}" for line in textwrap.wrap(plain(text), _COMMENT)]
-
-
-def pulses(program: Program, joints: Array) -> NDArray[np.int64]:
-    """(n, axes) whole pulses of controller joint values (n, axes), rad."""
-    counts: NDArray[np.int64] = np.rint(np.degrees(joints) * np.array(program.pulses_per_degree)).astype(np.int64)
-    return counts
 
 
 class _Words:
@@ -197,7 +195,8 @@ class _Words:
         self.level = math.ceil(0.01 * LEVELS * program.blend)
 
     def __call__(self, moves: Moves) -> Sequence[str]:
-        shown = np.radians(pulses(self.program, moves.joints) / np.array(self.program.pulses_per_degree))
+        values = pulses(self.program, moves.joints) / np.array(self.program.pulses_per_degree)
+        shown = np.where(self.program.slides, values, np.radians(values))
         start = shown[:1] if self.before is None else self.before
         if moves.interpolation == LINEAR_MOVE:
             speeds = _path_speeds(self.program, moves)
@@ -269,29 +268,3 @@ def _timer(seconds: float) -> list[str]:
     hundredths, most = max(round(100.0 * seconds), int(seconds > 0.0)), round(100.0 * LONGEST_WAIT)
     whole, rest = divmod(hundredths, most)
     return [f"TIMER T={step / 100.0:.2f}" for step in (*(most,) * whole, rest) if step]
-
-
-def _job(program: Program, name: str, head: Sequence[str], pieces: Sequence[Piece]) -> bytes:
-    runs = [piece for piece in pieces if isinstance(piece, Run)]
-    rows = [row for run in runs for row in pulses(program, run.moves.joints[run.start : run.stop]).tolist()]
-    positions = [f"///TOOL {program.tool_frame}", "///POSTYPE PULSE", "///PULSE"] if rows else []
-    positions += [f"C{number:05d}={','.join(map(str, row[: len(AXES)]))}" for number, row in enumerate(rows)]
-    stations = len(rows) if program.external_kinds else 0
-    positions += [f"EC{number:05d}={','.join(map(str, row[len(AXES) :]))}" for number, row in enumerate(rows[:stations])]
-    lines, point = ["NOP", *head], 0
-    for piece in pieces:
-        if isinstance(piece, Run):
-            letter = "L" if piece.moves.interpolation == LINEAR_MOVE else "J"
-            words = piece.words[piece.start : piece.stop]
-            numbers = [f"{point + k:05d}" for k in range(len(words))]
-            named = [f"C{one} EC{one}" if stations else f"C{one}" for one in numbers]
-            lines += [f"MOV{letter} {one} {word}" for one, word in zip(named, words, strict=True)]
-            point += len(piece)
-        else:
-            lines += piece
-    group = f"///GROUP1 RB1,{program.unit}" if program.unit else "///GROUP1 RB1"
-    text = [
-        "/JOB", f"//NAME {name}", "//POS", f"///NPOS {len(rows)},0,{stations},0,0,0", *positions, "//INST",
-        "///DATE 2000/01/01 00:00", "///COMM Robotic AM", "///ATTR SC,RW", group, *lines, "END",
-    ]  # fmt: skip
-    return (_END_OF_LINE.join(text) + _END_OF_LINE).encode("ascii")

@@ -21,22 +21,22 @@ from ..core.read_moves import Event, ReadMoves
 Array = NDArray[np.float64]
 
 _NAME = re.compile(r"//NAME ([A-Z][A-Z0-9_]{0,31})$")
-_COUNT = re.compile(r"///NPOS (\d+),0,(\d+),0,0,0$")
+_COUNT = re.compile(r"///NPOS (\d+),(\d+),(\d+),0,0,0$")
 _TOOL = re.compile(r"///TOOL (\d+)$")
 _POINT = re.compile(r"C(\d{5})=" + ",".join([r"(-?\d+)"] * 6) + "$")
-_STATION = re.compile(r"EC(\d{5})=(-?\d+(?:,-?\d+){0,5})$")
-_GROUP = re.compile(r"///GROUP1 RB1(?:,(ST\d+))?$")
+_BESIDE = {"BC": re.compile(r"BC(\d{5})=(-?\d+)$"), "EC": re.compile(r"EC(\d{5})=(-?\d+(?:,-?\d+){0,5})$")}
+_GROUP = re.compile(r"///GROUP1 RB1(,BS1)?(?:,(ST\d+))?$")
 _INST: tuple[str | re.Pattern[str], ...] = (
     r"//INST", r"///DATE \d{4}/\d\d/\d\d \d\d:\d\d", r"///COMM [ -~]{0,32}", r"///ATTR SC,RW", _GROUP, r"NOP",
 )
-_MOVJ = re.compile(r"MOVJ C(\d{5})(?: EC(\d{5}))? VJ=(\d+\.(\d+)) PL=([0-8])$")
-_MOVL = re.compile(r"MOVL C(\d{5})() V=(\d+(?:\.(\d+))?) PL=([0-8])$")
+_MOVJ = re.compile(r"MOVJ C(\d{5})(?: BC(\d{5}))?(?: EC(\d{5}))? VJ=(\d+\.(\d+)) PL=([0-8])$")
+_MOVL = re.compile(r"MOVL C(\d{5})()() V=(\d+(?:\.(\d+))?) PL=([0-8])$")
 _OUTPUT = re.compile(r"DOUT OT#\((\d+)\) (ON|OFF)$")
 _TIMER = re.compile(r"TIMER T=(\d+\.(\d+))$")
 _INPUT = re.compile(r"WAIT IN#\((\d+)\)=ON$")
 _CALL = re.compile(r"CALL JOB:([A-Z][A-Z0-9_]{0,31})$")
 _LAYER = re.compile(r"'layer (\d+)$")
-_PER_DEGREE = re.compile(r"'pulses/deg ([SLURBT]|E[1-6]) (-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)$")
+_PER_UNIT = re.compile(r"'pulses/(deg [SLURBT]|(?:deg|mm) E[1-7]) (-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)$")
 _UNIT = re.compile(r"'V in (mm/s|cm/min|mm/min)$")
 _MM_PER_S = {"mm/s": 1.0, "cm/min": 10.0 / 60.0, "mm/min": 1.0 / 60.0}
 _OWN = 6  # axes of a robot
@@ -45,30 +45,33 @@ _LINE = 34  # characters of a remark with its sign, and one
 
 @dataclass
 class _Job:
-    """One job: its tool, its positions (n, 6 and those of its station) in pulses, and its lines from NOP to END with the
-    number of the first; the station of its group, '' for none."""
+    """One job: its tool, its positions (n, 6, that of a track, and those of a station) in pulses, and its lines from NOP to
+    END with the number of the first; whether there is a track in its group, and the station there, '' for none."""
 
     file: str
     tool: float
     points: Array
     lines: list[str]
     first: int
+    track: bool
     station: str
 
 
 @dataclass
 class _Run:
-    """What happened so far while the jobs are followed. moves: of each share, V, corner level and tool, and pulses; station:
-    that of all moves, None before the first."""
+    """What happened so far while the jobs are followed. moves: of each share, V, corner level and tool, and pulses; beside:
+    track and station of all moves, None before the first; per_unit: pulses to a degree or a mm of axes, and slides those
+    that are told in mm."""
 
     moves: array[float] = field(default_factory=lambda: array("d"))
     deposit: bytearray = field(default_factory=bytearray)
     events: list[Event] = field(default_factory=list)
-    per_degree: dict[str, float] = field(default_factory=dict)
+    per_unit: dict[str, float] = field(default_factory=dict)
+    slides: set[str] = field(default_factory=set)
     unit: str = ""
     axes: int = 0
     decimals: list[int] = field(default_factory=lambda: [99, 99])  # the fewest of VJ and of V
-    station: str | None = None
+    beside: tuple[bool, str] | None = None
     output: str = ""
     on: bool = False
 
@@ -109,16 +112,22 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 def _moves(run: _Run) -> ReadMoves:
     told = np.array(run.moves).reshape(-1, _WORDS + run.axes)
-    per_degree = np.array([run.per_degree[axis] for axis in _axes(run.axes)])
+    names = _axes(run.axes)
+    per_unit, slides = np.array([run.per_unit[axis] for axis in names]), np.array([axis in run.slides for axis in names])
+    pulses = told[:, _WORDS:]
+    if slides.any():  # the track stands before the station in a job, wherever its axis is among them
+        track, at = pulses[:, _OWN], int(np.argmax(slides))
+        pulses = np.insert(np.delete(pulses, _OWN, axis=1), at, track, axis=1)
+    values, per_mm = pulses / per_unit, float(np.abs(per_unit[slides]).min(initial=np.inf))
     share, path, level, tool = told[:, :_WORDS].T
     linear = np.isfinite(path)
     unit = _MM_PER_S.get(run.unit, np.nan)
     half = [0.5 * 10.0**-decimals for decimals in run.decimals]
     return ReadMoves(
-        np.radians(told[:, _WORDS:] / per_degree), np.radians(0.5 / np.abs(per_degree)), np.full(len(told), np.nan),
+        np.where(slides, values, np.radians(values)), np.radians(0.5 / np.abs(per_unit)), np.full(len(told), np.nan),
         np.array(run.deposit, dtype=np.bool_), linear, level == 0.0, tuple(run.events), speed=path * unit,
         speed_digits=half[1] * unit if linear.any() else 0.0, share=0.01 * share, share_digits=0.01 * half[0], level=level,
-        tool_frame=tool, unit=run.station or "",
+        tool_frame=tool, unit=run.beside[1] if run.beside else "", linear_digits=0.5 / per_mm,
     )
 
 
@@ -144,31 +153,30 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
                 raise unreadable(f"{file} line {at + number + 1}", f"{line!r} is not position {number}")
             values[number] = [float(value) for value in point.groups()[1:]]
         at += points
-        beside = int(count[2])
+    told = {letters: int(number) for letters, number in zip(_BESIDE, count.groups()[1:])}
+    for letters, beside in told.items():
         if beside not in (0, points):
-            raise unreadable(f"{file} line 4", "not every position has one of the station")
-        values = np.hstack([values, _stations(file, lines[at : at + beside], at)]) if beside else values
+            raise unreadable(f"{file} line 4", "not every position has one of the axes beside the robot, or these are alone")
+        values = np.hstack([values, _beside(file, letters, lines[at : at + beside], at)]) if beside else values
         at += beside
-    elif int(count[2]):
-        raise unreadable(f"{file} line 4", "there are positions of a station alone")
     for number, pattern in enumerate(_INST):
         if at + number >= len(lines) or not re.fullmatch(pattern, lines[at + number]):
             raise unreadable(f"{file} line {at + number + 1}", "the instructions do not begin as those of a robot's job do")
     first = at + len(_INST)
     group = _GROUP.match(lines[first - 2])
-    station = group[1] or "" if group else ""
-    if points and bool(station) != (values.shape[1] > _OWN):
+    track, station = (bool(group[1]), group[2] or "") if group else (False, "")
+    if points and (track, bool(station)) != (told["BC"] > 0, told["EC"] > 0):
         raise unreadable(f"{file} line {first - 1}", "its group is not that of its positions")
-    return name[1], _Job(file, tool, values, lines[first:-2], first + 1, station)
+    return name[1], _Job(file, tool, values, lines[first:-2], first + 1, track, station)
 
 
-def _stations(file: str, lines: list[str], at: int) -> Array:
-    """(n, k) pulses of a station at the positions, told on lines after number `at`."""
+def _beside(file: str, letters: str, lines: list[str], at: int) -> Array:
+    """(n, k) pulses of a track or a station at the positions, told on lines after number `at`."""
     rows: list[list[float]] = []
     for number, line in enumerate(lines):
-        point = _STATION.match(line)
+        point = _BESIDE[letters].match(line)
         if point is None or int(point[1]) != number or (rows and len(rows[0]) != point[2].count(",") + 1):
-            raise unreadable(f"{file} line {at + number + 1}", f"{line!r} is not position {number} of the station")
+            raise unreadable(f"{file} line {at + number + 1}", f"{line!r} is not position {number} of {letters}")
         rows.append([float(value) for value in point[2].split(",")])
     return np.array(rows)
 
@@ -183,9 +191,10 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
     job = jobs[name]
     if name in callers:
         raise unreadable(job.file, "it calls itself")
-    told = [ratio[1] for line in job.lines if (ratio := _PER_DEGREE.match(line))]
-    if len(job.points) and sorted(told) != sorted(_axes(job.points.shape[1])):
-        raise unreadable(job.file, "it does not say how many pulses there are to a degree of each axis")
+    told = [ratio[1].split() for line in job.lines if (ratio := _PER_UNIT.match(line))]
+    named, slides = sorted(axis for _, axis in told), [axis for unit, axis in told if unit == "mm"]
+    if len(job.points) and (named != sorted(_axes(job.points.shape[1])) or len(slides) != job.track):
+        raise unreadable(job.file, "it does not say how many pulses there are to a degree of each axis, a mm of a track")
     if any(_MOVL.match(line) for line in job.lines) and not any(_UNIT.match(line) for line in job.lines):
         raise unreadable(job.file, "it does not say what unit V has")
     for number, text in enumerate(job.lines, job.first):
@@ -216,29 +225,38 @@ def _remark(text: str, run: _Run, where: str) -> None:
     """What remarks say of the numbers, the same in all jobs, and where layers begin."""
     if layer := _LAYER.match(text):
         run.happens("layer", float(layer[1]))
-    elif ratio := _PER_DEGREE.match(text):
-        if run.per_degree.setdefault(ratio[1], float(ratio[2])) != float(ratio[2]) or float(ratio[2]) == 0.0:
-            raise unreadable(where, f"the pulses per degree of {ratio[1]} differ, or are none")
+    elif ratio := _PER_UNIT.match(text):
+        of, axis = ratio[1].split()
+        if run.per_unit.setdefault(axis, float(ratio[2])) != float(ratio[2]) or float(ratio[2]) == 0.0:
+            raise unreadable(where, f"the pulses per {of} of {axis} differ, or are none")
+        run.slides |= {axis} if of == "mm" else set()
     elif unit := _UNIT.match(text):
         if run.unit not in ("", unit[1]):
             raise unreadable(where, "V has two units")
         run.unit = unit[1]
 
 
+def _numbers(move: re.Match[str]) -> tuple[str | None, str | None]:
+    """The positions of track and station that a move names."""
+    return move[2] or None, move[3] or None
+
+
 def _move(job: _Job, text: str, run: _Run, where: str) -> None:
     joint, line = _MOVJ.match(text), _MOVL.match(text)
     move = joint or line
-    if move is None or int(move[1]) >= len(job.points) or (move[2] or "") != (move[1] if job.station else ""):
+    if move is None or int(move[1]) >= len(job.points) or _numbers(move) != (
+            move[1] if job.track else None, move[1] if job.station else None):
         raise unreadable(where, f"the move {text!r} is not understood, or its position is not there")
-    value = float(move[3])
+    value = float(move[4])
     if value <= 0.0 or (joint and value > 100.0):
-        raise unreadable(where, f"the speed {move[3]} is none")
-    if run.station not in (None, job.station) or run.axes not in (0, job.points.shape[1]):
-        raise unreadable(where, "moves with another station than before are mixed")
-    run.station, run.axes = job.station, job.points.shape[1]
+        raise unreadable(where, f"the speed {move[4]} is none")
+    beside = job.track, job.station
+    if run.beside not in (None, beside) or run.axes not in (0, job.points.shape[1]):
+        raise unreadable(where, "moves with another track or station than before are mixed")
+    run.beside, run.axes = beside, job.points.shape[1]
     kind = 0 if joint else 1
-    run.decimals[kind] = min(run.decimals[kind], len(move[4] or ""))
+    run.decimals[kind] = min(run.decimals[kind], len(move[5] or ""))
     run.moves.extend((value, np.nan) if joint else (np.nan, value))
-    run.moves.extend((float(move[5]), job.tool))
+    run.moves.extend((float(move[6]), job.tool))
     run.moves.extend(job.points[int(move[1])].tolist())
     run.deposit.append(run.on)

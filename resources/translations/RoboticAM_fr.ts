@@ -2117,6 +2117,11 @@
         <translation>Marche à vide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>E1 of the robot&apos;s own motion group</source>
+        <translation>E1 du groupe de mouvement du robot lui-même</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/bars.py"/>
         <source>Each joint in its range, how far it is from the nearer limit, and the share of its largest speed that is asked of it</source>
         <translation>Chaque articulation dans sa plage, sa distance à la limite la plus proche, et la part de sa plus grande vitesse qui lui est demandée</translation>
@@ -5848,8 +5853,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa.py"/>
-        <source>a position of a station has a value for each of its axes from the first one on; use 1, not {0}</source>
-        <translation>une position d&apos;une station a une valeur pour chacun de ses axes à partir du premier ; utilisez 1, pas {0}</translation>
+        <source>a position of a station or of base axes has a value for each of them from the first one on; use 1, not {0}</source>
+        <translation>une position d&apos;une station ou d&apos;axes de base a une valeur pour chacun d&apos;eux à partir du premier ; utiliser 1, pas {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
@@ -5932,9 +5937,9 @@
         <translation>une trajectoire d&apos;outil n&apos;a pas encore d&apos;articulations ; choisissez une trajectoire articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
-        <source>a track has no MACHINE_DEF to be named: the robot&apos;s own base is on it; leave unit out</source>
-        <translation>un rail n&apos;a pas de MACHINE_DEF à nommer : la base même du robot est dessus ; omettez unit</translation>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>a track has no name of its own here, it is {0}; leave unit out</source>
+        <translation>un rail n&apos;a pas ici de nom à lui, c&apos;est {0} ; laisser unit de côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
@@ -6555,6 +6560,11 @@
         <location filename="../../freecad_am/interop/export.py"/>
         <source>cells are written as .yaml; end the name with it</source>
         <translation>les cellules sont écrites en .yaml ; terminez le nom ainsi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>centre</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -7293,8 +7303,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
-        <source>it does not say how many pulses there are to a degree of each axis</source>
-        <translation>il ne dit pas combien d&apos;impulsions fait un degré de chaque axe</translation>
+        <source>it does not say how many pulses there are to a degree of each axis, a mm of a track</source>
+        <translation>il ne dit pas combien d&apos;impulsions fait un degré de chaque axe, ou un mm d&apos;un rail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
@@ -7977,6 +7987,11 @@
         <translation>son groupe n&apos;est pas celui de ses positions</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>its header names other motion groups than programs before</source>
+        <translation>son en-tête nomme d&apos;autres groupes de mouvement que les programmes précédents</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
         <source>its job is called {0}</source>
         <translation>son job s&apos;appelle {0}</translation>
@@ -8312,6 +8327,11 @@
         <translation>les mouvements linéaires à la vitesse d&apos;une buse fixe sur une pièce portée par le robot demandent le point de référence externe de la commande, dont l&apos;instruction n&apos;est pas assez documentée pour l&apos;écrire ; utilisez `motion: joint`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>linear moves of a robot on a track have the base axis go along, and whether their speed counts its way was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it</source>
+        <translation>les mouvements linéaires d&apos;un robot sur un rail entraînent l&apos;axe de base, et il n&apos;a pas été confirmé si leur vitesse en compte le chemin ; utiliser `motion: joint`, dont les parts des vitesses articulaires la tiennent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions are then seen from was not confirmed; use `motion: joint`, whose times hold the speed</source>
         <translation>les mouvements linéaires sur une pièce portée par un positionneur sont du mouvement coordonné (COORD), et le repère utilisateur d&apos;où leurs positions sont alors vues n&apos;a pas été confirmé ; utilisez `motion: joint`, dont les durées tiennent la vitesse</translation>
@@ -8462,6 +8482,11 @@
         <translation>mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>more than one axis is called the track, or it has no value</source>
+        <translation>plus d&apos;un axe est appelé le rail, ou il n&apos;a pas de valeur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/wall_checks.py"/>
         <source>more than two faces meet in one edge at {0}; a wall branches by smooth faces with openings: leave one of them out</source>
         <translation>plus de deux faces se rencontrent en une arête en {0} ; une paroi se ramifie par des faces lisses à ouvertures : laissez l&apos;une d&apos;elles de côté</translation>
@@ -8498,8 +8523,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
-        <source>moves with another station than before are mixed</source>
-        <translation>des mouvements d&apos;une autre station qu&apos;avant sont mélangés</translation>
+        <source>moves with another track or station than before are mixed</source>
+        <translation>des mouvements d&apos;un autre rail ou d&apos;une autre station qu&apos;auparavant sont mêlés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka_read.py"/>
@@ -8783,8 +8808,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
-        <source>not every position has one of the station</source>
-        <translation>toutes les positions n&apos;en ont pas une de la station</translation>
+        <source>not every position has one of the axes beside the robot, or these are alone</source>
+        <translation>toutes les positions n&apos;en ont pas une des axes à côté du robot, ou celles-ci sont seules</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
@@ -9052,6 +9077,11 @@
         <translation>polynômes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>positions have a track and no remark says which axis it is, or the other way round</source>
+        <translation>les positions ont un rail et aucune remarque ne dit quel axe c&apos;est, ou l&apos;inverse</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>positions of more than one frame are mixed</source>
         <translation>des positions de plus d&apos;un repère sont mêlées</translation>
@@ -9105,6 +9135,11 @@
         <location filename="../../freecad_am/plots/fit.py"/>
         <source>r {0} mm, measured</source>
         <translation>r {0} mm, mesuré</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>radius</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/bars.py"/>
@@ -9495,6 +9530,11 @@
         <location filename="../../freecad_am/core/strategies/platform.py"/>
         <source>the axis of {0} is {1} mm off the middle of the platform and misses it</source>
         <translation>l&apos;axe de {0} est à {1} mm du milieu du plateau et le manque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>the base axis {0} of the robot</source>
+        <translation>l&apos;axe de base {0} du robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
@@ -10128,8 +10168,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
-        <source>the pulses per degree of {0} differ, or are none</source>
-        <translation>les impulsions par degré de {0} diffèrent, ou n&apos;en sont pas</translation>
+        <source>the pulses per {0} of {1} differ, or are none</source>
+        <translation>les impulsions par {0} de {1} diffèrent, ou sont nulles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_records.py"/>
@@ -10470,11 +10510,6 @@
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>there are no points in it; give rows of x y z</source>
         <translation>il n&apos;y a pas de points dedans ; donnez des lignes de x y z</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
-        <source>there are positions of a station alone</source>
-        <translation>il y a des positions d&apos;une station seule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
@@ -10958,8 +10993,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>what the robot&apos;s own base is on, which is not told by a MACHINE_DEF</source>
+        <translation>ce qui porte la base du robot lui-même, qu&apos;aucun MACHINE_DEF ne dit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
         <source>whether WAIT FOR looks at $ANIN until it changes was not found documented</source>
         <translation>que WAIT FOR regarde $ANIN jusqu&apos;à ce qu&apos;il change n&apos;a été trouvé documenté nulle part</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up, and was not confirmed; use `motion: joint`, whose times hold the speed</source>
+        <translation>si la vitesse des mouvements linéaires compte le chemin dont un rail porte le robot dépend de la manière dont ce rail a été configuré, et n&apos;a pas été confirmé ; utiliser `motion: joint`, dont les durées tiennent la vitesse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -11858,8 +11903,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
-        <source>{0} is not position {1} of the station</source>
-        <translation>{0} n&apos;est pas la position {1} de la station</translation>
+        <source>{0} is not position {1} of {2}</source>
+        <translation>{0} n&apos;est pas la position {1} de {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>

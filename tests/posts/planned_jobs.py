@@ -105,6 +105,37 @@ SETUPS = {
         external="motoman-motopos-d500 at 850 60 -100 0 0 20 carries part", branch="auto",
         nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
     ), FLAT, 50.0, math.radians(3.0)),
+    "fanuc track": Setup(CellParameters(
+        setup="tool-on-robot", mount="part", limits="maker", branch="auto", platform_diameter=100.0,
+        external="kuka-kl100-2 at 0 0 -356 0 0 90 carries robot", deposition_point=(1000.0, 500.0, -100.0, 0.0, 0.0, 0.0),
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0),
+    "yaskawa track": Setup(CellParameters(
+        machine="motoman-ma2010", setup="tool-on-robot", mount="part", platform_diameter=100.0, branch="auto",
+        external="kuka-kl100-2 at 0 0 -356 0 0 90 carries robot", deposition_point=(1000.0, 500.0, -300.0, 0.0, 0.0, 0.0),
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0),
+    "fanuc track and positioner": Setup(CellParameters(
+        setup="tool-on-robot", mount="part", limits="maker", branch="auto", platform=10.0, platform_diameter=100.0,
+        external="motoman-motopos-d500 at 1000 560 -600 0 0 20 carries part; kuka-kl100-2 at 0 0 -356 0 0 90 carries robot",
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0, math.radians(3.0)),
+    "yaskawa track and positioner": Setup(CellParameters(
+        machine="motoman-ma2010", setup="tool-on-robot", mount="part", platform=10.0, platform_diameter=100.0, branch="auto",
+        external="motoman-motopos-d500 at 1100 560 -700 0 0 20 carries part; kuka-kl100-2 at 0 0 -356 0 0 90 carries robot",
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.15, 0.2, 0.0)),
+    ), FLAT, 50.0, math.radians(3.0)),
+    "kuka track and positioner": Setup(CellParameters(
+        machine="kuka-kr16-2", setup="tool-on-robot", mount="part", platform=10.0, platform_diameter=100.0, branch="auto",
+        external="kuka-kl100-2 at 0 0 -356 0 0 90 carries robot; motoman-motopos-d500 at 1100 560 -100 0 0 20 carries part",
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0, math.radians(3.0)),
+    "abb track and positioner": Setup(CellParameters(
+        machine="abb-irb1600-6-12", setup="tool-on-robot", mount="part", platform=10.0, platform_diameter=100.0,
+        branch="auto",
+        external="kuka-kl100-2 at 0 0 -356 0 0 90 carries robot; motoman-motopos-d500 at 850 560 -100 0 0 20 carries part",
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0, math.radians(3.0)),
     "kuka track": Setup(CellParameters(
         machine="kuka-kr16-2", setup="tool-on-robot", mount="part", platform_diameter=100.0, branch="auto",
         external="kuka-kl100-2 at 0 0 -356 0 0 90 carries robot", deposition_point=(1050.0, 500.0, 200.0, 0.0, 0.0, 0.0),
@@ -123,21 +154,23 @@ SETUPS = {
     ), STEEP, 90.0),
 }  # fmt: skip
 
-PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75, 1019.6875, -568.5)
+PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75, 1019.6875, -568.5, 81.92)
 # post, motion, feed, set-up
 WAYS = (
     ("fanuc", "joint", "time", "fanuc part-on-robot"), ("fanuc", "joint", "time", "fanuc tool-on-robot"),
     ("fanuc", "cartesian", "time", "fanuc tool-on-robot"), ("fanuc", "joint", "time", "fanuc positioner"),
+    ("fanuc", "joint", "time", "fanuc track"), ("fanuc", "joint", "time", "fanuc track and positioner"),
     *(("staubli", motion, "time", f"staubli {setup}") for motion in ("joint", "cartesian")
       for setup in ("part-on-robot", "tool-on-robot")),
     ("ur", "joint", "time", "ur part-on-robot"), ("ur", "joint", "time", "ur tool-on-robot"),
     ("ur", "cartesian", "time", "ur tool-on-robot"),
     *(("abb", motion, "time", f"abb {setup}") for motion in ("joint", "cartesian")
-      for setup in ("part-on-robot", "tool-on-robot", "positioner", "track")),
+      for setup in ("part-on-robot", "tool-on-robot", "positioner", "track", "track and positioner")),
     ("yaskawa", "joint", "time", "yaskawa part-on-robot"), ("yaskawa", "joint", "time", "yaskawa tool-on-robot"),
     ("yaskawa", "cartesian", "time", "yaskawa tool-on-robot"), ("yaskawa", "joint", "time", "yaskawa positioner"),
+    ("yaskawa", "joint", "time", "yaskawa track"), ("yaskawa", "joint", "time", "yaskawa track and positioner"),
     ("kuka", "cartesian", "time", "kuka tool-on-robot"), ("kuka", "cartesian", "time", "kuka positioner"),
-    ("kuka", "cartesian", "time", "kuka track"),
+    ("kuka", "cartesian", "time", "kuka track"), ("kuka", "cartesian", "time", "kuka track and positioner"),
     *(("siemens", motion, feed, setup) for setup in ("table", "head")
       for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
     *(("linuxcnc", motion, feed, "table") for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),

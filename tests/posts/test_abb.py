@@ -90,8 +90,9 @@ def assert_modules(files):
                 target = values(line)
                 joint = line.startswith("MoveAbsJ ")
                 on_track = fixed and file == "rail.mod"
+                last = 4 if file.startswith("both") else 3
                 beside_it = [*target[-1][:2], *target[-1][3:], NO_AXES[0]] if on_track else (
-                    target[-1] if fixed else [NO_AXES[0], *target[-1][3:], *NO_AXES[:2]])
+                    target[-1] if fixed else [target[-1][0], *target[-1][last:], *NO_AXES[: last - 1]])
                 assert [len(part) for part in target] == ([6, 6] if joint else [3, 4, 4, 6]) and beside_it == NO_AXES
                 assert joint or abs(np.linalg.norm(target[1]) - 1.0) < 1e-6
                 speed, zone, tool, work_object = re.fullmatch(
@@ -165,9 +166,22 @@ def along(of, **more):
         "unit": "", "first_external": 3, "station": (1200, 0, 20, 0, 0, 0), **more})
 
 
+def both(of, **more):
+    """The same beside a positioner too, whose axes are eax_b and eax_d, the track's eax_c."""
+    of = beside(of)
+    blocks, count = [], 0
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            slid = 12.5 * (count + np.arange(len(block))) - 900.125
+            count, block = count + len(block), dataclasses.replace(block, joints=np.insert(block.joints, 7, slid, axis=1))
+        blocks.append(block)
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "both", "endless": (False,) * 9, "external_kinds": ("rotary", "linear", "rotary"), **more})
+
+
 GOLDENS = {
     "joint": JOINT, "held": HELD, "positioner": beside(HELD), "track": along(HELD, max_points=2000),
-    "track-joint": along(JOINT),
+    "track-joint": along(JOINT), "both": both(HELD),
 }
 
 
@@ -214,6 +228,27 @@ def test_a_track_carries_the_robot_and_the_work_object_stands():
                 assert np.allclose(np.diff([row[2] for row in slid]), 12.5)
     refusal(along(JOINT, first_external=7), code="UNSUPPORTED_AXES", where="program.axes.first")
     refusal(along(JOINT, unit="my unit"), code="UNSUPPORTED_AXES", where="program.axes.unit")
+
+
+def test_a_track_and_a_positioner_are_told_together():
+    for of in (both(HELD), both(JOINT)):
+        files, joints = abb.write(of), np.concatenate([moves.joints for moves in of.moves])
+        read = abb.read(files)
+        assert np.array_equal(read.joints[:, 7], joints[:, 7])  # mm as they are
+        np.testing.assert_allclose(read.joints[:, [6, 8]], joints[:, [6, 8]], rtol=0.0, atol=1e-6)
+        assert (read.unit, read.first_external, read.linear_digits) == ("STN1", 2, 0.00005)
+        main = files["both.mod"].decode()
+        assert "! eax_c is the track in mm" in main and "w_am is on the face of STN1" in main
+        for file in files:
+            if "Move" in files[file].decode():
+                (_, fixed, unit, user, _), = declared(files, file, "wobjdata").values()
+                assert (fixed, unit, user) == (False, "STN1", [[0, 0, 0], [1, 0, 0, 0]])
+        for old, new in (("! eax_c is the track", "! eax_e is the track"), ("ActUnit STN1;", "ActUnit STN2;")):
+            name = next(file for file in files if old in files[file].decode())
+            with pytest.raises(InputError):
+                abb.read({**files, name: files[name].replace(old.encode(), new.encode())})
+    refusal(both(JOINT, first_external=5), code="UNSUPPORTED_AXES", where="program.axes.first")
+    refusal(both(JOINT, unit=""), code="UNSUPPORTED_AXES", where="program.axes.unit")
 
 
 def test_a_part_that_is_held_is_a_work_object_and_the_nozzle_a_tool_that_stands():

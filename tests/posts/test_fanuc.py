@@ -60,6 +60,46 @@ def test_a_positioner_is_a_second_motion_group(root):
         refusal(dataclasses.replace(of, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
 
 
+def along(of, at=0, **more):
+    """The same with the robot on a track, which goes on by 12.5 mm with every move: its axis so far behind the robot's."""
+    count, blocks = 0, []
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            way = 12.5 * (count + np.arange(len(block))) - 900.125
+            count += len(block)
+            block = dataclasses.replace(block, joints=np.insert(block.joints, 6 + at, way, axis=1))
+        blocks.append(block)
+    kinds = [*of.external_kinds]
+    kinds.insert(at, "linear")
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "rail", "endless": (False,) * (7 + len(of.external_kinds)), "setup": "tool-on-robot",
+        "external_kinds": tuple(kinds), **more})
+
+
+def test_a_track_is_an_axis_of_the_robots_own_group(root):
+    grouped = two_groups(beads(1, 12, layers=2, max_points=20))
+    for of, group in ((along(GOLDEN_JOINT), "1"), (along(grouped, at=2, name="railgrp"), "2"), (along(grouped, at=1), "2")):
+        files = fanuc.write(of)
+        read, joints = fanuc.read(files), np.concatenate([moves.joints for moves in of.moves])
+        slides = np.array([*(False,) * 6, *(kind == "linear" for kind in of.external_kinds)])
+        np.testing.assert_array_equal(read.joints[:, slides], joints[:, slides])  # mm as they are
+        np.testing.assert_allclose(read.joints[:, ~slides], joints[:, ~slides], rtol=0.0, atol=np.radians(5.1e-4))
+        assert (read.unit, read.linear_digits) == (group if group != "1" else "", 0.0005)
+        for content in files.values():
+            text = content.decode()
+            records = text[text.index("/POS") :].split("};")[:-1]
+            # the form of records of controllers: after the last angle, blank before mm, in the first group
+            told = [re.search(r" deg,\r\n\tE1=(.{10})  mm\r\n(?:   GP2:\r\n|$)", record) for record in records]
+            assert all(told) and np.allclose(np.diff([float(one[1]) for one in told]), 12.5)
+            assert f"DEFAULT_GROUP\t= {'1,1' if group == '2' else '1,*'},*,*,*;" in text
+    files = fanuc.write(along(GOLDEN_JOINT)) | fanuc.write(along(grouped, at=2, name="railgrp"))
+    assert files == {path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob("RAIL*.LS")}
+    on_rail = dataclasses.replace(along(GOLDEN_JOINT), motion="cartesian")
+    assert "rail" in refusal(on_rail, code="COORDINATED_MOTION", where="program.motion")
+    refusal(along(GOLDEN_JOINT, unit="2"), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(along(grouped, unit=""), code="UNSUPPORTED_AXES", where="program.axes.unit")
+
+
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("motion", ["joint", "cartesian"])
 def test_random_programs_are_as_controllers_write_them(random_program, assert_listings, seed, motion):

@@ -16,11 +16,11 @@ from freecad_am.posts import catalogue, kuka
 
 NOMINAL = tuple(math.radians(value) for value in (156.0, 156.0, 156.0, 330.0, 330.0, 615.0))
 NUMBER = r"-?\d+\.\d{%d}"
-BESIDE = rf"(?:,E2 {NUMBER % 4},E3 {NUMBER % 4}|,E1 {NUMBER % 4})?"
+BESIDE = rf"(?:,E2 {NUMBER % 4},E3 {NUMBER % 4}(?:,E4 {NUMBER % 4})?|,E1 {NUMBER % 4})?"
 INSTRUCTIONS = [
     "PTP {" + ",".join(f"A{axis} {NUMBER % 4}" for axis in range(1, 7)) + BESIDE + "}",
     "LIN {" + ",".join(f"{axis} {NUMBER % (3 if axis in 'XYZ' else 4)}" for axis in "XYZABC") + BESIDE + "}(?: C_DIS)?",
-    r"\$BASE=EK\(MACHINE_DEF\[3\]\.ROOT,MACHINE_DEF\[3\]\.MECH_TYPE,BASE_DATA\[\d+\]\)", r"\$VEL_EXTAX\[[123]\]=\d+",
+    r"\$BASE=EK\(MACHINE_DEF\[3\]\.ROOT,MACHINE_DEF\[3\]\.MECH_TYPE,BASE_DATA\[\d+\]\)", r"\$VEL_EXTAX\[[1234]\]=\d+",
     r"BAS\(#(?:INITMOV,0|BASE,\d+|TOOL,\d+|VEL_PTP,(?:[1-9]\d?|100))\)", r"\$IPO_MODE=#BASE", r"\$ORI_TYPE=#VAR",
     r"\$VEL\.CP=[0-2]\.\d{6}", r"\$APO\.CDIS=\d+\.\d{3}", r"\$OUT\[\d+\]=(?:TRUE|FALSE)", r"WAIT SEC (?:0|\d+\.\d{3})",
     r"WAIT FOR \$IN\[\d+\]==TRUE", r"[A-Za-z]\w{0,19}\(\)", r"; [ -~]{1,80}",
@@ -124,9 +124,22 @@ def along(of, **more):
         "first_external": 1, "station": (1200, 0, 20, 0, 0, 0), **more})
 
 
+def both(of, **more):
+    """The same on a track as E2, and two axes of a positioner about it, as E3 and E4."""
+    of, count, blocks = beside(of), 0, []
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            slid = 12.5 * (count + np.arange(len(block))) - 900.125
+            count, block = count + len(block), dataclasses.replace(block, joints=np.insert(block.joints, 6, slid, axis=1))
+        blocks.append(block)
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "both", "endless": (False,) * 9, "max_speed": (*NOMINAL, 2500.0, *np.radians([80.0, 160.0])),
+        "external_kinds": ("linear", "rotary", "rotary"), **more})
+
+
 GOLDENS = {
     "whole": JOB, "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup"), "positioner": beside(JOB),
-    "track": along(JOB),
+    "track": along(JOB), "both": both(JOB),
 }
 
 
@@ -150,6 +163,20 @@ def test_a_track_carries_the_robot_and_the_base_stands():
     assert np.allclose(np.diff(slid), 12.5) and slid[0] == -900.125
     refusal(along(JOB, unit="2"), code="UNSUPPORTED_AXES", where="program.axes.unit")
     refusal(along(JOB, first_external=7), code="UNSUPPORTED_AXES", where="program.axes.first")
+
+
+def test_a_track_and_a_positioner_are_told_together():
+    of = both(JOB)
+    files = kuka.write(of)
+    read, joints = kuka.read(files), np.concatenate([moves.joints for moves in of.moves])
+    assert np.array_equal(read.joints[:, 6], joints[:, 6]) and np.isnan(read.joints[read.linear, :6]).all()
+    np.testing.assert_allclose(read.joints[:, 7:], joints[:, 7:], rtol=0.0, atol=1e-6)
+    assert (read.unit, read.first_external, read.linear_digits) == ("3", 2, 0.00005)
+    text = files["both.src"].decode()
+    assert "EK(MACHINE_DEF[3].ROOT" in text and "E2 is the track in mm" in text and "the base of MACHINE_DEF[3]" in text
+    with pytest.raises(InputError):
+        kuka.read({"both.src": text.replace("; E2 is the track in mm", "; E5 is the track in mm").encode()})
+    refusal(both(JOB, unit=""), code="UNSUPPORTED_AXES", where="program.axes.unit")
 
 
 @pytest.mark.parametrize("seed", range(4))

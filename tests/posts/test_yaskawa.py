@@ -46,8 +46,27 @@ def beside(of, **more):
         "unit": "ST1", "pulses_per_degree": STATION, "max_speed": (*FAST, *np.radians([80.0, 160.0])), **more})
 
 
+def along(of, at=0, **more):
+    """The same with the robot on a track, which goes on by 12.5 mm with every move: its axis so far behind the robot's."""
+    count, blocks = 0, []
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            way = 12.5 * (count + np.arange(len(block))) - 900.125
+            count += len(block)
+            block = dataclasses.replace(block, joints=np.insert(block.joints, 6 + at, way, axis=1))
+        blocks.append(block)
+    kinds = [*of.external_kinds]
+    kinds.insert(at, "linear")
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "rail", "endless": (False,) * (7 + len(of.external_kinds)), "setup": "tool-on-robot",
+        "external_kinds": tuple(kinds), **{
+            name: (*getattr(of, name)[: 6 + at], value, *getattr(of, name)[6 + at :])
+            for name, value in (("pulses_per_degree", 81.92), ("max_speed", 2500.0))}, **more})
+
+
 GOLDENS = {
-    "joint": known(GOLDEN_JOINT), "station": beside(known(GOLDEN_JOINT)),
+    "joint": known(GOLDEN_JOINT), "station": beside(known(GOLDEN_JOINT)), "rail": along(known(GOLDEN_JOINT)),
+    "both": along(beside(known(GOLDEN_JOINT)), at=1, name="both"),
     "linear": linear(dataclasses.replace(GOLDEN_JOINT, name="linear", tool_frame=3, deposit_output=7, blend=50)),
     "parts": linear(beads(1, 12, layers=2, name="parts", max_points=10)),
 }
@@ -62,7 +81,7 @@ def test_golden_programs_to_the_byte(root, name):
 
 
 INSTRUCTIONS = [
-    r"MOVJ C(\d{5})(?: EC\1)? VJ=(?:100\.00|\d\d?\.\d\d) PL=[0-8]", r"MOVL C\d{5} V=\d{1,5}(?:\.\d)? PL=[0-8]",
+    r"MOVJ C(\d{5})(?: BC\1)?(?: EC\1)? VJ=(?:100\.00|\d\d?\.\d\d) PL=[0-8]", r"MOVL C\d{5} V=\d{1,5}(?:\.\d)? PL=[0-8]",
     r"DOUT OT#\(\d+\) (?:ON|OFF)",
     r"TIMER T=\d{1,3}\.\d\d", r"WAIT IN#\(\d+\)=ON", r"CALL JOB:[A-Z][A-Z0-9_]{0,31}", r"'[ -~]{1,32}",
 ]  # fmt: skip
@@ -75,20 +94,23 @@ def faults(file, content):
         yield "line ends"
     lines = text.split("\r\n")
     start = lines.index("//INST")
-    count = re.fullmatch(r"///NPOS (\d+),0,(\d+),0,0,0", lines[3])
+    count = re.fullmatch(r"///NPOS (\d+),(\d+),(\d+),0,0,0", lines[3])
     if [lines[0], lines[1], lines[2]] != ["/JOB", f"//NAME {file.removesuffix('.JBI')}", "//POS"] or count is None:
         yield "header"
     points = lines[7:start] if int(count[1]) else []
     if int(count[1]) and (not re.fullmatch(r"///TOOL \d+", lines[4]) or lines[5:7] != ["///POSTYPE PULSE", "///PULSE"]):
         yield "kind of positions"
-    beside_it, points = points[int(count[1]) :], points[: int(count[1])]
-    if int(count[2]) not in (0, len(points)) or len(beside_it) != int(count[2]) or any(
-            not re.fullmatch(rf"EC{k:05d}=-?\d+,-?\d+", line) for k, line in enumerate(beside_it)):
-        yield "positions of the station"
+    own, base = int(count[1]), int(count[1]) + int(count[2])
+    base_it, beside_it, points = points[own:base], points[base:], points[:own]
+    for letters, told, due, values in (("BC", base_it, count[2], 1), ("EC", beside_it, count[3], 2)):
+        form = ",".join([r"-?\d+"] * values)
+        if int(due) not in (0, len(points)) or len(told) != int(due) or any(
+                not re.fullmatch(rf"{letters}{k:05d}={form}", line) for k, line in enumerate(told)):
+            yield f"positions {letters}"
     if len(points) != int(count[1]) or any(
             not re.fullmatch(rf"C{k:05d}=-?\d+(?:,-?\d+){{5}}", line) for k, line in enumerate(points)):
         yield "positions"
-    group = "///GROUP1 RB1,ST1" if file.startswith("STATION") else "///GROUP1 RB1"
+    group = "///GROUP1 RB1" + {"STATION": ",ST1", "RAIL": ",BS1", "BOTH": ",BS1,ST1"}.get(file.removesuffix(".JBI"), "")
     if lines[start + 3 : start + 6] != ["///ATTR SC,RW", group, "NOP"] or lines[-2:] != ["END", ""]:
         yield "frame of the instructions"
     body = lines[start + 6 : -2]
@@ -119,6 +141,36 @@ def test_a_positioner_is_a_station_of_the_group():
         assert old in told
         with pytest.raises(InputError):
             yaskawa.read({"STATION.JBI": told.replace(old, new, 1).encode()})
+
+
+def test_a_track_is_the_base_axis_of_the_group():
+    stationed = beside(known(beads(2, 9, layers=2)), max_points=8)
+    for of in (along(known(GOLDEN_JOINT)), *(along(stationed, at=at) for at in (0, 1, 2))):
+        read = yaskawa.read(yaskawa.write(of))
+        slides = np.array([*(False,) * 6, *(kind == "linear" for kind in of.external_kinds)])
+        half = 0.5 / np.abs(of.pulses_per_degree)
+        half = np.where(slides, half, np.radians(half))
+        assert (np.abs(read.joints - np.concatenate([run.joints for run in of.moves])) <= half + 1e-12).all()
+        assert read.linear_digits == 0.5 / 81.92 and read.digits[~slides] == pytest.approx(half[~slides])
+        assert read.unit == of.unit == ("ST1" if len(of.external_kinds) > 1 else "")
+    told = yaskawa.write(along(beside(known(GOLDEN_JOINT)), at=1, name="both"))["BOTH.JBI"].decode()
+    assert "'pulses/deg E1 1019.6875" in told and "'pulses/mm E2 81.92" in told and "'pulses/deg E3 -568.5" in told
+    assert re.search(r"^BC00000=(-?\d+)\r", told, re.MULTILINE)[1] == str(round(-900.125 * 81.92))
+    assert "RB1,BS1,ST1" in told and "MOVJ C00001 BC00001 EC00001 VJ=" in told
+    assert "base axis" in refusal(along(known(GOLDEN_JOINT), motion="cartesian"), code="COORDINATED_MOTION")
+    refusal(along(known(GOLDEN_JOINT), unit="ST1"), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(along(beside(known(GOLDEN_JOINT)), unit=""), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    # the share is that of the axis that takes longest
+    slow = along(known(GOLDEN_JOINT), max_speed=(*FAST, 50.0))
+    first, _, third = re.findall(r"VJ=([\d.]+)", yaskawa.write(slow)["RAIL.JBI"].decode())[:3]
+    assert float(third) == pytest.approx(100.0 * 12.5 / 50.0 / slow.moves[1].duration[0], abs=0.006) and first == "10.00"
+    for old, new in (
+        ("C00001 BC00001", "C00001"), ("C00001 BC00001", "C00001 BC00002"), ("RB1,BS1", "RB1"), ("BC00000=", "BC00009="),
+        ("'pulses/mm E2", "'pulses/deg E2"), ("'pulses/mm E2 81.92\r\n", ""), ("BC00001 EC00001", "EC00001 BC00001"),
+    ):
+        assert old in told
+        with pytest.raises(InputError):
+            yaskawa.read({"BOTH.JBI": told.replace(old, new, 1).encode()})
 
 
 def seeded(random_program, seed, cartesian):

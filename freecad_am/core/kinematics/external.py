@@ -29,8 +29,7 @@ from .machine import MAKER, Machine
 
 Array = NDArray[np.float64]
 
-POSTS = ("abb", "fanuc", "kuka", "yaskawa")  # that write a positioner
-ON_TRACK = ("abb", "kuka")  # that write a track
+POSTS = ("abb", "fanuc", "kuka", "yaskawa")  # that write axes beside the robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +104,7 @@ def coupled(
     ], np.eye(4))
     external = ExternalAxes(robot, to_robot, _unit(up), turning, turned, face[:3, :3], along, slides)
     machines_ = [machine for _, machine in found]
-    posts = POSTS if slides is None else ON_TRACK if not carriers else ()
-    return _together(robot, machines_, whole, posts), _limits(limits, machines_), external
+    return _together(robot, machines_, whole), _limits(limits, machines_), external
 
 
 def _check(found: Sequence[tuple[External, Machine]]) -> None:
@@ -161,8 +159,8 @@ def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
     return joined(pieces, np.eye(4)), before
 
 
-def _together(robot: Machine, others: Sequence[Machine], chain: Chain, posts: Sequence[str]) -> Machine:
-    """The robot with further axes e1, e2 ...: of its posts those write for it that know them, `posts`."""
+def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machine:
+    """The robot with further axes e1, e2 ...: of its posts those write for it that know them."""
     count, axes = sum(other.chain.axes for other in others), robot.chain.axes
     matrix = np.eye(axes + count)
     matrix[:axes, :axes] = robot.controller_matrix
@@ -184,7 +182,7 @@ def _together(robot: Machine, others: Sequence[Machine], chain: Chain, posts: Se
         axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))), controller_matrix=matrix,
         controller_offset=np.concatenate(offset),
         pulses_per_degree=sum((one.pulses_per_degree for one in all_), ()) if told else (), **alike,
-        posts=tuple(post for post in posts if robot.posts is None or post in robot.posts),
+        posts=tuple(post for post in POSTS if robot.posts is None or post in robot.posts),
     )
 
 

@@ -99,11 +99,15 @@ def without_moves(cell: Cell, parameters: ProgramParameters, name: str) -> Progr
             parameters.nc.deposit_on or "", parameters.nc.deposit_off or "", parameters.nc.switch_kinematics,
             parameters.nc.wire_output, parameters.nc.wire_gain,
         ),
-        external_kinds=tuple(
-            LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding[cell.robot.chain.axes :]),
+        external_kinds=external_kinds(cell),
         unit=_unit(cell, parameters),
         first_external=parameters.axes.first,
     )
+
+
+def external_kinds(cell: Cell) -> tuple[str, ...]:
+    """'linear' or 'rotary' of each axis beside the robot."""
+    return tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding[cell.robot.chain.axes :])
 
 
 def _unit(cell: Cell, parameters: ProgramParameters) -> str:
