@@ -6564,7 +6564,7 @@
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>centre</source>
-        <translation type="unfinished"></translation>
+        <translation>centre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -9139,7 +9139,7 @@
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>radius</source>
-        <translation type="unfinished"></translation>
+        <translation>rayon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/bars.py"/>
