@@ -71,7 +71,7 @@ __all__ = (
     "change", "export", "export_cell", "export_report", "export_waypoints", "export_wires", "inspect", "issues", "make_all",
     "make_cam_path", "make_cell", "make_cladding_feature", "make_curves_feature", "make_developable_feature", "make_feature",
     "make_feature_of", "make_joint_path", "make_program", "make_solid_feature", "make_surface_feature", "make_toolpath",
-    "make_trajectory", "open_part", "proposed_name", "recompute", "result", "stages_of", "told_to",
+    "make_trajectory", "open_part", "place", "proposed_name", "recompute", "result", "stages_of", "told_to",
 )
 
 
@@ -199,6 +199,20 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
         doc, given_keys.get("kind", "revolution"), given_keys["source"], given_keys.get("faces", ()), links=links,
         values=values,
     )
+
+
+@one_thread()
+def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any) -> Any:
+    """Where the part of a joint path or a toolpath can stand: poses of a box about that which its cell has, or another one,
+    each with the share of points that the machine serves, the least margin, the time, and how far the arm stays from
+    everything; as `core.placement.place.Placed`. Keys are those of the section `place` of a job. Nothing is changed.
+
+    `found = am.place(doc.JointPath, x=300, step=100); am.change(doc.Cell, **found.entries(found.best))`; `found.best` is
+    None where no pose serves.
+    """
+    from .objects.placed import given, placing_of
+
+    return placing_of(path, cell).placed(given(parameters, values))
 
 
 def result(obj: Any) -> Any:

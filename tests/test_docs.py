@@ -13,6 +13,7 @@ from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.place import PlaceParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.strategies.families import FAMILIES
@@ -26,6 +27,7 @@ SECTIONS = (
     ("joints", JointParameters),
     ("process", ProcessParameters),
     ("program", ProgramParameters),
+    ("place", PlaceParameters),
 )
 # keys that are not fields of a parameters dataclass
 BY_HAND = {"version", "name", "part.file", "part.object", "part.solids", "part.faces", "part.start_edges", "part.edges",

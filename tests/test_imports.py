@@ -40,6 +40,10 @@ OURS = {
         "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
         "core/motion",
     },
+    "core/placement": {
+        "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
+        "core/motion", "core/planning",
+    },
     "core/preflight": {
         "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/process", "core/kinematics", "core/motion",
         "core/simulation", "core/strategies",

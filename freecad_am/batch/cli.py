@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The headless commands: plan, export, batch, inspect, check, machines.
+"""The headless commands: plan, export, batch, inspect, check, place, machines.
 
 What a command needs is imported when it runs: starting is most of the time of a small job, and a slip on the
 command line should be told at once.
@@ -12,7 +12,7 @@ import sys
 from typing import Any
 
 DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
-COMMANDS = ("plan", "export", "batch", "inspect", "check", "machines")
+COMMANDS = ("plan", "export", "batch", "inspect", "check", "place", "machines")
 USAGE = """usage: freecad-am COMMAND
 
   plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
@@ -23,6 +23,8 @@ USAGE = """usage: freecad-am COMMAND
                                                     --set tolerance=0.3 ..., of a document --object NAME
   check PROGRAM ... --cell JOB.yaml|CELL.yaml       drive a program that was edited, or written elsewhere, in a cell;
                                                     -o DIR, --post NAME
+  place JOB.yaml [-o DIR]                           where the part can stand: place.csv, place.html, and the best pose
+                                                    as a line of YAML for the section cell
   machines [NAME --urdf | --dh | --modified-dh]     list the machines known, or write one as URDF or as a table;
                                                     list some: --maker KUKA --reach '2 m' --payload '20 kg' --post kuka
   demo | test | bench                               see the README
@@ -36,7 +38,7 @@ def main(argv: list[str]) -> int:
     """
     from freecad_am.batch import console
 
-    if argv[:1] in (["plan"], ["export"], ["inspect"]) and argv[1:]:
+    if argv[:1] in (["plan"], ["export"], ["inspect"], ["place"]) and argv[1:]:
         from freecad_am.batch import supervised
 
         def say(line: str) -> None:
@@ -120,21 +122,14 @@ def _parser(command: str) -> Any:
 
     parser = Parser(prog=f"freecad-am {command}", allow_abbrev=False, add_help=False)
     if command == "machines":
-        parser.add_argument("machine", metavar="NAME", nargs="?", help="a machine of the list, or a machine file")
-        forms = parser.add_mutually_exclusive_group()
-        forms.add_argument("--urdf", action="store_const", const="urdf", dest="form", help="write it as URDF, without looks")
-        forms.add_argument("--dh", action="store_const", const="dh", dest="form",
-                           help="write its table of Denavit and Hartenberg, in mm and degrees")
-        forms.add_argument("--modified-dh", action="store_const", const="modified-dh", dest="form", help="the same by Craig")
-        parser.add_argument("--maker", metavar="NAME", help="list those of this maker")
-        parser.add_argument("--reach", metavar="LENGTH", help="list those that reach so far at least")
-        parser.add_argument("--payload", metavar="MASS", help="list those that are known to carry so much at least")
-        parser.add_argument("--post", metavar="NAME", help="list those whose controllers read the programs of this post")
+        _choose_machines(parser)
         return parser
     parser.add_argument("-o", "--output", metavar="DIR", help="folder of the outputs")
     if command == "plan":
         parser.add_argument("job", metavar="JOB.yaml")
         parser.add_argument("--no-page", action="store_true", help="leave report.html out")
+    elif command == "place":
+        parser.add_argument("job", metavar="JOB.yaml")
     elif command == "export":
         parser.add_argument("document", metavar="DOC.FCStd")
         parser.add_argument("--object", metavar="NAME", nargs="+", action="extend", default=[], help="Name or Label")
@@ -155,6 +150,20 @@ def _parser(command: str) -> Any:
         parser.add_argument("--job", metavar="JOB.yaml", required=True)
         parser.add_argument("-j", "--jobs", metavar="N", type=_count, default=1, help="rows planned at the same time")
     return parser
+
+
+def _choose_machines(parser: Any) -> None:
+    """The words of `machines`."""
+    parser.add_argument("machine", metavar="NAME", nargs="?", help="a machine of the list, or a machine file")
+    forms = parser.add_mutually_exclusive_group()
+    forms.add_argument("--urdf", action="store_const", const="urdf", dest="form", help="write it as URDF, without looks")
+    forms.add_argument("--dh", action="store_const", const="dh", dest="form",
+                       help="write its table of Denavit and Hartenberg, in mm and degrees")
+    forms.add_argument("--modified-dh", action="store_const", const="modified-dh", dest="form", help="the same by Craig")
+    parser.add_argument("--maker", metavar="NAME", help="list those of this maker")
+    parser.add_argument("--reach", metavar="LENGTH", help="list those that reach so far at least")
+    parser.add_argument("--payload", metavar="MASS", help="list those that are known to carry so much at least")
+    parser.add_argument("--post", metavar="NAME", help="list those whose controllers read the programs of this post")
 
 
 def _count(text: str) -> int:
@@ -210,6 +219,15 @@ def _check(options: Any, session: Any) -> int:
     result = check.check(options.program, options.cell, options.post, options.output, session)
     session.issues(result.issues)
     _tell_paths(result.paths, session)
+    return result.exit_status
+
+
+def _place(options: Any, session: Any) -> int:
+    from freecad_am.batch import job, place
+
+    result = place.place(job.read_job(options.job), options.output, session)
+    session.issues(result.issues)
+    session.out(f"{result.line}\n" if result.line else "")
     return result.exit_status
 
 

@@ -12,6 +12,7 @@ from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.place import PlaceParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import LayerParameters
@@ -24,7 +25,7 @@ from .part_source import PartSource
 SEQUENCES = (BY_FEATURE, BY_HEIGHT)
 SECTIONS = (
     "version", "name", "part", "substrate", "fixtures", "strategy", "build_direction", "features", "sequence", "cell",
-    "joints", "process", "program",
+    "joints", "process", "program", "place",
 )
 _LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
 
@@ -32,7 +33,8 @@ _LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
 @dataclass(frozen=True)
 class Job:
     """A checked job. features: one or more, in the order of the file; sequence: in which they are deposited. process: of the
-    program; features may differ from it. `cell` or `program` None: the stages that need them are left out."""
+    program; features may differ from it. `cell` or `program` None: the stages that need them are left out.
+    place: where the command of that name tries to put the part."""
 
     path: str
     name: str
@@ -43,6 +45,7 @@ class Job:
     cell: CellParameters | None
     program: ProgramParameters | None
     tree: tree.Tree = field(repr=False, compare=False)
+    place: PlaceParameters = field(default_factory=PlaceParameters)
 
     @property
     def part(self) -> PartSource:
@@ -116,6 +119,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
         cell=job_cell.read(values.get("cell"), path),
         program=_program(values.get("program")),
         tree=job,
+        place=fields.build(PlaceParameters, values.get("place") or {}, "place"),
     )
 
 

@@ -35,6 +35,7 @@ class Stages:
 
     document: Any
     job: Any = None  # with the families chosen that it left open
+    cell: Any = None
     features: list[Any] = field(default_factory=list)
     toolpath: Any = None
     joint_path: Any = None
@@ -83,12 +84,12 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
     try:
         cell = check(job)
         with one_thread(), outputs.Outputs(folder, session) as files:
-            document = _document(job)
+            document = document_of(job)
             try:
                 stages = plan(job, document, session)
                 if fails := _curved_in_vain(job, stages):
                     FreeCAD.closeDocument(document.Name)
-                    document = _document(job)
+                    document = document_of(job)
                     stages = plan(job, document, session, fails)
                 result = _write(stages.job, stages, cell, files, session, started, page)
             finally:
@@ -129,7 +130,8 @@ def check(job: Job) -> Any:
     return resolved
 
 
-def _document(job: Job) -> Any:
+def document_of(job: Job) -> Any:
+    """An empty document for a job."""
     import FreeCAD
 
     document = FreeCAD.newDocument("Job")
@@ -152,39 +154,17 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     of the error that curved layers end with, where the job leaves layers open."""
     from freecad_am import api
     from freecad_am.core.process.predicted import HEIGHTS
-    from freecad_am.core.strategies.size import LARGE
 
-    from .job_shapes import Shapes
-
-    stages = Stages(document)
-    with stages.timed("part", session):
-        shapes = [Shapes(document, job, number, fails) for number in range(len(job.features))]
-    cell = None
-    if job.cell is not None:
-        with stages.timed("cell", session):
-            cell = api.make_cell(document, parameters=job.cell)
-    with stages.timed("feature", session):
-        for one in shapes:
-            earlier = [other.part for other in shapes[: one.number] if other.solid]
-            proposal = one.choose(earlier)
-            stages.issues += [] if proposal is None else [proposal]
-            stages.features.append(one.make_feature(earlier))
-    job = stages.job = _as_chosen(job, shapes)
-    for feature in stages.features:
-        stages.issues += api.issues(feature)
-    session.issues(issue for issue in stages.issues if issue.code == LARGE)  # before the work that takes long
-    with stages.timed("toolpath", session):
-        stages.toolpath = _toolpath(stages, cell)
-    # a toolpath repeats the findings about its wall
-    stages.issues += [issue for issue in api.issues(stages.toolpath) if issue not in stages.issues]
-    if cell is None or has_errors(stages.issues):
+    stages = as_far_as_toolpath(job, document, session, fails)
+    job = stages.job
+    if stages.cell is None or has_errors(stages.issues):
         return stages
     if job.program is not None:
         from freecad_am.core.planning import controllers
 
         controllers.check_beads(api.result(stages.toolpath), job.program.post, job.program.max_points)
     with stages.timed("joint_path", session):
-        stages.joint_path = api.make_joint_path(document, stages.toolpath, cell, joints=job.joints)
+        stages.joint_path = api.make_joint_path(document, stages.toolpath, stages.cell, joints=job.joints)
     found = api.issues(stages.joint_path)
     if any(issue.code == HEIGHTS for issue in found):  # at the speeds as run, not only as asked for
         stages.issues = [issue for issue in stages.issues if issue.code != HEIGHTS]
@@ -196,10 +176,40 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     return stages
 
 
-def _toolpath(stages: Stages, cell: Any) -> Any:
+def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
+    """The stages of a job in a document up to its toolpath, as `plan`."""
+    from freecad_am import api
+    from freecad_am.core.strategies.size import LARGE
+
+    from .job_shapes import Shapes
+
+    stages = Stages(document)
+    with stages.timed("part", session):
+        shapes = [Shapes(document, job, number, fails) for number in range(len(job.features))]
+    if job.cell is not None:
+        with stages.timed("cell", session):
+            stages.cell = api.make_cell(document, parameters=job.cell)
+    with stages.timed("feature", session):
+        for one in shapes:
+            earlier = [other.part for other in shapes[: one.number] if other.solid]
+            proposal = one.choose(earlier)
+            stages.issues += [] if proposal is None else [proposal]
+            stages.features.append(one.make_feature(earlier))
+    job = stages.job = _as_chosen(job, shapes)
+    for feature in stages.features:
+        stages.issues += api.issues(feature)
+    session.issues(issue for issue in stages.issues if issue.code == LARGE)  # before the work that takes long
+    with stages.timed("toolpath", session):
+        stages.toolpath = _toolpath(stages)
+    # a toolpath repeats the findings about its wall
+    stages.issues += [issue for issue in api.issues(stages.toolpath) if issue not in stages.issues]
+    return stages
+
+
+def _toolpath(stages: Stages) -> Any:
     from freecad_am import api
 
-    job = stages.job
+    job, cell = stages.job, stages.cell
     if len(job.features) == 1:
         return api.make_toolpath(stages.document, stages.features[0], cell, process=job.process)
     return api.make_toolpath(

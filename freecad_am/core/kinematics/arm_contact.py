@@ -57,7 +57,7 @@ class Touches:
 
 
 @dataclass(frozen=True)
-class _Group:
+class Group:
     """What links (numbers) are looked at against, within a ball, as it is seen from the part, the nozzle or the world."""
 
     scene: Scene
@@ -68,7 +68,7 @@ class _Group:
 
 
 @dataclass(frozen=True)
-class _Solid:
+class Solid:
     """A solid of revolution that a link is, or a piece of it: tip and unit axis (3,) in the frame of the link, and the ball
     about it."""
 
@@ -84,7 +84,8 @@ class ArmContact:
     """A robot in its cell. rods: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
     deposit: in part coordinates. clearance: mm, links that are nearer touch.
 
-    names: what can be touched, links: what touches it, as messages call them: base, axes, then part and nozzle.
+    names: what can be touched, links: what touches it, as messages call them: base, axes, then part and nozzle. groups: what
+    can be touched; solids: of each of `links`, in its frame; balls: centre and radius of one about these.
     """
 
     cell: Cell
@@ -94,9 +95,9 @@ class ArmContact:
     clearance: float = 0.0
     names: tuple[str, ...] = field(init=False)
     links: tuple[str, ...] = field(init=False)
-    _solids: tuple[tuple[_Solid, ...], ...] = field(init=False, repr=False)
-    _groups: tuple[_Group, ...] = field(init=False, repr=False)
-    _balls: tuple[tuple[Array, float], ...] = field(init=False, repr=False)
+    solids: tuple[tuple[Solid, ...], ...] = field(init=False, repr=False)
+    groups: tuple[Group, ...] = field(init=False, repr=False)
+    balls: tuple[tuple[Array, float], ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         around = [body for body in self.bodies if len(body.triangles)]
@@ -113,14 +114,14 @@ class ArmContact:
             points = self.deposit.corners.reshape(-1, 3)
             centre, radius = _ball(points)
             wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
-            groups.append(_Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide))
+            groups.append(Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide))
         groups += [_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
         names += [body.name for body in self.cell.obstacles]
         object.__setattr__(self, "names", tuple(names))
         object.__setattr__(self, "links", ("base", *self.cell.robot.axes, PART, NOZZLE))
-        object.__setattr__(self, "_groups", tuple(groups))
-        object.__setattr__(self, "_solids", tuple(map(tuple, solids)))
-        object.__setattr__(self, "_balls", tuple(_about(link) for link in solids))
+        object.__setattr__(self, "groups", tuple(groups))
+        object.__setattr__(self, "solids", tuple(map(tuple, solids)))
+        object.__setattr__(self, "balls", tuple(_about(link) for link in solids))
 
     @property
     def _carries_part(self) -> bool:
@@ -162,31 +163,36 @@ class ArmContact:
                 link[rows], what[rows] = self._touched(values[rows], when[rows])
         return Touches(link, what)
 
-    def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
+    def seen(self, joints: Array) -> tuple[Array, dict[str, Array]]:
+        """With joints (k, axes): the frames (k, links, 4, 4) of `links`, and those (k, 4, 4) of part, nozzle and world, all
+        seen from where the machine's chain begins."""
         links = self.cell.links(joints)
         carried = links[:, -1] @ (self.cell.robot.chain.flange @ self.cell.carried)
         still = np.broadcast_to(self.cell.station, carried.shape)
         platform, nozzle = (carried, still) if self._carries_part else (still, carried @ _TURNED)
         part = platform @ frames.inverse(self.cell.mount)
         seen_from = {PART: part, NOZZLE: nozzle, WORLD: self.cell.world(joints) if self.cell.obstacles else part}
-        links = np.concatenate([links, part[:, None], nozzle[:, None]], axis=1)
+        return np.concatenate([links, part[:, None], nozzle[:, None]], axis=1), seen_from
+
+    def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
+        links, seen_from = self.seen(joints)
         link, what = np.full(len(joints), NONE, dtype=np.int64), np.full(len(joints), NONE, dtype=np.int64)
-        for place, group in enumerate(self._groups):
+        for place, group in enumerate(self.groups):
             frame = seen_from[group.seen_from]
             centre = frame[:, :3, :3] @ group.centre + frame[:, :3, 3]
             for number in group.links:
-                middle, size = self._balls[number]
+                middle, size = self.balls[number]
                 away = links[:, number, :3, :3] @ middle + links[:, number, :3, 3] - centre
                 within = size + group.radius + ABOUT_FACES
                 rows = np.flatnonzero((link == NONE) & (np.einsum("ij,ij->i", away, away) < within**2))
                 if len(rows):
                     seen = frames.inverse(frame[rows]) @ links[rows, number]
-                    met = rows[_meets(group, self._solids[number], seen, moment[rows])]
+                    met = rows[_meets(group, self.solids[number], seen, moment[rows])]
                     link[met], what[met] = number, place
         return link, what
 
 
-def _meets(group: _Group, solids: Sequence[_Solid], seen: Array, moment: Index) -> Mask:
+def _meets(group: Group, solids: Sequence[Solid], seen: Array, moment: Index) -> Mask:
     """(k,) whether solids of a link, whose frame is seen as (k, 4, 4), meet a group."""
     met = np.zeros(len(seen), dtype=bool)
     for one in solids:
@@ -204,18 +210,18 @@ def _meets(group: _Group, solids: Sequence[_Solid], seen: Array, moment: Index) 
     return met
 
 
-def _of_rod(rod: Rod, more: float) -> _Solid:
+def _of_rod(rod: Rod, more: float) -> Solid:
     """A rod, larger by so many mm on all sides."""
     centre, axis = 0.5 * (rod.start + rod.end), (rod.end - rod.start) / rod.length
     solid = Frustum(rod.radius + more, 0.0, -more, rod.length + more)
-    return _Solid(solid, rod.start, axis, centre, float(np.hypot(0.5 * rod.length + more, rod.radius + more)))
+    return Solid(solid, rod.start, axis, centre, float(np.hypot(0.5 * rod.length + more, rod.radius + more)))
 
 
-def _of_nozzle(cell: Cell) -> _Solid:
+def _of_nozzle(cell: Cell) -> Solid:
     """The nozzle in the frame of its tip, as it is looked at against bodies it deposits next to."""
     nozzle = cell.nozzle
     solid = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, 0.0).bodies
-    return _Solid(solid, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.zeros(3), solid.reach)
+    return Solid(solid, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.zeros(3), solid.reach)
 
 
 def _slices(corners: Array) -> list[Rod]:
@@ -249,13 +255,13 @@ def _nozzle(cell: Cell) -> Body:
     return Body(NOZZLE, vertices, triangles.astype(np.int64))
 
 
-def _of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> _Group:
+def _of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> Group:
     centre, radius = _ball(body.vertices)
     scene = Scene(of_bodies([body], body.vertices, 0.0, max(LINK_PIECE, SHARE * 2.0 * radius)))
-    return _Group(scene, links, centre, radius, seen_from)
+    return Group(scene, links, centre, radius, seen_from)
 
 
-def _about(link: Sequence[_Solid]) -> tuple[Array, float]:
+def _about(link: Sequence[Solid]) -> tuple[Array, float]:
     """Centre and radius of a ball about the solids of a link."""
     if not link:
         return np.zeros(3), 0.0

@@ -50,10 +50,11 @@ class Sampled:
         return tuple(told)
 
 
-def sampled(toolpath: Toolpath, most: int) -> Sampled:
+def sampled(toolpath: Toolpath, most: int, together: int = 1) -> Sampled:
     """About `most` points of a toolpath, all of it where it has no more. The first and last bead are among those that are
     kept, and the ends of each; layers keep their numbers, beads not. The chord error grows as that of the points does.
-    More are kept of a few beads that have very many turns."""
+    More are kept of a few beads that have very many turns. together: so many beads that follow each other are kept of so
+    many times as many, where some are left out."""
     every = list(toolpath)
     total = toolpath.point_count
     if total <= most:
@@ -61,7 +62,7 @@ def sampled(toolpath: Toolpath, most: int) -> Sampled:
     points = _one_in([bead for _, _, bead in every], most, PER_TURN)
     wanted = math.ceil(sum(len(_kept(bead, points)) for _, _, bead in every) / most)
     beads = min(wanted, max(1, len(every) - 1))
-    chosen = [*every[:-1:beads], every[-1]]
+    chosen = [one for k, one in enumerate(every[:-1]) if k % (together * beads) < together] + every[-1:]
     if beads < wanted:  # there are no more beads to leave out
         points = max(points, _one_in([bead for _, _, bead in chosen], most, FEWEST_PER_TURN))
     layers = tuple(

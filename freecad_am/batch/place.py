@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where the part of a job, its positioner or its deposition point may stand: a table, a page, and the best pose."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple
+
+from freecad_am.core.issues import ERROR, NOTE, InputError, Issue, has_errors
+from freecad_am.core.one_thread import one_thread
+
+from . import outputs, paths
+from .job import SECTIONS, Job
+from .job_features import in_words_of_job
+
+TABLE, PAGE = "place.csv", "place.html"
+
+
+class Result(NamedTuple):
+    """The best pose as a line of a section `cell`, '' where there is none; the issues, and the exit status, 0 or 3."""
+
+    line: str
+    issues: list[Issue]
+    exit_status: int
+
+
+def place(job: Job, folder: str | None, session: Any) -> Result:
+    """Try the poses of the section `place` of a job and write what they come to into `folder`, by default out/<name>-place
+    beside the job file.
+
+    Raises InputError; then nothing is written.
+    """
+    if job.cell is None:
+        raise InputError("NO_CELL", "cell", "there is no cell to place the part in; add the section cell")
+    paths.require_freecad()
+    import FreeCAD
+
+    from . import run
+
+    target = folder or os.path.join(job.folder, "out", f"{job.name}-place")
+    try:
+        run.check(job)
+        with one_thread(), outputs.Outputs(target, session) as files:
+            document = run.document_of(job)
+            try:
+                stages = run.as_far_as_toolpath(job, document, session)
+                if has_errors(stages.issues):
+                    return Result("", stages.issues, 3)
+                return _written(job, stages, files, session)
+            finally:
+                FreeCAD.closeDocument(document.Name)
+    except InputError as found:
+        error = in_words_of_job(found)
+        if error.where.split(".")[0].split("[")[0] in SECTIONS:
+            raise job.tree.placed(error) from None
+        raise error from None
+
+
+def _written(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Result:
+    from freecad_am.core.placement import table
+    from freecad_am.objects.placed import placing_of
+
+    from . import place_page
+
+    with stages.timed("place", session):
+        found = placing_of(stages.toolpath, stages.cell, job.joints).placed(job.place)
+    files.write(TABLE, table.rows(found))
+    files.write(PAGE, [place_page.render(job.name, found)])
+    files.publish({name for name in (TABLE, PAGE) if os.path.isfile(os.path.join(files.folder, name))})
+    count, serve = len(found.poses), sum(one.feasible for one in found.judged)
+    looked = f"{found.points} of {found.of} points"
+    if found.best is None:
+        most = max(one.share for one in found.judged)
+        wrong = found.judged[max(range(count), key=lambda k: found.judged[k].share)]
+        told = (f"none of {count} poses serves, as far as {looked} tell: at most {100.0 * most:.3g} % of them are within "
+                f"reach and limits ({wrong.code}); give a larger box in place, or another cell.branch")
+        if serve:
+            told = (f"none of the {len(found.proven)} best of {serve} poses is feasible with all points, though some points "
+                    "of each are; raise place.points or place.proven")
+        return Result("", [*stages.issues, Issue(ERROR, "NO_PLACE", told)], 3)
+    best = found.of_pose(found.best)
+    note = Issue(NOTE, "PLACED", f"{serve} of {count} poses are feasible, as far as {looked} tell; the best one was planned "
+                 f"with all points: margin {100.0 * best.margin:.3g} %, {best.time:.0f} s; {TABLE} and {PAGE} are in "
+                 f"{files.folder}")
+    return Result(table.key(found, found.best), [*stages.issues, note], 0)

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters of the section `place` of a job: where part, positioner or deposition point are tried."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import InputError
+from . import field as f
+from .cell import Pose
+
+AUTO, POINT, PLATFORM, POSITIONER = "auto", "deposition-point", "platform", "positioner"
+MARGIN, TIME, CLEARANCE = "margin", "time", "clearance"
+MOST = 20_000  # poses
+_SIDES = ("x", "y", "z", "rx", "ry", "rz")
+
+
+@dataclass(frozen=True)
+class PlaceParameters:
+    """A box of poses about that which the cell has, and how they are judged. mm and rad."""
+
+    moves: str = f.parameter(
+        AUTO, f.CHOICE, "What is moved: the deposition point (with the tool on the robot the fixed platform), the "
+        "platform on the flange or the table, or the base of the positioner; auto: the one that places the part.",
+        choices=(AUTO, POINT, PLATFORM, POSITIONER),
+    )
+    x: float = f.parameter(200.0, f.LENGTH, "How far its x is changed to either side.", low=0.0, high=20_000.0)
+    y: float = f.parameter(200.0, f.LENGTH, "How far its y is changed to either side.", low=0.0, high=20_000.0)
+    z: float = f.parameter(200.0, f.LENGTH, "How far its z is changed to either side.", low=0.0, high=20_000.0)
+    rx: float = f.parameter(0.0, f.ANGLE, "How far its RX is changed to either side.", low=0.0, high=math.pi)
+    ry: float = f.parameter(0.0, f.ANGLE, "How far its RY is changed to either side.", low=0.0, high=math.pi)
+    rz: float = f.parameter(0.0, f.ANGLE, "How far its RZ is changed to either side.", low=0.0, high=math.pi)
+    step: float = f.parameter(100.0, f.LENGTH, "Between two values of x, y or z.", low=0.0, open_low=True)
+    angle_step: float = f.parameter(
+        math.radians(45.0), f.ANGLE, "Between two values of RX, RY or RZ.", low=0.0, high=math.pi, open_low=True
+    )
+    points: int = f.parameter(
+        300, f.COUNT, "Points of the toolpath that each pose is judged by, about.", low=20, high=100_000, advanced=True
+    )
+    best: str = f.parameter(
+        MARGIN, f.CHOICE, "What makes a feasible pose the best one: the largest least margin, the shortest time, or the "
+        "largest distance of the arm from everything.", choices=(MARGIN, TIME, CLEARANCE),
+    )
+    proven: int = f.parameter(
+        5, f.COUNT, "So many of the best poses are planned with all points, until one is feasible.", low=1, high=100,
+        advanced=True,
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, "place")
+        count = math.prod(len(values) for values in self._values())
+        if count > MOST:
+            raise InputError("BAD_VALUE", "place.step", f"these are {count} poses, more than {MOST}; give a larger step or "
+                             "a smaller box")
+
+    def _values(self) -> list[NDArray[np.float64]]:
+        """What is added to each of the six numbers of a pose."""
+        found = []
+        for number, name in enumerate(_SIDES):
+            step = self.step if number < 3 else self.angle_step
+            most = math.floor(getattr(self, name) / step + 1e-9)
+            found.append(step * np.arange(-most, most + 1))
+        return found
+
+    def changes(self) -> NDArray[np.float64]:
+        """(P, 6) what is added to the six numbers of a pose, mm and rad; nothing for one of them, in the middle."""
+        grids = np.meshgrid(*self._values(), indexing="ij")
+        return np.stack([grid.ravel() for grid in grids], axis=1)
+
+    def poses(self, about: Pose) -> NDArray[np.float64]:
+        """(P, 6) the poses of the box about one, mm and rad."""
+        return np.asarray(np.array(about) + self.changes())

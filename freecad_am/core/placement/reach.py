@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The reach of a robot as a volume: at each place of a grid, in how many directions it can hold there what it carries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import frames
+from ..kinematics.cell import Cell
+from ..planning.plan import Progress
+from ..planning.points import TURN
+from ..planning.task import LimitRows, limit_rows
+
+Array = NDArray[np.float64]
+
+DIRECTIONS, TURNS = 32, 12  # unit vectors that are tried, and rotations about each
+PIECE = 60  # places done together
+MOST_PLACES = 40_000
+
+
+@dataclass(frozen=True)
+class Reach:
+    """places: (n, 3) mm in base_link, those where the robot can be at all; share: (n,) of DIRECTIONS in which it can."""
+
+    places: Array
+    share: Array
+    step: float
+
+
+def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None) -> Reach:
+    """Where the tip of the nozzle, or the middle of the platform where the robot carries the part, can be, within the
+    limits, in the configuration of the cell; on a grid of `step` mm, or wider for MOST_PLACES. What stands in the cell is
+    not looked at, nor axes beside the robot. progress may raise to cancel. Nothing of machines with rotary axes.
+    """
+    arm = cell.robot.arm
+    if arm is None or cell.machine.is_table:
+        return Reach(np.zeros((0, 3)), np.zeros(0), step)
+    ahead, height = arm.shoulder
+    held = float(np.linalg.norm(cell.robot.chain.flange[:3, 3])) + float(np.linalg.norm(cell.carried[:3, 3]))
+    size = ahead + arm.reach + held
+    step = max(step, 2.0 * size / MOST_PLACES ** (1.0 / 3.0))
+    count = int(np.ceil(size / step))
+    ticks = step * np.arange(-count, count + 1)
+    grid = np.stack(np.meshgrid(ticks, ticks, ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+    grid = grid[np.linalg.norm(grid, axis=1) <= size]
+    rows, hold = limit_rows(cell.limits), _poses(cell)
+    places = grid + [0.0, 0.0, height]
+    share = np.zeros(len(places))
+    for k, some in enumerate(_pieces(len(places))):
+        progress(k * PIECE / len(places), "reach")
+        share[some] = _share(cell, rows, places[some], hold)
+    found = share > 0.0
+    return Reach(places[found], share[found], step)
+
+
+def _pieces(count: int) -> Iterator[slice]:
+    return (slice(start, min(start + PIECE, count)) for start in range(0, count, PIECE))
+
+
+def _poses(cell: Cell) -> Array:
+    """(DIRECTIONS, TURNS, 4, 4) poses of the flange with what it carries at the origin, in all directions."""
+    number = np.arange(DIRECTIONS) + 0.5
+    up = 1.0 - 2.0 * number / DIRECTIONS
+    around = np.pi * (1.0 + np.sqrt(5.0)) * number  # evenly on a ball, along a spiral
+    across = np.sqrt(1.0 - up * up)
+    axes = np.stack([across * np.cos(around), across * np.sin(around), up], axis=1)
+    lean = np.swapaxes(frames.smallest_rotation(axes, (0.0, 0.0, 1.0)), 1, 2)
+    turn = frames.about_z(np.linspace(0.0, TURN, TURNS, endpoint=False))
+    held: Array = frames.pose(lean[:, None] @ turn, np.zeros(3)) @ frames.inverse(cell.carried)
+    return held
+
+
+def _share(cell: Cell, rows: LimitRows, places: Array, hold: Array) -> Array:
+    """(n,) of places (n, 3)."""
+    arm = cell.robot.arm
+    assert arm is not None
+    poses = np.broadcast_to(hold, (len(places), *hold.shape)).copy()
+    poses[..., :3, 3] += places[:, None, None]
+    own, count = cell.robot.chain.axes, cell.machine.chain.axes
+    served = np.zeros(poses.shape[:3], dtype=bool)
+    for branch in range(8) if cell.branch is None else (cell.branch,):
+        left = np.nonzero(~served.any(axis=2))
+        joints = arm.inverse_branch(poses[left].reshape(-1, 4, 4), branch)
+        joints = np.pad(joints, ((0, 0), (0, count - own)))  # axes beside it stand at zero
+        middle = 0.5 * (cell.limits.lower + cell.limits.upper)[:own]
+        turns = np.where(np.isfinite(middle), np.round((np.nan_to_num(middle) - joints[:, :own]) / TURN), 0.0)
+        joints[:, :own] += TURN * turns
+        served[left] = (rows.margin(joints) >= 0.0).reshape(-1, TURNS)
+    return np.asarray(served.any(axis=2).mean(axis=1))

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Poses of a box: what is said feasible by some points is planned whole, what is said not to be is held against rotations
+tried one by one and against the plan of all points; figures against those of that plan."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
+from freecad_am.core.issues import InputError, has_errors
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import jacobian, link_rods
+from freecad_am.core.motion import DEPOSIT
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.place import PlaceParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.placement import moved, table
+from freecad_am.core.placement.judge import UNREACHED, Job, Judge
+from freecad_am.core.placement.place import Placed, placed, ranked
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.simulation.timeline import timeline
+from freecad_am.core.strategies import revolution
+from tests.core.planning.conftest import sphere
+
+PROCESS = ProcessParameters(travel_speed=20.0, lead_on=0.3, between_layers=dataclasses.replace(
+    ProcessParameters().between_layers, wait=5.0))
+MARGIN, TIME = 0.02, 0.1  # what the docs tell: of a range, and of the time
+MOVED = {  # a cell whose box has both, what is moved in it, and the box
+    "point": (CellParameters(limits="paper"), {"x": 400.0, "y": 400.0, "z": 300.0, "step": 300.0}),
+    "platform on the flange": (
+        CellParameters(limits="paper"), {"moves": "platform", "x": 300.0, "y": 0.0, "z": 200.0, "ry": np.pi / 3,
+                                         "step": 300.0, "angle_step": np.pi / 3}),
+    "tool on the robot": (
+        CellParameters(setup="tool-on-robot", deposition_point=(900.0, 0.0, -100.0, 0.0, 0.0, 0.0),
+                       branch=("front", "down", "noflip"),
+                       nozzle=NozzleParameters(tool=(120.0, 0.0, 200.0, 0.0, np.radians(45.0), 0.0))),
+        {"x": 600.0, "y": 600.0, "z": 0.0, "rz": np.pi / 2, "step": 600.0, "angle_step": np.pi / 2}),
+    "positioner": (
+        CellParameters(machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", platform=20.0, branch="auto",
+                       external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part",
+                       nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0))),
+        {"x": 600.0, "y": 0.0, "z": 500.0, "step": 500.0}),
+    "table": (
+        CellParameters(machine="table-xyzac", setup="rotary-table", platform=60.0),
+        {"x": 400.0, "y": 0.0, "z": 0.0, "step": 200.0},
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def dome():
+    """A hemisphere in layers of 9 mm."""
+    wall = RevolvedWall(Meridian.chained(sphere()), np.eye(4))
+    strategy = RevolutionParameters(layer_height=9.0, chord_error=0.1)
+    return revolution.plan(wall, strategy, BuildDirectionParameters(), PROCESS, NozzleParameters(), 113.0)
+
+
+def job_of(toolpath):
+    return Job(
+        toolpath, lambda settings: cells.resolve(settings, toolpath.frame, toolpath.family),
+        lambda cell: () if cell.machine.is_table else tuple(map(tuple, link_rods.of_robot(cell.robot.chain))),
+        PROCESS, JointParameters(),
+    )
+
+
+def whole(toolpath, settings):
+    """The plan of all points, away from what is tested: its motion, joint path and whether it can be carried out."""
+    cell = cells.resolve(settings, toolpath.frame, toolpath.family)
+    path = plan_joints(toolpath, cell, JointParameters())
+    motion, rapids = assemble(path, cell, PROCESS, toolpath.surroundings, JointParameters(), toolpath.layer_height)
+    return cell, path, motion, not has_errors([*path.issues, *rapids])
+
+
+@pytest.mark.parametrize("case", MOVED)
+def test_what_is_said_of_a_pose_is_what_its_whole_plan_says(dome, case):
+    settings, box = MOVED[case]
+    parameters = PlaceParameters(points=200, **box)
+    moves = moved.chosen(settings, parameters.moves)
+    poses = parameters.poses(moved.pose_of(settings, moves))
+    some, every = (Judge(job_of(dome), most) for most in (parameters.points, None))
+    assert some.points < 0.6 * every.points == 0.6 * dome.point_count
+    said, hidden = [], 0
+    for pose in poses[np.unique(np.linspace(0, len(poses) - 1, 5).astype(int))]:
+        there = moved.moved(settings, moves, pose)
+        one = some.judged(there)
+        cell, path, motion, feasible = whole(dome, there)
+        assert one.feasible or not feasible, (pose, one)
+        said.append(feasible)
+        if one.feasible and not feasible:  # between the points looked at; told before it is proposed
+            hidden += 1
+            assert not every.judged(there).feasible
+        if feasible:
+            left = cell.limits.smallest_share(motion.joints[motion.role == DEPOSIT]).min()
+            assert one.share == 1.0 and one.branch == path.branch
+            assert one.margin == pytest.approx(left, abs=MARGIN)
+            assert one.time == pytest.approx(timeline(motion, PROCESS).total, rel=TIME)
+    assert {True, False} <= set(said) and hidden <= 1  # both are there, or nothing was tested
+
+
+def test_points_that_no_rotation_serves_are_counted_right(dome):
+    """Each point with 1,440 rotations in turn: limits with whole turns, and the condition of a Jacobian by differences."""
+    settings = CellParameters(limits="paper", deposition_point=(645.747, -830.155, 453.167, 0.0, 0.0, 0.0))
+    judge = Judge(job_of(dome), 40)
+    said = judge.judged(settings)
+    cell = cells.resolve(settings, dome.frame)
+    parts = [bead for _, _, bead in judge._some.toolpath]
+    position, tool = (np.concatenate([getattr(bead, name) for bead in parts]) for name in ("points", "tool"))
+    turns, lower, upper = 2.0 * np.pi * np.arange(-2, 3), cell.limits.lower, cell.limits.upper
+    served = np.zeros(len(position), dtype=bool)
+    at_zero = np.zeros(len(position))
+    spins = np.concatenate([[np.nan], np.linspace(-np.pi, np.pi, 1440, endpoint=False)])
+    for k, spin in enumerate(spins):
+        phi = cell.phi_of_rz(tool, np.zeros(len(tool)))[0] if k == 0 else np.full(len(tool), spin)
+        flange = cell.flange_poses(position, tool, phi)
+        q = cell.machine.arm.inverse_branch(flange, cell.branch)
+        reached = np.isfinite(q).all(axis=1)
+        condition = np.zeros(len(q))
+        matrix = jacobian.jacobian(cell.robot.chain, q[reached], cell.deposition_point(flange)[reached])
+        scaled = matrix.copy()
+        scaled[:, :3] /= 1000.0
+        sigma = np.linalg.svd(scaled, compute_uv=False)
+        condition[reached] = sigma[:, -1] / sigma[:, 0]
+        if k == 0:
+            at_zero = condition
+            continue
+        turned = q[..., None] + turns
+        within = ((turned >= lower[:, None]) & (turned <= upper[:, None])).any(axis=2).all(axis=1)
+        served |= reached & within & (condition >= np.maximum(0.25 * at_zero, 0.02))
+    assert 0.1 < served.mean() < 0.95
+    assert (said.share, said.code) == (pytest.approx(served.mean(), abs=1e-12), UNREACHED)
+
+
+def test_the_best_is_planned_with_all_points_and_nearest_to_where_the_part_stands(dome):
+    settings = CellParameters(limits="paper")
+    steps = []
+    found = placed(job_of(dome), settings, PlaceParameters(points=60, x=300.0, y=0.0, z=300.0, step=300.0),
+                   lambda share, text: steps.append(share))
+    assert isinstance(found, Placed) and len(found.poses) == 9 and steps == sorted(steps)
+    assert found.best == next(reversed(found.proven))
+    assert whole(dome, dataclasses.replace(settings, **inner(found.entries(found.best))))[3]
+    margins = {number: found.judged[number].margin for number in ranked(found, "margin")}
+    clear = [number for number in margins if found.judged[number].clearance > 0.0]
+    assert found.proven[found.best].margin >= max(margins[number] for number in clear) - MARGIN
+    times = [found.judged[number].time for number in ranked(found, "time") if number in clear]
+    assert times == pytest.approx(sorted(times), abs=0.11)
+    assert set(ranked(found, "clearance")) == set(ranked(found, "time"))
+    lines = list(table.rows(found))
+    assert len(lines) == 10 and lines[0].startswith("x_mm,") and all(line.count(",") == 13 for line in lines)
+    assert [line.split(",")[6] for line in lines[1:]] == ["yes" if one.feasible else "no" for one in found.judged]
+    assert table.key(found, found.best).startswith("deposition_point: [")
+
+
+def inner(entries):
+    """mm and deg as mm and rad."""
+    return {name: (*pose[:3], *np.radians(pose[3:])) for name, pose in entries.items()}
+
+
+def test_cancelling_ends_it(dome):
+    class Enough(Exception):
+        pass
+
+    def progress(share, text):
+        if text.startswith("pose 3 "):
+            raise Enough
+
+    with pytest.raises(Enough):
+        placed(job_of(dome), CellParameters(limits="paper"), PlaceParameters(points=20), progress)
+
+
+def test_no_pose_serves(dome):
+    far = CellParameters(limits="paper", deposition_point=(5000.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    found = placed(job_of(dome), far, PlaceParameters(x=100.0, y=0.0, z=0.0, step=100.0), lambda share, text: None)
+    assert found.best is None and not found.proven and [one.share for one in found.judged] == [0.0] * 3
+
+
+@pytest.mark.parametrize(("settings", "moves"), [
+    (CellParameters(), "positioner"), (CellParameters(setup="tool-on-robot"), "platform"),
+    (CellParameters(machine="table-xyzac", setup="rotary-table"), "deposition-point"),
+])  # fmt: skip
+def test_what_a_cell_has_not_is_not_moved(settings, moves):
+    with pytest.raises(InputError, match="has no") as error:
+        moved.chosen(settings, moves)
+    assert (error.value.code, error.value.where) == ("NOT_FOR_SETUP", "place.moves")
+
+
+def test_too_many_poses_are_refused():
+    with pytest.raises(InputError, match="68921 poses") as error:
+        PlaceParameters(step=10.0)
+    assert error.value.where == "place.step"
+
+
+def test_a_box_has_where_the_part_stands_in_its_middle():
+    parameters = PlaceParameters(x=250.0, y=0.0, z=100.0, rz=np.pi, step=100.0, angle_step=np.pi / 2)
+    about = (10.0, 20.0, 30.0, 0.1, 0.2, 0.3)
+    poses = parameters.poses(about)
+    assert len(poses) == 5 * 1 * 3 * 5 and (np.abs(poses - np.array(about)) < 1e-12).all(axis=1).sum() == 1
+    assert np.allclose(np.sort(np.unique(poses[:, 0])), 10.0 + 100.0 * np.arange(-2, 3))

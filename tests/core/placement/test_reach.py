@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The reach as a volume: where PyKDL finds the tip with joints anywhere within limits, the volume has a place beside it, and
+the shares of directions are those that come of directions drawn at random."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.placement import reach
+from freecad_am.kdl.chain import KdlArm
+
+CELLS = {
+    "tool": CellParameters(
+        setup="tool-on-robot", branch="auto", nozzle=NozzleParameters(tool=(100.0, 0.0, 250.0, 0.0, 0.7, 0.0))),
+    "part": CellParameters(platform=80.0, branch="auto"),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", params=CELLS)
+def volume(request):
+    """A cell and its reach."""
+    cell = cells.resolve(CELLS[request.param], np.eye(4))
+    return cell, reach.reach(cell, 350.0)
+
+
+def test_where_the_tip_can_be_there_is_a_place(volume):
+    cell, found = volume
+    rng = np.random.default_rng(5)
+    low, high = np.maximum(cell.limits.lower, -np.pi), np.minimum(cell.limits.upper, np.pi)
+    q = rng.uniform(low, high, (3000, 6))
+    q = q[(cell.limits.margin(q) >= 0.0).all(axis=1)]
+    tip = (KdlArm(cell.machine).forward(q) @ cell.carried)[:, :3, 3]
+    away, _ = cKDTree(found.places).query(tip)
+    assert len(q) > 500 and (away <= found.step * np.sqrt(3.0)).all()  # within the cube about it, or the next
+
+
+def test_shares_are_those_of_directions_at_random(volume):
+    cell, found = volume
+    rng = np.random.default_rng(6)
+    chosen = rng.choice(len(found.places), 8, replace=False)
+    axes = rng.normal(size=(40, 3))
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    spins = np.linspace(-np.pi, np.pi, 48, endpoint=False)
+    lean = np.swapaxes(frames.smallest_rotation(axes, (0.0, 0.0, 1.0)), 1, 2)
+    turned = lean[:, None] @ frames.about_z(spins)
+    whole = 2.0 * np.pi * np.arange(-2, 3)
+    apart = []
+    for place, share in zip(found.places[chosen], found.share[chosen]):
+        flange = frames.pose(turned, place) @ frames.inverse(cell.carried)
+        q = cell.machine.arm.inverse(flange.reshape(-1, 4, 4))[:8]
+        # all turns of all axes: the limits couple some
+        served = np.zeros(q.shape[:2], dtype=bool)
+        q4 = q[..., 3, None] + whole
+        q6 = q[..., 5, None] + whole
+        for a in range(5):
+            for b in range(5):
+                one = q.copy()
+                one[..., 3], one[..., 5] = q4[..., a], q6[..., b]
+                served |= np.nan_to_num(cell.limits.margin(one).min(axis=-1), nan=-1.0) >= 0.0
+        apart.append(served.any(axis=0).reshape(40, 48).any(axis=1).mean() - share)
+    assert np.abs(apart).max() <= 0.3 and abs(np.mean(apart)) <= 0.1
+    assert np.ptp(found.share[chosen]) > 0.2
+
+
+def test_progress_is_told_and_cancels():
+    class Enough(Exception):
+        pass
+
+    def progress(share, text):
+        if share > 0.2:
+            raise Enough
+
+    with pytest.raises(Enough):
+        reach.reach(cells.resolve(CellParameters(), np.eye(4)), 300.0, progress)
+
+
+def test_machines_with_rotary_axes_have_none():
+    cell = cells.resolve(CellParameters(machine="table-xyzac", setup="rotary-table"), np.eye(4))
+    assert len(reach.reach(cell, 100.0).places) == 0
