@@ -5667,6 +5667,11 @@
         <translation>Réduire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>`cell.deposition_point: [{0}]`</source>
+        <translation>`cell.deposition_point: [{0}]`</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
         <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
         <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
@@ -5710,6 +5715,11 @@
         <location filename="../../freecad_am/core/slicing/wall_direction.py"/>
         <source>a build direction of {0} is normal to its plane of symmetry; use local</source>
         <translation>une direction de dépôt de {0} est normale à son plan de symétrie ; utilisez local</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/placement/moved.py"/>
+        <source>a cell with {0} has no {1} that places the part; use {2}</source>
+        <translation>une cellule avec {0} n&apos;a pas de {1} qui place la pièce ; utilisez {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
@@ -6165,6 +6175,11 @@
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
         <source>another program is called within a bead</source>
         <translation>un autre programme est appelé au sein d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/placement/moved.py"/>
+        <source>another set-up</source>
+        <translation>une autre installation</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb_read.py"/>
@@ -7677,6 +7692,11 @@
         <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/placed.py"/>
+        <source>it is neither a toolpath nor a joint path; give one</source>
+        <translation>ce n&apos;est ni une trajectoire d&apos;outil ni une trajectoire articulaire ; donnez-en une</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
         <source>it is nested too deeply to be a machine file</source>
         <translation>ses niveaux sont trop nombreux pour un fichier de machine</translation>
@@ -9042,6 +9062,11 @@
         <translation>articulations planifiées du dépôt menées par la chaîne des repères, que la planification n’emploie pas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/placement/place.py"/>
+        <source>planning the whole job at one of the best poses, the {0}.</source>
+        <translation>planification de toute la tâche à l&apos;une des meilleures poses, la {0}e</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>point by point</source>
         <translation>point par point</translation>
@@ -9075,6 +9100,11 @@
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>polynomials</source>
         <translation>polynômes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/placement/place.py"/>
+        <source>pose {0} of {1}</source>
+        <translation>pose {0} sur {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_read.py"/>
@@ -10657,6 +10687,11 @@
         <translation>il n’y a qu’une couche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>these are {0} poses, more than {1}; give a larger step or a smaller box</source>
+        <translation>cela fait {0} poses, plus que {1} ; donnez un pas plus grand ou une boîte plus petite</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
         <source>theta, d, a and alpha must be numbers</source>
         <translation>theta, d, a et alpha doivent être des nombres</translation>
@@ -12165,6 +12200,11 @@
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} mm/s cannot be written; use {1} to {2} mm/s</source>
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez {1} à {2} mm/s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>{0} mm: {1} mm</source>
+        <translation>{0} mm : {1} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/overhang.py"/>
