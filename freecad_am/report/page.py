@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""report.html: the report to look at, one file without scripts or links."""
+"""report.html: the report to look at, one file without links; its one script draws the path."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
 from .style import STYLE
 from .tables import axis_names, clock, figure_text, grid_of, in_units, pairs_of, table_of
+from .turned import columns, element
 
 _MOST_ISSUES = 200
 _WHOLE = (
@@ -67,14 +68,17 @@ def render(content: Content) -> str:
     """The page."""
     report = content.report
     name, status = escape(report["name"]), report["status"]
-    pictures = Pictures(content.source)
+    pictures, shown = Pictures(content.source), _shown(content)
+    toolpath = content.toolpath
+    width = content.source.process.bead_width if toolpath.bead_width is None else toolpath.bead_width
+    path = element.turned(shown, toolpath, width, content.platform_diameter)
     sections = [
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
-        f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{_issues(report["issues"])}',
-        _preflight(report["preflight"]),
-        "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
-        f'<figure>{view.picture(content.toolpath, content.platform_diameter)}<figcaption>The beads, coloured by layer; '
+        f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{_issues(report["issues"], shown)}<h2>Path</h2>{path.element}',
+        f'<figure id="path-still">{view.picture(content.toolpath, content.platform_diameter)}<figcaption>The beads, coloured by layer; '
         "short strokes show the build direction.</figcaption></figure>",
+        _preflight(report["preflight"], shown),
+        "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
         _process(content, pictures),
         _on_hub(content, pictures),
@@ -88,9 +92,16 @@ def render(content: Content) -> str:
     ]
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{name}</title>'
-        f'<meta name="viewport" content="width=device-width,initial-scale=1"><style>{STYLE}</style></head>'
-        f'<body><main>{"".join(sections)}</main></body></html>\n'
+        f'<meta name="viewport" content="width=device-width,initial-scale=1">'
+        f'<meta http-equiv="Content-Security-Policy" content="{element.policy()}"><style>{STYLE}{element.style()}</style></head>'
+        f'<body><main>{"".join(sections)}</main>{path.data}</body></html>\n'
     )
+
+
+def _shown(content: Content) -> columns.Shown:
+    """The rows of the path to turn, with their joints where there is a machine."""
+    machine = content.report["machine"] if content.source.cell is not None else None
+    return columns.shown(content.source, machine["labels"], machine["units"]) if machine else columns.shown(content.source)
 
 
 def _subtitle(content: Content) -> str:
@@ -236,33 +247,35 @@ def _comparison(report: dict[str, Any]) -> str:
     return f"<h2>Comparison of the methods</h2>{table_of(whole)}{table_of(axes)}"
 
 
-def _issues(issues: list[dict[str, Any]]) -> str:
+def _issues(issues: list[dict[str, Any]], shown: columns.Shown) -> str:
     if not issues:
         return ""
     rows = []
     for issue in sorted(issues, key=lambda entry: ("error", "warning", "note").index(entry["level"]))[:_MOST_ISSUES]:
-        place = _where(issue)
+        place = _where(issue, shown)
         rows.append(
             f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
             f'<td class="place">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
         )
     more = f"<p>{len(issues) - len(rows)} more stand in report.json.</p>" if len(issues) > len(rows) else ""
-    return f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}<h2>Path</h2>'
+    return f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}'
 
 
-def _where(place: dict[str, Any]) -> str:
-    """Layer, bead and point, as far as they are told."""
-    return " ".join(f"{word} {place[word]}" for word in ("layer", "bead", "point") if place[word] is not None)
+def _where(place: dict[str, Any], shown: columns.Shown) -> str:
+    """Layer, bead and point, as far as they are told; a click shows them in the path."""
+    words = " ".join(f"{word} {place[word]}" for word in ("layer", "bead", "point") if place[word] is not None)
+    row = shown.row_of(place["layer"], place["bead"], place["point"])
+    return words if row is None else f'<button data-row="{row}">{words}</button>'
 
 
-def _preflight(promises: list[dict[str, Any]]) -> str:
+def _preflight(promises: list[dict[str, Any]], shown: columns.Shown) -> str:
     """Every promise with its mark: kept, broken, or not checked."""
     if not promises:
         return ""
     rows = []
     for one in promises:
         mark, word = _MARKS[one["ok"]]
-        where = "" if one["place"] is None else _where(one["place"])
+        where = "" if one["place"] is None else _where(one["place"], shown)
         worst = "" if one["worst"] is None else f"{figure_text(one['worst'])} {one['unit']}".strip()
         sign = "\u2265" if one["at_least"] else "\u2264"
         bound = "" if one["bound"] is None else f"{sign} {figure_text(one['bound'])} {one['unit']}".strip()

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The rows of a motion as columns of small whole numbers, which a page holds as text."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from freecad_am.core.motion import Motion
+from freecad_am.core.simulation.margins import from_next, speed_ratios
+from freecad_am.core.toolpath import Array
+from freecad_am.plots.source import Source
+
+MOST_ROWS = 200_000  # of a page; of longer motions every second row is shown, every third ..
+STEPS = 65534  # of a column between its least and its largest value
+NONE = 65535  # stands for no value
+_UNIT = 32767  # of a component of a direction
+_ROUND = 1e-9
+
+Rows = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Column:
+    """Values (k,) of the rows that are shown, NaN where there is none."""
+
+    name: str
+    unit: str
+    values: Array
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a page shows of a motion. rows: (k,) of the motion, in order. columns: what may colour the path; axes: the joints,
+    times: (k,) s at which they are reached."""
+
+    motion: Motion
+    rows: Rows
+    times: Array
+    columns: Sequence[Column]
+    axes: Sequence[Column]
+
+    @property
+    def box(self) -> tuple[Array, float]:
+        """Least corner (3,) and step, mm, of the positions told in whole numbers."""
+        at = self.motion.position[self.rows]
+        low = at.min(axis=0)
+        return low, max(float((at.max(axis=0) - low).max()), 1e-6) / STEPS
+
+    def blocks(self) -> list[list[int]]:
+        """Of each stretch of rapids and of each bead: its layer, its bead, the first of the rows shown, whether it is laid."""
+        motion, starts = self.motion, _starts(self.motion)
+        first = np.searchsorted(self.rows, starts)
+        table = np.column_stack((motion.layer[starts], motion.bead[starts], first, motion.deposit[starts]))
+        found: list[list[int]] = table.astype(int).tolist()
+        return found
+
+    @cached_property
+    def _beads(self) -> dict[tuple[int, int], tuple[int, int]]:
+        """First and last row of each bead, by its layer and number."""
+        motion, starts = self.motion, _starts(self.motion)
+        ends = np.append(starts[1:], len(motion)) - 1
+        return {
+            (int(motion.layer[start]), int(motion.bead[start])): (int(start), int(end))
+            for start, end in zip(starts, ends) if motion.deposit[start]
+        }
+
+    def row_of(self, layer: int | None, bead: int | None, point: int | None) -> int | None:
+        """The number of the row shown at a place, or last before it; None where there is no such bead. Without a bead the
+        first one of the layer, without a point the first one of the bead."""
+        if layer is None:
+            return None
+        if bead is None:
+            bead = min((number for above, number in self._beads if above == layer), default=0)
+        if (layer, bead) not in self._beads:
+            return None
+        first, last = self._beads[layer, bead]
+        return int(np.searchsorted(self.rows, min(first + (point or 0), last), side="right")) - 1
+
+
+def shown(source: Source, labels: Sequence[str] = (), units: Sequence[str] = ()) -> Shown:
+    """What a page shows of a job. labels, units: of the axes, deg or mm."""
+    motion = source.motion
+    rows = _thinned(motion)
+    joints = motion.joints[rows] if labels else np.zeros((len(rows), 0))
+    axes = [
+        Column(label, unit, values if unit == "mm" else np.degrees(values))
+        for label, unit, values in zip(labels, units, joints.T)
+    ]
+    columns = [Column(one.name, one.unit, one.values[rows]) for one in _columns(source)]
+    return Shown(motion, rows, source.times.arrive[rows], columns, axes)
+
+
+def _columns(source: Source) -> list[Column]:
+    """What may colour the path, all its rows (n,)."""
+    motion, cell = source.motion, source.cell
+    upright = np.degrees(np.arccos(np.clip(motion.tool @ source.toolpath.frame[:3, 2], -1.0, 1.0)))
+    found = [
+        Column("layer", "", motion.layer.astype(float)),
+        Column("speed", "mm/s", from_next(motion.deposit, motion.point, motion.speed)),
+        Column("width", "mm", motion.width),
+        Column("tilt", "deg", upright),
+    ]
+    if cell is not None:
+        ratio = speed_ratios(motion.joints, motion.duration, cell.machine.max_speed).max(axis=1)
+        found += [
+            Column("joint margin", "%", 100.0 * cell.limits.smallest_share(motion.joints)),
+            Column("joint speed", "%", 100.0 * from_next(motion.deposit, motion.point, ratio)),
+        ]
+    if source.condition is not None:
+        found.append(Column("condition", "", source.condition))
+    return [one for one in found if np.isfinite(one.values).any()]
+
+
+def _starts(motion: Motion) -> Rows:
+    """The first row of each stretch of rapids and of each bead."""
+    changed = np.ones(len(motion), dtype=bool)
+    for column in (motion.deposit, motion.layer, motion.bead):
+        changed[1:] &= column[1:] == column[:-1]
+    return np.flatnonzero(~changed | (np.arange(len(motion)) == 0))
+
+
+def _thinned(motion: Motion) -> Rows:
+    """The rows that are shown: all, or every k-th of each bead with its ends, as evenly as it goes."""
+    every = -(-len(motion) // MOST_ROWS)
+    if every <= 1:
+        return np.arange(len(motion))
+    starts = _starts(motion)
+    ends = np.append(starts[1:], len(motion)) - 1
+    within = np.arange(len(motion)) - np.repeat(starts, np.diff(np.append(starts, len(motion))))
+    kept = within % every == 0
+    kept[ends] = True
+    return np.flatnonzero(kept)
+
+
+class Bytes:
+    """Columns one after the other, each with where it begins."""
+
+    def __init__(self) -> None:
+        self._parts: list[bytes] = []
+        self._size = 0
+
+    def add(self, values: NDArray[Any], kind: str) -> dict[str, Any]:
+        """Put in values as little-endian numbers of a kind of numpy; where they are, for the page."""
+        data = np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<")).tobytes()
+        place = {"at": self._size, "count": int(values.size), "kind": kind}
+        data += b"\0" * (-len(data) % 4)
+        self._parts.append(data)
+        self._size += len(data)
+        return place
+
+    def text(self) -> str:
+        """All of them, in base64."""
+        return base64.b64encode(b"".join(self._parts)).decode("ascii")
+
+
+def packed(of: Shown, into: Bytes) -> dict[str, Any]:
+    """The rows as bytes; where they are and how to read them."""
+    low, step = of.box
+    rows, motion = of.rows, of.motion
+    return {
+        "rows": len(rows), "low": low.tolist(), "step": step,
+        "position": into.add(np.rint((motion.position[rows] - low) / step), "u2"),
+        "build": into.add(np.rint(motion.build[rows] * _UNIT), "i2"),
+        "tool": into.add(np.rint(motion.tool[rows] * _UNIT), "i2"),
+        "laid": into.add(_laid(motion, rows), "u1"),
+        "time": into.add(of.times, "f4"),
+        "point": into.add(motion.point[rows], "u4"),
+        "blocks": of.blocks(),
+        "columns": [_column(one, into) for one in of.columns],
+        "axes": [_column(one, into) for one in of.axes],
+    }
+
+
+def _laid(motion: Motion, rows: Rows) -> NDArray[np.bool_]:
+    """(k,) whether the way to a row, from the one shown before, is laid."""
+    found: NDArray[np.bool_] = motion.deposit[rows] & (motion.point[rows] > 0)
+    return found
+
+
+def _column(column: Column, into: Bytes) -> dict[str, Any]:
+    known = np.isfinite(column.values)
+    low, high = (float(column.values[known].min()), float(column.values[known].max())) if known.any() else (0.0, 0.0)
+    if high - low <= _ROUND * max(1.0, abs(high)):
+        high = low
+    step = (high - low) / STEPS if high > low else 1.0
+    whole = np.where(known, np.rint((np.where(known, column.values, low) - low) / step), NONE)
+    return {"name": column.name, "unit": column.unit, "low": low, "high": high, "values": into.add(whole, "u2")}
