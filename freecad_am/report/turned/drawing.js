@@ -8,7 +8,7 @@ const COARSE = 8000, SMOOTH = 40000, SLOW = 40;
 const BEAD_SHADER = `#version 300 es
 uniform mat3 turn; uniform vec3 middle; uniform vec2 scale; uniform vec2 shift; uniform float depth;
 uniform float pixel; uniform float high; uniform float wide; uniform float step; uniform vec3 low; uniform float rapids;
-uniform vec2 widths; uniform vec4 values;
+uniform vec2 widths; uniform vec2 values;
 layout(location=0) in vec3 start; layout(location=1) in vec3 end; layout(location=2) in vec3 build;
 layout(location=3) in float width; layout(location=4) in vec3 corner; layout(location=5) in float value;
 out float across; out float share; out float known; out float isLaid; flat out vec3 side;
@@ -166,7 +166,8 @@ class Drawing {
     gl.uniform1f(places.pixel, 1 / (camera.zoom * ratio)); gl.uniform1f(places.high, path.height);
     gl.uniform1f(places.wide, path.width); gl.uniform1f(places.rapids, look.rapids ? 1 : 0);
     gl.uniform2f(places.widths, widths ? widths.low : 0, widths ? (widths.high - widths.low) / STEPS : 0);
-    gl.uniform4f(places.values, 0, column.high > column.low ? 1 / STEPS : 0, 0, 0);
+    const span = STEPS / Math.max(column.high - column.low, 1e-12), wide = (column.most - column.least) * span;
+    gl.uniform2f(places.values, (column.least - column.low) * span, wide > 0 ? 1 / wide : 0);
     gl.uniform3fv(places.rapid, look.soft.map((part) => part / 255)); gl.uniform3f(places.unknown, 0.6, 0.6, 0.62);
     gl.bindTexture(gl.TEXTURE_2D, this.ramp);
     this.each(0, pieces.buffer, 3, gl.UNSIGNED_SHORT, PIECE, KINDS.start);

@@ -252,8 +252,8 @@ class Viewer {
     ];
     this.root.querySelector(".told").textContent = words.filter(Boolean).join(" · ");
     const column = path.columns[look.column], digits = column.unit || column.name !== "layer" ? 3 : 6;
-    this.root.querySelector(".least").textContent = Number(column.low.toPrecision(digits));
-    this.root.querySelector(".most").textContent = `${Number(column.high.toPrecision(digits))} ${column.unit}`;
+    this.root.querySelector(".least").textContent = Number(column.least.toPrecision(digits));
+    this.root.querySelector(".most").textContent = `${Number(column.most.toPrecision(digits))} ${column.unit}`;
   }
 }
 
