@@ -74,9 +74,10 @@ def render(content: Content) -> str:
     path = element.turned(shown, toolpath, width, content.platform_diameter)
     sections = [
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
-        f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{_issues(report["issues"], shown)}<h2>Path</h2>{path.element}',
-        f'<figure id="path-still">{view.picture(content.toolpath, content.platform_diameter)}<figcaption>The beads, coloured by layer; '
-        "short strokes show the build direction.</figcaption></figure>",
+        f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{_issues(report["issues"], shown)}',
+        f"<h2>Path</h2>{path.element}",
+        f'<figure id="path-still">{view.picture(toolpath, content.platform_diameter)}<figcaption>The beads, coloured by '
+        "layer; short strokes show the build direction.</figcaption></figure>",
         _preflight(report["preflight"], shown),
         "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
@@ -93,7 +94,8 @@ def render(content: Content) -> str:
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{name}</title>'
         f'<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f'<meta http-equiv="Content-Security-Policy" content="{element.policy()}"><style>{STYLE}{element.style()}</style></head>'
+        f'<meta http-equiv="Content-Security-Policy" content="{element.policy()}">'
+        f"<style>{STYLE}{element.style()}</style></head>"
         f'<body><main>{"".join(sections)}</main>{path.data}</body></html>\n'
     )
 

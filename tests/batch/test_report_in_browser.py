@@ -66,7 +66,7 @@ def middle(page):
 
 
 def test_the_path_takes_the_place_of_the_picture_and_is_drawn_in_the_colours_of_its_layers(page):
-    assert page.run("[document.getElementById('path').hidden, document.getElementById('path-still').hidden]") == [False, True]
+    assert page.run("['path', 'path-still'].map((name) => document.getElementById(name).hidden)") == [False, True]
     seen = picture(page).reshape(-1, 3)
     paper = seen[0]
     drawn = seen[np.abs(seen - paper).max(axis=1) > 20.0]
@@ -89,7 +89,8 @@ def test_it_is_stepped_through_layer_by_layer_and_point_by_point(page):
     for _ in range(3):
         page.run("document.querySelector('[name=back]').click()")
     agrees(page, len(page.rows) - 4)
-    page.run("(() => { const to = document.querySelector('[name=to]'); to.value = 2; to.dispatchEvent(new Event('input')); })()")
+    page.run("(() => { const to = document.querySelector('[name=to]'); to.value = 2;"
+             " to.dispatchEvent(new Event('input')); })()")
     last = max(at for at, row in enumerate(page.rows) if row["layer"] == "2")
     agrees(page, last)
     fewer = picture(page)

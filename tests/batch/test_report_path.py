@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The path in the page: its bytes, read by themselves, are the rows of waypoints.csv; nothing is fetched, and no other script
-may run."""
+"""The path in the page: its bytes, read by themselves, are the rows of waypoints.csv; nothing is fetched, and no other
+script may run."""
 
 import base64
 import csv
@@ -53,8 +53,8 @@ def planned(tmp_path_factory, root):
     shop.write_job()
     assert shop.run("plan", "cup.yaml").status == 0
     files = shop.files()
-    return Page(files["report.html"].decode()), list(csv.DictReader(files["waypoints.csv"].decode().splitlines())), json.loads(
-        files["report.json"])
+    rows = list(csv.DictReader(files["waypoints.csv"].decode().splitlines()))
+    return Page(files["report.html"].decode()), rows, json.loads(files["report.json"])
 
 
 def test_its_bytes_are_the_waypoints(planned):
@@ -80,7 +80,7 @@ def test_its_bytes_are_the_waypoints(planned):
         assert all(abs(float(row[f"q{number}_deg"]) - value) <= near
                    for row, value in zip(rows, page.values(axis), strict=True))
     speed = next(one for one in facts["columns"] if one["name"] == "speed")
-    told = {round(value, 3) for value, row in zip(page.values(speed), rows) if row["kind"] == "deposit" and row["point"] != "0"}
+    told = {round(value, 3) for value, on in zip(page.values(speed), laid) if on}
     assert told == {6.0} and speed["least"] == speed["most"] == 6.0 < speed["high"]  # rapids are faster, and have no colour
     times = page.column(facts["time"])
     assert list(times) == sorted(times) and times[-1] == pytest.approx(report["totals"]["time_s"], rel=1e-3)
@@ -106,7 +106,8 @@ def test_places_of_findings_and_promises_lead_to_their_rows(planned):
     for row, *place in told:
         found = rows[int(row)]
         assert found["kind"] == "deposit"
-        assert [found[key] for key, value in zip(("layer", "bead", "point"), place) if value] == [one for one in place if one]
+        said = [(key, value) for key, value in zip(("layer", "bead", "point"), place) if value]
+        assert [(key, found[key]) for key, _ in said] == said
 
 
 def test_nothing_is_fetched_and_no_other_script_runs(planned):

@@ -37,8 +37,8 @@ class Column:
 
 @dataclass(frozen=True)
 class Shown:
-    """What a page shows of a motion. rows: (k,) of the motion, in order. columns: what may colour the path; axes: the joints,
-    times: (k,) s at which they are reached."""
+    """What a page shows of a motion. rows: (k,) of the motion, in order; times: (k,) s at which they are reached. columns:
+    what may colour the path; axes: the joints."""
 
     motion: Motion
     rows: Rows
@@ -54,7 +54,7 @@ class Shown:
         return low, max(float((at.max(axis=0) - low).max()), 1e-6) / STEPS
 
     def blocks(self) -> list[list[int]]:
-        """Of each stretch of rapids and of each bead: its layer, its bead, the first of the rows shown, whether it is laid."""
+        """Of each stretch of rapids and of each bead: its layer, bead, the first of the rows shown, whether it is laid."""
         motion, starts = self.motion, _starts(self.motion)
         first = np.searchsorted(self.rows, starts)
         table = np.column_stack((motion.layer[starts], motion.bead[starts], first, motion.deposit[starts]))

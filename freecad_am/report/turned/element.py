@@ -63,7 +63,7 @@ def turned(of: Shown, toolpath: Toolpath, width: float, platform: float | None) 
     facts["ramp"] = [shade(k / (_SHADES - 1)) for k in range(_SHADES)]
     left_out = len(of.motion) - len(of.rows)
     note = f"; {left_out:,} points between are left out here" if left_out else ""
-    caption = f"<figcaption>The path with its beads{note}. Underlined places in the tables below are shown here.</figcaption>"
+    caption = f"<figcaption>The path with its beads{note}. Underlined places in the tables are shown here.</figcaption>"
     told = json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c")
     return Turned(
         f'<figure class="turned" id="path" hidden>{_CONTROLS}{caption}</figure>',
