@@ -29,6 +29,7 @@ LARGE = 1e-4  # and this share of the size of what is larger than half a metre: 
 ASKED = 200  # places that triangles are not sure of and the kernel is asked about, the farthest ones first
 FAILURES = 3  # of the kernel; it is not asked on then
 ALWAYS = 5  # and as many in any case
+MOST_ON_EDGES = 500  # places that the kernel is asked about whose edges are the part
 INSIDE = 1e-6  # mm
 PIECE = 1000  # places done together; bounds the memory
 
@@ -46,6 +47,20 @@ def off_faces(shape: Any, names: Sequence[str], points: Array, allowed: float) -
     faces = Part.makeCompound([face.copy(False) for face in chosen])
     triangles = _Triangles(faces)
     return _exact(faces, points, triangles.away(points), allowed, triangles.deflection, False)
+
+
+def off_edges(shape: Any, names: Sequence[str], points: Array) -> Array:
+    """Distances (n,) mm of points (n, 3), as many as MOST_ON_EDGES spread over them and NaN at the others, from edges of a
+    shape, by their names, or from all; by the kernel."""
+    known = {f"Edge{number}": edge for number, edge in enumerate(shape.Edges, start=1)}
+    edges = Part.makeCompound([known[name] for name in dict.fromkeys(names) if name in known] or list(shape.Edges))
+    found = np.full(len(points), np.nan)
+    for k in np.unique(np.linspace(0, len(points) - 1, min(len(points), MOST_ON_EDGES)).round().astype(int)).tolist():
+        try:
+            found[k] = _by_kernel(edges, points[k], False)
+        except (RuntimeError, Part.OCCError):  # nobody knows there
+            continue
+    return found
 
 
 def off_solids(shape: Any, points: Array, allowed: float) -> Array:

@@ -52,7 +52,7 @@ class CurvesFeature(Stage):
                 found = table.curves(label, strategy.chord_error)
             else:
                 found = tuple(curves_of(shape, edges, faces, strategy.chord_error, label))
-            curves = Curves(label, found, bodies((*ground, *fixtures)))
+            curves = Curves(label, found, bodies((*ground, *fixtures)), edges=None if shape is None else edges)
             return Outcome(curves, (), (("Curves", len(found)),))
 
         return work

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..brep.hub import SHARE, Bodies, bodies_of, given, seats
-from ..core.collision.depths import places_within
+from ..core.geometry.beyond_hub import volume_beyond
+from ..core.geometry.developable import Developable
 from ..core.geometry.mesh.solid import SolidMesh
 from ..core.geometry.on_hub import OwnHub, Seat, SolidsOnHub
 from ..core.geometry.surroundings import Body
@@ -142,10 +143,10 @@ def _within(solids: SolidsOnHub) -> OwnHub:
     total = within = 0.0
     for group in solids.groups:
         for body in group.bodies:
-            volume, points = SolidMesh(body.vertices, body.triangles).volume, places_within(body)
+            volume, surface = SolidMesh(body.vertices, body.triangles).volume, group.base.surface
             total += volume
-            if len(points):
-                within += volume * float((group.base.surface.distance(group.base.inside(points)) < 0.0).mean())
+            if isinstance(surface, Developable):
+                within += max(volume - volume_beyond(surface, group.base.inside(body.vertices), body.triangles), 0.0)
     return OwnHub(total, within)
 
 

@@ -22,7 +22,8 @@ from ..core.strategies import sequence, support
 from ..core.strategies.families import NONE, family_of
 from ..core.toolpath import Toolpath as CoreToolpath
 from . import progress
-from .planned import CHECKED, STRATEGY, Given, bases_of, kept_clear, layers_of, looked_at, with_wire
+from .on_its_part import looked_at
+from .planned import CHECKED, STRATEGY, Given, bases_of, kept_clear, layers_of, with_wire
 from .platforms import platforms
 from .shapes import Taken, bodies, taken
 

@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from ..brep.off_part import off_faces, off_facets, off_mesh, off_solids
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from ..core.kinematics.cell import mounted
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
-from ..core.process import bead_table, on_part
+from ..core.process import bead_table
 from ..core.process.bead_model import BeadModel
+from ..core.process.laid_twice import laid_twice
 from ..core.process.wire import fed
 from ..core.strategies import clearance_look, platform, support
 from ..core.strategies.families import family_of
@@ -29,10 +29,9 @@ from ..core.toolpath import Array
 from ..core.toolpath import Toolpath as CoreToolpath
 from . import progress
 from .platforms import platforms
-from .shapes import Taken
 
 STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping the nozzle clear
-CHECKED, LOOKED = 0.92, 0.95  # and what is left into last looks
+CHECKED = 0.92  # and what is left into last looks
 
 
 @dataclass(frozen=True)
@@ -88,7 +87,8 @@ def layers_of(of: Given) -> CoreToolpath:
             "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of solids alone; use none"
         )
     made = _PLANNERS[family.kind].layers(of)
-    return dataclasses.replace(made, max_from_vertical=of.build.max_from_vertical)
+    twice = made.twice if family.filled else laid_twice(made)
+    return dataclasses.replace(made, max_from_vertical=of.build.max_from_vertical, twice=twice)
 
 
 def kept_clear(
@@ -107,51 +107,6 @@ def with_wire(toolpath: CoreToolpath, of: Given) -> CoreToolpath:
 def bases_of(of: Given) -> list[Any]:
     """The surfaces that solids stand on; none of walls and faces."""
     return [group.base for group in getattr(of.wall, "groups", ())]
-
-
-def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> CoreToolpath:
-    """The toolpath with whether it lies on the shapes that it was made for; nobody looks where these have no faces."""
-    if family_of(of.strategy).kind == "curves":  # they are the part
-        return toolpath
-    progress.report(LOOKED, "looking whether the deposit lies on the part")
-    places = on_part.places(toolpath)
-    if family_of(of.strategy).kind == "cladding":
-        return _on_faces(toolpath, of, sources[0], places)
-    if hasattr(of.strategy, "share_of_cut"):  # where the part was cut, above the surface that beads of the layer lie on
-        up = of.strategy.share_of_cut * of.strategy.layer_height * places.build
-        places = places._replace(points=places.points + up)
-    limit = on_part.allowed(toolpath, getattr(of.strategy, "margin", 0.0))
-    middle = getattr(of.strategy, "wall", "") == "middle"  # between two faces, on neither
-    if middle and not sources[0].shape.Solids:
-        return toolpath
-    if middle or family_of(of.strategy).filled:
-        off = np.min([_off_solid(source, places.points, limit) for source in sources], axis=0)
-    elif sources[0].shape is None:
-        body = sources[0].body()
-        off = np.maximum(off_facets(body.vertices, body.triangles, places.points) - of.wall.smoothing, 0.0)
-    else:
-        off = off_faces(sources[0].shape, of.wall.faces, places.points, limit)
-    return on_part.judged(toolpath, places, off, limit)
-
-
-def _on_faces(toolpath: CoreToolpath, of: Given, source: Taken, places: on_part.Places) -> CoreToolpath:
-    """The toolpath with whether its layers lie as many layer heights above the faces as they should."""
-    up = (places.layer % of.strategy.layers) * of.strategy.layer_height
-    limit = toolpath.chord_error + on_part.ROUNDED
-    feet = places.points - up[:, None] * places.build
-    if source.shape is not None:
-        off = off_faces(source.shape, of.wall.faces, feet, limit)
-    else:
-        body = source.body()
-        off = np.maximum(off_facets(body.vertices, body.triangles, feet) - of.wall.smoothing, 0.0)
-    return on_part.judged(toolpath, places, off, limit)
-
-
-def _off_solid(source: Taken, points: Any, limit: float) -> Any:
-    if source.shape is not None:
-        return off_solids(source.shape, points, limit)
-    body = source.body()
-    return off_mesh(body.vertices, body.triangles, points)
 
 
 def _share(fraction: float, text: str) -> None:

@@ -16,7 +16,8 @@ from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ..core.toolpath import Toolpath as CoreToolpath
 from . import rows
 from .in_sequence import member, planned_in_sequence
-from .planned import Given, looked_at, planned
+from .on_its_part import looked_at
+from .planned import Given, planned
 from .shapes import taken
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work

@@ -5993,6 +5993,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>about {0} cm3 of beads are laid over others of their layer, {1} % of those of {2}: they come nearer to each other than they are wide, or cross; layers get higher there. Use narrower beads, or leave out what is there twice</source>
+        <translation>environ {0} cm3 de cordons sont déposés sur d&apos;autres de leur couche, {1} % de ceux de {2} : ils s&apos;approchent plus que leur largeur, ou se croisent ; les couches y deviennent plus hautes. Prenez des cordons plus étroits, ou omettez ce qui est en double</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
         <source>about {0} cm3 of beads are laid over others of their layer, {1} % of {2}: where lines and their links meet contours, and where room is left for less than a bead; layers get higher there. Use fill: contours, narrower beads, or a wider strategy.gap</source>
         <translation>environ {0} cm3 de cordons sont déposés sur d&apos;autres de leur couche, {1} % de {2} : là où les lignes et leurs liaisons rejoignent les contours, et là où il reste de la place pour moins d&apos;un cordon ; les couches y deviennent plus hautes. Utilisez fill : contours, des cordons plus étroits, ou un strategy.gap plus large</translation>
     </message>
@@ -8412,7 +8417,7 @@
         <translation>recherche de ce qui le rendrait faisable : {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned.py"/>
+        <location filename="../../freecad_am/objects/on_its_part.py"/>
         <source>looking whether the deposit lies on the part</source>
         <translation>vérification que le dépôt est sur la pièce</translation>
     </message>
@@ -8777,6 +8782,11 @@
         <translation>non vérifié : seule la commande peut le montrer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>not checked: planned by an earlier version</source>
+        <translation>non vérifié : planifié par une version antérieure</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: the machine file tells no shapes of its links</source>
         <translation>non vérifié : le fichier machine ne donne pas la forme de ses corps</translation>
@@ -8785,11 +8795,6 @@
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>not checked: the part encloses no volume</source>
         <translation>non vérifié : la pièce n’enferme pas de volume</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>not checked: the part encloses no volume, or is filled with beads</source>
-        <translation>non vérifié : la pièce n’enferme pas de volume, ou est remplie de cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
@@ -10963,6 +10968,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>volume of the beads, as wide as they are laid, outside of their layers, and of layers outside of the part</source>
+        <translation>volume des cordons, aussi larges que déposés, hors de leurs couches, et des couches hors de la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>volume of the beads, as wide as they count, that is wider than the part is thick</source>
         <translation>volume des cordons, de la largeur qui compte, qui dépasse l’épaisseur de la pièce</translation>
     </message>
@@ -11020,6 +11030,11 @@
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>what happens between moves is in another order than planned</source>
         <translation>ce qui se passe entre les mouvements est dans un autre ordre que planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>what of beads of one layer is wider than they are apart, against 10 % of the beads</source>
+        <translation>ce que les cordons d&apos;une couche ont de plus large que leur écart, contre 10 % des cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences/page.py"/>
@@ -12613,8 +12628,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
-        <source>{0}: beads of {1} mm do not reach into what is narrower, and layers not above the last cut; use narrower beads, or lower layers</source>
-        <translation>{0} : des cordons de {1} mm n&apos;entrent pas dans ce qui est plus étroit, et il n&apos;y a pas de couche au-dessus de la dernière coupe ; prenez des cordons plus étroits ou des couches plus basses</translation>
+        <source>{0}: beads of {1} mm do not reach into what is narrower, layers not above the last cut, and nothing is laid within a hub; use narrower beads, or lower layers</source>
+        <translation>{0} : les cordons de {1} mm n&apos;entrent pas dans ce qui est plus étroit, les couches ne montent pas au-dessus de la dernière coupe, et rien n&apos;est déposé dans un moyeu ; prenez des cordons plus étroits, ou des couches plus basses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>

@@ -137,6 +137,9 @@ def test_a_bent_top_gets_layers_above_it_and_the_program_has_them(planned, works
     deposit = report["deposit"]
     assert deposit["part_cm3"] == pytest.approx(2 * HEIGHT * top.Area / 1000.0, rel=0.01)
     assert deposit["left_out_cm3"] < 0.02 * deposit["part_cm3"]
+    covers = deposit["deposited_cm3"] + deposit["beside_cm3"]
+    twice = max(report["totals"]["volume_cm3"] - covers, 0.0)
+    assert deposit["twice_cm3"] == pytest.approx(twice, abs=0.01 * covers)
     text = "".join(path.read_text() for path in sorted(workshop.folder.glob("out/program/*.MPF")))
     number = r"(-?[\d.]+)"
     form = re.compile(f"G1 X{number} Y{number} Z{number} A3={number} B3={number} C3={number}")

@@ -87,6 +87,18 @@ def test_bad_tables_are_told_with_their_line(planned, text, line, words):
     assert done.status == 2 and line in done.err and words in done.err and done.err.count("error[") == 1, done.err
 
 
+def test_curves_that_lie_on_one_another_are_told(planned):
+    """A bead of 40 mm with another of 30 mm 1 mm beside it, each 4 mm wide and 2 mm high."""
+    done, report, _ = planned(text="0,0,0,1\n40,0,0,1\n5,1,0,2\n35,1,0,2\n")
+    assert done.status == 0, done.err
+    assert report["deposit"]["twice_cm3"] == pytest.approx(30.0 * 3.0 * 2.0 / 1000.0, rel=0.03)
+    assert report["deposit"]["left_out_cm3"] is None and report["on_part"] is None
+    (told,) = [issue for issue in report["issues"] if issue["code"] == "DEPOSITED_TWICE"]
+    assert told["level"] == "warning" and "32 % of those of beads" in told["message"]
+    promises = {one["promise"]: one for one in report["preflight"]}
+    assert promises["Little is deposited twice"]["ok"] is False and promises["All of the part is deposited"]["ok"] is None
+
+
 @pytest.mark.parametrize(("part", "more", "mode", "code"), [
     (", edges: [Edge1]", "", "", "NOT_FOR_FAMILY"), (", faces: [Face1]", "", "", "NOT_FOR_FAMILY"),
     ("", ", repeat: 0", "", "BAD_VALUE"), ("", ", direction: [0, 0, 0]", "", "BAD_VALUE"),
@@ -117,6 +129,8 @@ def test_edges_lie_on_their_shape_with_the_normals_of_its_faces(planned, worksho
     np.testing.assert_allclose(radius, 20.0 + 2.0 * layer, atol=1e-5)
     np.testing.assert_allclose(build[:, 1:], points[:, 1:] / radius[:, None], atol=1e-6)
     assert report["counts"]["beads"] == 4
+    looked = report["on_part"]
+    assert 0.0 < looked["worst_mm"] < looked["allowed_mm"] == pytest.approx(0.07) and looked["places"] > 100
     chord = np.linalg.norm(np.diff(points[:10], axis=0), axis=1).max()
     assert chord**2 / (8.0 * 20.0) < 0.06  # within the chord error, or as near as directions ask for
 

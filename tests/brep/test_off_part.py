@@ -10,7 +10,7 @@ from FreeCAD import Vector
 
 from freecad_am import api
 from freecad_am.brep import off_part
-from freecad_am.brep.off_part import off_faces, off_mesh, off_solids
+from freecad_am.brep.off_part import off_edges, off_faces, off_mesh, off_solids
 from freecad_am.objects import in_sequence
 from freecad_am.objects import toolpath as stage
 
@@ -186,3 +186,15 @@ def test_triangles_of_a_large_part_are_larger_and_no_place_is_told_farther_than_
     assert (found <= np.maximum(away, 0.0) + 1e-6).all()
     assert found[away > 1.5] == pytest.approx(away[away > 1.5], abs=1e-6)  # by the kernel
     assert found[away > 0.0] == pytest.approx(away[away > 0.0], abs=1.1)
+
+
+def test_points_off_edges(rng):
+    """About the ends of a cylinder, of which one is named."""
+    shape = Part.makeCylinder(20.0, 40.0)
+    top = next(f"Edge{k}" for k, edge in enumerate(shape.Edges, 1) if edge.BoundBox.ZMin > 39.0)
+    angle, radius, height = rng.uniform(-3.0, 3.0, 60), rng.uniform(15.0, 25.0, 60), rng.uniform(30.0, 50.0, 60)
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
+    assert off_edges(shape, (top,), points) == pytest.approx(np.hypot(radius - 20.0, height - 40.0), abs=1e-6)
+    assert (off_edges(shape, (), points) <= off_edges(shape, (top,), points) + 1e-9).all()
+    many = off_edges(shape, (top,), np.tile(points, (50, 1)))
+    assert np.isfinite(many).sum() == 500 and np.isfinite(many[[0, -1]]).all()

@@ -99,12 +99,6 @@ def _depths(points: Array, surface: Surface, inward: Array, half: bool, spacing:
     return found
 
 
-def places_within(body: Body) -> Array:
-    """Points (n, 3) spread evenly inside of a body; none where it leaves an opening."""
-    inside = inside_of(body)
-    return np.zeros((0, 3)) if inside is None else _places(inside)
-
-
 def _places(inside: Inside) -> Array:
     """Points spread evenly inside of a body."""
     found: list[Array] = []

@@ -51,13 +51,14 @@ def left_open(curves: Sequence[tuple[Array, bool]], inner: Sequence[Region], bea
     """What curves (points (n, 2), whether closed) leave open, wider than the gap allowed, of what beads can reach with their
     middles in `inner`."""
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
-    covered = along([(_thinned(points, closed, error), closed) for points, closed in curves], half, error)
+    covered = along([(thinned(points, closed, error), closed) for points, closed in curves], half, error)
     reached = [part for piece in inner for part in piece.grown(half, error)]
     left = [part for piece in reached for part in (piece.without(covered, beads.gap) if covered else (piece,))]
     return [part for part in left if part.grown(-0.5 * beads.gap, error)]
 
 
-def _thinned(points: Array, closed: bool, tolerance: float) -> Array:
+def thinned(points: Array, closed: bool, tolerance: float) -> Array:
+    """A curve (n, 2) with no more points than `tolerance` mm asks for."""
     thin = simplified(np.vstack([points, points[:1]]) if closed else points, tolerance)
     return thin[:-1] if closed else thin
 

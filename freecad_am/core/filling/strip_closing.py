@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -40,15 +40,10 @@ def _open(
 ) -> list[tuple[Window, list[Region], tuple[Region, ...]]]:
     """Window by window, laid flat about its middle, what is open and where beads may lie."""
     period, found = strip.period, []
-    covers = [(_unrolled(strip, curve), curve.closed and not curve.turns) for curve in curves]
-    for window in strip.windows(REACH * beads.spacing):
+    for window, near in beside_windows(strip, curves, REACH * beads.spacing):
         here = [
             part for cover in strip.between(window.low - window.room, window.high + window.room)
             for part in regions([period.laid(line, window.about) for line in cover.rings()])
-        ]
-        near = [
-            (period.laid(line, window.about), closed) for cover, whole in covers
-            for line, closed in _near(cover, whole, window, period.around)
         ]
         inner = tuple(piece for part in here for piece in part.grown(-beads.inset, beads.chord_error))
         if inner:
@@ -56,6 +51,20 @@ def _open(
             left = [piece for part in left_open(near, inner, beads) for piece in part.common(pane)]
             found.append((window, left, inner))
     return found
+
+
+def beside_windows(
+    strip: Strip, curves: Sequence[PlaneCurve], reach: float
+) -> Iterator[tuple[Window, list[tuple[Array, bool]]]]:
+    """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle: points
+    (n, 2), and whether they close."""
+    period = strip.period
+    covers = [(_unrolled(strip, curve), curve.closed and not curve.turns) for curve in curves]
+    for window in strip.windows(reach):
+        yield window, [
+            (period.laid(line, window.about), closed) for cover, whole in covers
+            for line, closed in _near(cover, whole, window, period.around)
+        ]
 
 
 def _unrolled(strip: Strip, curve: PlaneCurve) -> Array:

@@ -63,7 +63,7 @@ def promises(evidence: Evidence) -> tuple[Promise, ...]:
         deposit.lies_on_part(evidence.toolpath, issues),
         deposit.whole(evidence.balance, issues),
         deposit.nothing_beside(evidence.balance, issues),
-        *deposit.once(evidence.balance, issues),
+        deposit.once(evidence.balance, issues),
         deposit.carried(evidence.toolpath, issues),
         deposit.layers(evidence.toolpath, issues, evidence.distances),
         deposit.fed(evidence.toolpath, evidence.process),

@@ -47,7 +47,7 @@ def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
 def whole(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     """Of what of the part is left out."""
     what = "All of the part is deposited"
-    if balance is None:
+    if balance is None or balance.lines:
         return Promise(what, "not checked: the part encloses no volume", None)
     found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.LEFT_OUT,), WARNING)
     how = "volume of the part deeper than half of a bead's width below the wall, or of its solids aside"
@@ -61,20 +61,25 @@ def nothing_beside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     """Of what the beads deposit that is not the part."""
     what = "Nothing is deposited beside the part"
     if balance is None or balance.beside is None:
-        return Promise(what, "not checked: the part encloses no volume, or is filled with beads", None)
+        return Promise(what, "not checked: the part encloses no volume", None)
     found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.BESIDE,), WARNING)
     how = "volume of the beads, as wide as they count, that is wider than the part is thick"
+    if balance.filled:
+        how = "volume of the beads, as wide as they are laid, outside of their layers, and of layers outside of the part"
     return Promise(what, how, not found, balance.beside / MM3, "cm3")
 
 
-def once(balance: Balance | None, issues: Sequence[Issue]) -> tuple[Promise, ...]:
-    """Of beads laid over others of their layer; nothing where beads do not fill the part."""
-    if balance is None or not balance.filled or balance.twice is None:
-        return ()
+def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
+    """Of beads laid over others of their layer."""
+    what = "Little is deposited twice"
+    if balance is None or balance.twice is None:
+        return Promise(what, "not checked: planned by an earlier version", None)
     found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.TWICE,), WARNING)
-    how = "volume of the beads, as wide as they are apart, less what they cover, against 10 % of the part"
-    limit = deposit_balance.MUCH * (balance.part or 0.0) / MM3
-    return (Promise("Little is deposited twice", how, not found, balance.twice / MM3, "cm3", limit),)
+    how = "what of beads of one layer is wider than they are apart, against 10 % of the beads"
+    if balance.filled:
+        how = "volume of the beads, as wide as they are apart, less what they cover, against 10 % of the part"
+    whole = (balance.part or 0.0) - balance.hub if balance.filled else balance.beads or 0.0
+    return Promise(what, how, not found, balance.twice / MM3, "cm3", deposit_balance.MUCH * whole / MM3)
 
 
 def carried(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:

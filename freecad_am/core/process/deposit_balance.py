@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -28,7 +29,7 @@ class Balance:
     """Volumes in mm3, estimates but for solids; None where the part has none. faces: those left out; solids: those left out,
     with mm3. width: of a bead, mm, 0 of solids, which are filled. thick: mm, of the part there.
     filled: beads fill the part. twice: of beads laid over others of their layer. hub: of what is left out and of the part,
-    the hub that is there before."""
+    the hub that is there before. lines: the part is curves, which have no volume to leave out."""
 
     label: str
     part: float | None
@@ -42,6 +43,7 @@ class Balance:
     filled: bool = False
     twice: float | None = None
     hub: float = 0.0
+    lines: bool = False
 
 
 def of_feature(value: Any, width: float) -> Balance | None:
@@ -54,14 +56,29 @@ def of_feature(value: Any, width: float) -> Balance | None:
 def of_toolpath(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
     """The same once there are beads, which know better what they cover where they fill a part."""
     if toolpath.volumes is None:
-        return of_feature(value, width)
+        return _of_beads(value, toolpath, width)
     part, left, beside = toolpath.volumes
     own = value.own if isinstance(value, SolidsOnHub) else None
     hub = own.hub if own else 0.0
+    if own:  # what else of the part is within the surface that solids stand on
+        left += max(own.volume - hub - part, 0.0)
+        part = max(own.volume - hub, part)
     return Balance(
-        value.label, own.volume if own else part, left + hub, part - left + beside, beside, solids=own.apart if own else (),
+        value.label, part + hub, left + hub, part - left + beside, beside, solids=own.apart if own else (),
         width=toolpath.bead_width or 0.0, filled=True, twice=toolpath.twice, hub=hub,
     )
+
+
+def _of_beads(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
+    """Of beads that fill nothing, which know what of them is laid twice; of curves they are all that is known."""
+    known = of_feature(value, width)
+    if toolpath.twice is None:
+        return known
+    length = math.fsum(bead.length for _, _, bead in toolpath)
+    beads = length * (toolpath.bead_width or width) * toolpath.layer_height
+    if known is None:
+        return Balance(value.label, None, None, beads, width=width, twice=toolpath.twice, lines=True)
+    return replace(known, beads=beads if known.beads is None else known.beads, twice=toolpath.twice)
 
 
 def together(balances: Sequence[Balance | None]) -> Balance | None:
@@ -79,6 +96,7 @@ def together(balances: Sequence[Balance | None]) -> Balance | None:
         tuple(f"{one.label} {face}" for one in known for face in one.faces),
         tuple(solid for one in known for solid in one.solids), width=known[0].width, thick=known[0].thick,
         filled=all(one.filled for one in known), twice=total("twice"), hub=total("hub") or 0.0,
+        lines=all(one.lines for one in known),
     )
 
 
@@ -130,31 +148,42 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
             f"{balance.label}, which is {balance.thick:.2g} mm thick there, and beads are {balance.width:.4g} mm wide; give "
             "process.bead_width, or machine it off",
         ))
+    twice, beads = balance.twice or 0.0, balance.beads or 0.0
+    if twice > UNFILLED * beads:
+        found.append(Issue(
+            _much(twice, beads), TWICE, f"about {twice / MM3:.3g} cm3 of beads are laid over others of their layer, "
+            f"{100.0 * twice / beads:.2g} % of those of {balance.label}: they come nearer to each other than they are wide, "
+            "or cross; layers get higher there. Use narrower beads, or leave out what is there twice",
+        ))
     return tuple(found)
+
+
+def _much(twice: float, whole: float) -> str:
+    return WARNING if twice > MUCH * whole else NOTE
 
 
 def _of_filling(of: Balance) -> tuple[Issue, ...]:
     found: list[Issue] = []
     part = (of.part or 0.0) - of.hub
     if of.hub > LITTLE * (of.part or 0.0):
-        found += issues(replace(of, left_out=of.hub, beside=None, width=0.0, filled=False))
+        found += issues(replace(of, left_out=of.hub, beside=None, twice=None, width=0.0, filled=False))
     of = replace(of, part=part, left_out=(of.left_out or 0.0) - of.hub)
     if (of.left_out or 0.0) > UNFILLED * part:
         found.append(Issue(
             WARNING, LEFT_OUT, f"{_left_out(of, True)}: beads of {of.width:.4g} mm do not reach into what is "
-            "narrower, and layers not above the last cut; use narrower beads, or lower layers",
+            "narrower, layers not above the last cut, and nothing is laid within a hub; use narrower beads, or lower layers",
         ))
     if (of.beside or 0.0) > UNFILLED * part:
         found.append(Issue(
             WARNING, BESIDE, f"about {(of.beside or 0.0) / MM3:.3g} cm3 of beads lie beside the {part / MM3:.3g} cm3 of "
             f"{of.label}: beads of {of.width:.4g} mm stand out where it is narrower; use narrower beads, or machine it off",
         ))
-    if (of.twice or 0.0) > UNFILLED * part:
+    twice = of.twice or 0.0
+    if twice > UNFILLED * part:
         found.append(Issue(
-            WARNING if (of.twice or 0.0) > MUCH * part else NOTE, TWICE, f"about {(of.twice or 0.0) / MM3:.3g} cm3 of beads "
-            f"are laid over others of their layer, {100.0 * (of.twice or 0.0) / part:.2g} % of {of.label}: where lines and "
-            "their links meet contours, and where room is left for less than a bead; layers get higher there. Use fill: "
-            "contours, narrower beads, or a wider strategy.gap",
+            _much(twice, part), TWICE, f"about {twice / MM3:.3g} cm3 of beads are laid over others of their layer, "
+            f"{100.0 * twice / part:.2g} % of {of.label}: where lines and their links meet contours, and where room is left "
+            "for less than a bead; layers get higher there. Use fill: contours, narrower beads, or a wider strategy.gap",
         ))
     return tuple(found)
 

@@ -20,6 +20,7 @@ from scipy.spatial import cKDTree
 from ..geometry.columns import lengths
 from ..issues import WARNING, Issue
 from ..toolpath import Array, Toolpath
+from .pieces import Pieces, cut
 
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
@@ -37,26 +38,6 @@ NEAR = 8  # pieces about the place below that are asked before all
 PAIRS = 2_000_000  # of pieces looked at together; bounds the memory
 
 
-@dataclass(frozen=True)
-class _Pieces:
-    """Beads cut into n short pieces in the order of deposit: middles, build and travel directions (n, 3), lengths (n,) mm,
-    widths (n,) mm; along: mm from the start of the bead; layer, bead (of all), point: where each begins; closing (n,)."""
-
-    middle: Array
-    build: Array
-    travel: Array
-    length: Array
-    width: Array
-    along: Array
-    layer: Index
-    bead: Index
-    point: Index
-    closing: Mask
-
-    def __len__(self) -> int:
-        return len(self.middle)
-
-
 def carried(
     toolpath: Toolpath, ground: Ground, first: bool, numbers: Index | None = None
 ) -> tuple[dict[int, float], list[Issue]]:
@@ -67,7 +48,7 @@ def carried(
     the first layer. numbers: (k,) rising, of the layers asked about, all where left out. Time grows little faster than the
     number of pieces, memory as it.
     """
-    pieces = _cut(toolpath)
+    pieces = cut(toolpath, PIECE)
     reach = REACH * toolpath.layer_height
     numbers = np.arange(len(toolpath.layers)) if numbers is None else numbers
     asked = np.flatnonzero(np.isin(pieces.layer, numbers[1:] if first else numbers))
@@ -82,7 +63,7 @@ def carried(
     return open_by_layer, _issues(runs, toolpath, reach)
 
 
-def _without_both(pieces: _Pieces, toolpath: Toolpath, ground: Ground, some: Index) -> Index:
+def _without_both(pieces: Pieces, toolpath: Toolpath, ground: Ground, some: Index) -> Index:
     """Those of some pieces that are not carried at both of their sides."""
     found = []
     for side in (SIDE, -SIDE):
@@ -93,41 +74,8 @@ def _without_both(pieces: _Pieces, toolpath: Toolpath, ground: Ground, some: Ind
     return np.union1d(*found)
 
 
-def _cut(toolpath: Toolpath) -> _Pieces:
-    beads, width = list(toolpath), toolpath.bead_width
-    if width is None:
-        raise ValueError("it is not known how wide the beads count")
-    size = np.array([len(bead) for _, _, bead in beads])
-    points = np.concatenate([bead.points for _, _, bead in beads])
-    build = np.concatenate([bead.build for _, _, bead in beads])
-    wide = np.concatenate([np.full(len(bead), width) if bead.width is None else bead.width for _, _, bead in beads])
-    of = np.repeat(np.arange(len(beads)), size)
-    start = np.delete(np.arange(len(points)), np.cumsum(size) - 1)  # of segments; beads end in points without one
-    way = points[start + 1] - points[start]
-    length = lengths(way)
-    kept = length > 0.0
-    start, way, length = start[kept], way[kept], length[kept]
-    longest = np.maximum(PIECE * 0.5 * (wide[start] + wide[start + 1]), toolpath.chord_error)
-    count = np.maximum(np.ceil(length / longest).astype(np.intp), 1)
-    row = np.repeat(np.arange(len(start)), count)
-    number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
-    share = (number + 0.5) / count[row]
-    first, part = start[row], length[row] / count[row]
-    mixed = build[first] + share[:, None] * (build[first + 1] - build[first])
-    bead = of[first]
-    along = np.cumsum(part) - 0.5 * part
-    begins = np.flatnonzero(np.diff(bead, prepend=-1))
-    along -= np.repeat(along[begins], np.diff(np.r_[begins, len(bead)]))
-    return _Pieces(
-        points[first] + share[:, None] * way[row], mixed / lengths(mixed)[:, None],
-        way[row] / length[row, None], part, wide[first] + share * (wide[first + 1] - wide[first]), along,
-        np.array([layer for layer, _, _ in beads])[bead], bead, first - (np.cumsum(size) - size)[bead],
-        np.array([one.closing for _, _, one in beads])[bead],
-    )
-
-
 def _alone(
-    pieces: _Pieces, toolpath: Toolpath, ground: Ground, some: Index, aside: Array | None = None
+    pieces: Pieces, toolpath: Toolpath, ground: Ground, some: Index, aside: Array | None = None
 ) -> Index:
     """Those of some pieces that nothing carries, at their middles or `aside` (n, 3) mm of these."""
     height = toolpath.layer_height
@@ -185,7 +133,7 @@ def _chunks(tree: cKDTree, centre: Array, radius: float) -> Iterator[Index]:
     yield from np.array_split(np.arange(len(centre)), parts)
 
 
-def _earlier(pieces: _Pieces, mine: Index, other: Index, toolpath: Toolpath) -> Mask:
+def _earlier(pieces: Pieces, mine: Index, other: Index, toolpath: Toolpath) -> Mask:
     """Whether others were there before, and not as neighbours in the same layer; a bead may lie on itself, as spirals do."""
     back = BACK * np.hypot(0.5 * pieces.width[mine], REACH * toolpath.layer_height)
     same = pieces.bead[mine] == pieces.bead[other]
@@ -195,7 +143,7 @@ def _earlier(pieces: _Pieces, mine: Index, other: Index, toolpath: Toolpath) -> 
     return found
 
 
-def _below(pieces: _Pieces, mine: Index, at: Array, other: Index, toolpath: Toolpath) -> Mask:
+def _below(pieces: Pieces, mine: Index, at: Array, other: Index, toolpath: Toolpath) -> Mask:
     """Whether others lie below places (n, 3) of pieces; beads that close gaps lie on what is near, on whichever side."""
     gap = at - pieces.middle[other]
     build = pieces.build[mine]
@@ -220,7 +168,7 @@ class _Run:
     length: float
 
 
-def _runs(pieces: _Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
+def _runs(pieces: Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
     """What of beads lies over nothing in a row, without gaps that are bridged and ends that stand out by half a width."""
     marked = np.unique(pieces.bead[free])
     low, high = np.searchsorted(pieces.bead, marked), np.searchsorted(pieces.bead, marked, side="right")

@@ -3,11 +3,9 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-
 import numpy as np
 
+from ..filling.cover import Cover
 from ..filling.curve import PlaneCurve
 from ..geometry.on_hub import Base
 from ..geometry.plane import Plane
@@ -23,11 +21,12 @@ from ..process.order import Laid, ordered, waited
 from ..toolpath import Array, Toolpath
 from .progress import Progress, silent
 from .solids.beads import Rolled, reversed_curve, rolled
-from .solids.filling import Cover, Filled, Pictures, bead_width, spaced
+from .solids.filling import Filled, Pictures, bead_width, spaced
 from .solids.islands import island_by_island
 from .solids.lean_notes import lean_notes
 from .solids.notes import notes
 from .solids.outlines import leaning
+from .solids.volumes import of_layers, twice
 
 TOLD = 0.02  # distortion that is told
 PART = Base("the part", Plane(), np.eye(4))  # charts are in its coordinates
@@ -79,14 +78,8 @@ def plan(
     return Toolpath(
         layers, np.eye(4), strategy.layer_height, strategy.chord_error, issues, process.overlap, "cladding",
         given.surroundings, None if model is None else model.law(process.acceleration), counted,
-        volumes=_volumes(strategy, covers),
+        volumes=of_layers(strategy, covers), twice=twice(made, strategy, covers, counted),
     )
-
-
-def _volumes(strategy: CladdingParameters, covers: Sequence[Cover]) -> tuple[float, float, float]:
-    """mm3 of all layers, of what beads leave of them, and of what of beads lies beside."""
-    whole, left, beside = (strategy.layer_height * math.fsum(column) for column in zip(*covers))
-    return whole, left, beside
 
 
 def _stretched(share: float) -> tuple[Issue, ...]:

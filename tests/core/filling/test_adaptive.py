@@ -2,6 +2,7 @@
 """Beads as wide as their room, measured on a raster swept by discs of their widths; starts that keep apart."""
 
 import importlib.util
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.filling.adaptive import fitted, shared
+from freecad_am.core.filling.cover import covered
 from freecad_am.core.filling.curve import OVER, Beads
 from freecad_am.core.filling.fill import fill
 from freecad_am.core.geometry.regions.region import regions
@@ -160,3 +162,21 @@ def test_ranges_that_are_none_are_told(given, told):
     with pytest.raises(InputError, match="spacing_range") as refused:
         DevelopableParameters(spacing_range=given)
     assert told in str(refused.value)
+
+
+@pytest.mark.parametrize("thick", [7.0, 12.5, 22.0])
+def test_beads_cover_as_much_as_they_are_wide(thick):
+    """Bars in beads wider or narrower than usual: against what discs of their widths sweep."""
+    loops = bar(thick, 50.0)
+    region, = regions(loops)
+    curves, share = adapted(region, "contours", 0.7, 1.4)
+    grid = shapes.raster(loops, 0.25)[0] + np.array([0.1, 0.07])
+    within, swept_over = shapes.inside(loops, grid), swept(curves, grid)
+    found = covered(region, curves, BEADS)
+    pixel, near = 0.25**2, 0.06 * 2.0 * (50.0 + thick)  # a quarter of a place along the border
+    assert found.whole == pytest.approx(region.area) and found.once == pytest.approx(pixel * swept_over.sum(), abs=near)
+    assert found.left == pytest.approx(pixel * (within & ~swept_over).sum(), abs=near)
+    assert found.beside == pytest.approx(pixel * (swept_over & ~within).sum(), abs=near)
+    usual = covered(region, [replace(curve, share=None) for curve in curves], BEADS)
+    if abs(share - 1.0) > 0.1:
+        assert abs(usual.left - found.left) + abs(usual.beside - found.beside) > 2.0 * near

@@ -41,7 +41,7 @@ def sound(sliced, cell_of):
         dataclasses.replace(toolpath, wire_feed=fed), process, (), cell, motion, np.full(n, 0.3), np.full(n, 0.1),
         ArmTouches(np.full(n, -1), np.full(n, -1), ("platform",), 0.02, LINKS), True,
         ReadBack(True, 1e-3, 0.01, 2e-3, 0.05, 2),
-        ("UFRAME 1",), None, Balance("Part", 1e5, 0.0, 1e5, 0.0), clearance_look.Looked(100, 0, None),
+        ("UFRAME 1",), None, Balance("Part", 1e5, 0.0, 1e5, 0.0, twice=0.0), clearance_look.Looked(100, 0, None),
         driven(cell, path, motion),
     )
 
@@ -155,6 +155,7 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
         ("All of the part is deposited", lambda e: {"balance": Balance("Part", 1e5, 3e3, 1e5, 0.0)}),
         ("Nothing is deposited beside the part", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 3e4)}),
         ("Little is deposited twice", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 0.0, filled=True, twice=1.1e4)}),
+        ("Little is deposited twice", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=1.1e4)}),
         ("Every bead is carried by what lies below it", lambda e: {"toolpath": dataclasses.replace(
             e.toolpath, unsupported=2.0)}),
         ("The wire feeds what the beads take", lambda e: {"toolpath": dataclasses.replace(
@@ -190,6 +191,7 @@ def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound)
     ("The nozzle stays clear of deposit, part and platform while it deposits", "error", ("CLEARANCE", "OVER_PLATFORM")),
     ("All of the part is deposited", "warning", ("NOT_DEPOSITED",)),
     ("Nothing is deposited beside the part", "warning", ("DEPOSITED_BESIDE",)),
+    ("Little is deposited twice", "warning", ("DEPOSITED_TWICE",)),
     ("Every bead is carried by what lies below it", "warning", ("UNSUPPORTED",)),
 ])
 def test_what_planning_has_found_breaks_its_promise_whatever_the_figures_say(sound, promise, level, codes):
@@ -210,6 +212,8 @@ def without(evidence, **parts):
         ("All of the part is deposited", lambda e: {"balance": None}),
         ("Nothing is deposited beside the part", lambda e: {"balance": None}),
         ("Nothing is deposited beside the part", lambda e: without(e, balance={"beside": None})),
+        ("All of the part is deposited", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=0.0, lines=True)}),
+        ("Little is deposited twice", lambda e: without(e, balance={"twice": None})),
         ("Every bead is carried by what lies below it", lambda e: without(e, toolpath={"unsupported": None})),
         ("The wire feeds what the beads take", lambda e: without(e, toolpath={"wire_feed": None})),
         ("The wire feeds what the beads take", lambda e: without(e, process={"bead_model": "csw"})),

@@ -151,6 +151,11 @@ def test_what_beads_leave_and_what_lies_beside_is_known():
     part, left, beside = planned(box((0, 0, 0), (60, 2, 8))).volumes
     assert part == pytest.approx(960.0) and left < 1.0
     assert beside == pytest.approx(960.0 + 2 * 8 * math.pi * 2.0, rel=0.2)  # twice as wide, and round ends
+    part, left, beside = planned(box((0, 0, 0), (60, 30, 10.5)), fill="contours", layer_height=4.0).volumes
+    assert part == pytest.approx(60 * 30 * 10.5) and left < 3 * 5 * 4.0 * rounded  # three layers, the last cut 10 mm up
+    assert beside == pytest.approx(60 * 30 * 1.5, abs=1.0)
+    apart = planned(box((0, 0, 0), (30, 30, 9)), box((40, 0, 0), (60, 30, 9)), fill="contours", layer_height=2.0).volumes
+    assert apart[0] == pytest.approx(50 * 30 * 9)  # of several solids too, where they cannot overlap
 
 
 def test_what_beads_lay_twice_is_known():
@@ -173,7 +178,8 @@ def test_what_beads_lay_twice_is_known():
         volume = math.prod(np.ptp(part.vertices, axis=0))
         assert made.twice == pytest.approx(expected, abs=0.01 * volume)
         assert made.twice >= least * volume
-    assert planned(box((0, 0, 0), (60, 30, 4)), fill="lines", fill_density=0.5).twice is None
+    half = planned(box((0, 0, 0), (60, 30, 4)), fill="lines", fill_density=0.5, bead_spacing=4.0, layer_height=4.0)
+    assert half.twice < 0.01 * 60 * 30 * 4  # lines farther apart, which meet their contour
 
 
 @pytest.mark.parametrize("part,fill", [

@@ -35,10 +35,12 @@ class BeadCurve:
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """What is laid, in this order. surroundings: substrate and fixtures, as bodies. depths: None, a part has no volume."""
+    """What is laid, in this order. surroundings: substrate and fixtures, as bodies. depths: None, a part has no volume.
+    edges: names of those of a shape that were chosen, none where all of them are; None of what is no shape's."""
 
     label: str
     curves: tuple[BeadCurve, ...]
     surroundings: tuple[Body, ...] = ()
     issues: tuple[Issue, ...] = ()
     depths: None = None
+    edges: tuple[str, ...] | None = None

@@ -195,12 +195,12 @@ def mended(loops: Sequence[Array], least_area: float | None = None) -> Mended:
     return Mended(kept, changed if changed > noise else 0.0, dropped if dropped > noise else 0.0)
 
 
-def along(curves: Sequence[tuple[Array, bool]], half: float, chord_error: float) -> tuple[Region, ...]:
-    """What lies within `half` mm of curves (points (n, 2), whether closed)."""
-    library = shapely()
+def along(curves: Sequence[tuple[Array, bool]], half: float | Array, chord_error: float) -> tuple[Region, ...]:
+    """What lies within `half` mm, or (k,) mm of each, of k curves (points (n, 2), whether closed)."""
     wholes = [np.vstack([points, points[:1]]) if closed else points for points, closed in curves]
-    lines = [library.geometry.LineString(piece) for whole in wholes for piece in _bends(whole)]
-    return _parts(library.ops.unary_union([_buffered(line, half, chord_error) for line in lines]), 0.0)
+    pieces = [(piece, float(wide)) for whole, wide in zip(wholes, np.full(len(wholes), half)) for piece in _bends(whole)]
+    lines = [_buffered(shapely().geometry.LineString(piece), wide, chord_error) for piece, wide in pieces]
+    return _parts(shapely().ops.unary_union(lines), 0.0)
 
 
 def joined(parts: Sequence[Region], width: float) -> tuple[Region, ...]:

@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from ...filling.adaptive import fitted, shared
+from ...filling.cover import Cover, covered, total
 from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import fill, open_at_slits, open_places
 from ...filling.room import thinned
@@ -18,7 +19,7 @@ from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest, steps
 from ...geometry.developable import Array
 from ...geometry.on_hub import Base
-from ...geometry.regions.region import Region, along
+from ...geometry.regions.region import Region
 from ...geometry.regions.strip import Strip
 from ...geometry.told import place
 from ...issues import NOTE, WARNING, InputError, Issue
@@ -38,15 +39,6 @@ INSTEAD = {  # round a hub
     "spiral": "contours", "connected": "contours",
     "zigzag": "lines", "grid": "lines", "triangles": "lines", "honeycomb": "lines", "gyroid": "lines",
 }
-
-
-class Cover(NamedTuple):
-    """Areas, mm^2: of regions, what beads as wide as they count leave of them, and what of beads lies beside them; NaN of
-    what goes all the way round a hub."""
-
-    whole: float = 0.0
-    left: float = 0.0
-    beside: float = 0.0
 
 
 class Filled(NamedTuple):
@@ -128,7 +120,7 @@ class Pictures:
                 NOTE, "PATTERN_ROUND_HUB", f"a layer all the way round the hub is filled with {INSTEAD[strategy.fill]}; "
                 f"strategy.fill = {strategy.fill} is for regions with an end", one.layer,
             ))
-        return Filled(curves, tuple(issues), islands, Cover(*map(math.fsum, zip(*covers))) if covers else Cover())
+        return Filled(curves, tuple(issues), islands, total(covers))
 
     def _picture(
         self, one: Slice, region: Region | Strip, beads: Beads, angle: float, infill: Infill
@@ -136,7 +128,8 @@ class Pictures:
         if isinstance(region, Strip):
             if one.covered == ():
                 infill = Infill()
-            return *self._made(region, beads, angle, infill), Cover(math.nan, math.nan, math.nan)
+            curves, left = self._made(region, beads, angle, infill)
+            return curves, left, covered(region, curves, beads, infill.density)
         known = self._known.setdefault(one.surface.alike, [])
         for other in known:
             alike = abs(other.angle - angle) < 1e-9 and abs(_number(other.beads) - _number(beads)) < 1e-9
@@ -144,7 +137,7 @@ class Pictures:
             if alike and _equal(other.rings, region.rings()) and _same(other.infill, infill):
                 return other.curves, other.left, other.cover
         curves, left = self._made(region, beads, angle, infill)
-        cover = _covered(region, curves, beads, infill)
+        cover = covered(region, curves, beads, infill.density)
         if infill.density == 1.0 and one.surface.period is None and self._strategy.spacing_range == EVERY:
             curves = self._thinned(curves, beads, angle, cover)
         known.append(_Picture(beads, angle, infill, region.rings(), curves, left, cover))
@@ -169,8 +162,7 @@ class Pictures:
         self, curves: tuple[PlaneCurve, ...], beads: Beads, angle: float, cover: Cover
     ) -> tuple[PlaneCurve, ...]:
         """The beads of a region, no wider than their room where much of them would be laid over others."""
-        once = cover.whole - cover.left + cover.beside
-        twice = beads.spacing * math.fsum(_weighed(curve) for curve in curves) - once
+        twice = beads.spacing * math.fsum(_weighed(curve) for curve in curves) - cover.once
         if twice <= MUCH * cover.whole or self._strategy.narrowest == 1.0:
             return curves
         return tuple(thinned(curves, beads, angle, self._strategy.narrowest))
@@ -206,14 +198,6 @@ def bead_width(strategy: FilledParameters, process: ProcessParameters, model: Be
             f"leave stripes of {spacing - width:.3g} mm open between them; use {width:g} mm or less, or wider beads",
         )
     return width
-
-
-def _covered(region: Region, curves: Sequence[PlaneCurve], beads: Beads, infill: Infill) -> Cover:
-    """How well beads cover a region; what they leave open on purpose does not count."""
-    laid = along([(curve.points, curve.closed) for curve in curves], beads.inset, beads.chord_error) if curves else ()
-    inside = math.fsum(part.area for part in region.common(laid)) if laid else 0.0
-    left = region.area - inside if infill.density == 1.0 else 0.0
-    return Cover(region.area, left, math.fsum(part.area for part in laid) - inside)
 
 
 def _standing_out(one: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:

@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from ...filling.cover import Cover
 from ...filling.curve import PlaneCurve
 from ...geometry.developable import Array
-from ...geometry.mesh.solid import SolidMesh
 from ...geometry.on_hub import Base, SolidsOnHub, downwards, upright
 from ...issues import InfeasibleError, InputError, Issue
 from ...layers.field import Piece, pieces, upwards
@@ -26,11 +24,12 @@ from ...toolpath import Toolpath
 from .. import size
 from ..progress import Progress, silent
 from .beads import Rolled, reversed_curve, rolled
-from .filling import Cover, Filled, Pictures, bead_width, spaced
+from .filling import Filled, Pictures, bead_width, spaced
 from .islands import as_below, island_by_island
 from .lean_notes import lean_notes
 from .notes import notes
 from .outlines import leaning
+from .volumes import twice, volumes
 
 FEWER = 1_000_000  # beads that a layer of a solid has
 LEVEL = 1e-6  # mm, and of the cosine of an angle
@@ -96,8 +95,7 @@ def plan(
         layers, _frame(solids), strategy.layer_height, strategy.chord_error, issues, process.overlap,
         "solid" if planes else "developable",
         solids.surroundings, None if model is None else model.law(process.acceleration), counted,
-        volumes=_volumes(solids, strategy, covers, planes),
-        twice=_twice(made, strategy, covers, counted) if strategy.fill_density == 1.0 else None,
+        volumes=volumes(solids, strategy, covers), twice=twice(made, strategy, covers, counted),
         uneven=np.array([(layer, *uneven[layer]) for layer in sorted(uneven)]) if uneven else None,
     )
 
@@ -106,36 +104,6 @@ def _both(known: tuple[float, float] | None, heights: tuple[float, float, float]
     """The least and the largest height of a layer in several pieces."""
     low, _, high = heights
     return (low, high) if known is None else (min(low, known[0]), max(high, known[1]))
-
-
-def _volumes(
-    solids: SolidsOnHub, strategy: FilledParameters, covers: Sequence[Cover], planes: bool
-) -> tuple[float, float, float] | None:
-    """mm3 of the part, of what beads leave of it, and of what of them lies beside it. Of a single solid in planes the part
-    is all of that, so that what is above the last cut counts; solids may overlap, and are as large as their sections are.
-    None where a layer goes all the way round a hub."""
-    whole, left, beside = (strategy.layer_height * math.fsum(column) for column in zip(*covers))
-    if not math.isfinite(whole):
-        return None
-    bodies = [body for group in solids.groups for body in group.bodies]
-    single = planes and len(bodies) == 1 and not strategy.margin
-    part = SolidMesh(bodies[0].vertices, bodies[0].triangles).volume if single else whole
-    return part, max(part - whole + left, 0.0), beside
-
-
-def _twice(made: Sequence[Rolled], strategy: FilledParameters, covers: Sequence[Cover], width: float) -> float | None:
-    """mm3 of beads that count as `width` mm wide, each as wide as they are apart, beyond what they cover; None where that is
-    not known."""
-    area, once = 0.0, math.fsum(cover.whole - cover.left + cover.beside for cover in covers)
-    if not math.isfinite(once):
-        return None
-    for bead in (one.bead for one in made):
-        step = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
-        wide = np.full(len(bead), width) if bead.width is None else bead.width
-        high = np.ones(len(bead)) if bead.height is None else bead.height / strategy.layer_height
-        section = wide * high * strategy.bead_spacing / width
-        area += float((0.5 * (section[1:] + section[:-1])) @ step)
-    return max(area - once, 0.0) * strategy.layer_height
 
 
 def _bead(
