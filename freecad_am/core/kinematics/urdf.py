@@ -23,7 +23,8 @@ from .urdf_xml import CODE, Element
 
 MOVING = ("revolute", "continuous", "prismatic")
 FIXED = "fixed"
-BASES, TIPS = ("base_link",), ("tool0", "flange")  # names that ROS-Industrial gives them
+# names that ROS-Industrial gives them, and FANUC
+BASES, TIPS = ("base_link",), ("tool0", "flange", "fanuc_flange")
 ROBOT = 6  # joints of one
 STRAIGHT, NEAR = 1e-6, 1e-3  # of a tip: rad that its Z is off the axis, mm that it may lie behind
 DEGREE = math.radians(1.0)
