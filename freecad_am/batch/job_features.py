@@ -14,7 +14,7 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family
 
-from . import fields, tree
+from . import fields, job_classes, tree
 from .feature_sections import (
     kept_clear,
     process_of,
@@ -94,7 +94,7 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str, path:
         name, part_of(part, path), substrate,
         fixtures_of(values.get("fixtures"), path), fields.build(LayerParameters, common, "strategy"),
         fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"),
-        with_path(fields.build(ProcessParameters, fields.mapping(values.get("process") or {}, "process"), "process"), path),
+        process_of_all(values.get("process") or {}, path),
         sections=values,
     )
 
@@ -126,7 +126,7 @@ def _keys(family: Family) -> tuple[str, ...]:
 
 def process_of_all(section: Any, path: str) -> ProcessParameters:
     """The process of a program of several features, which may differ from it."""
-    process = fields.build(ProcessParameters, fields.mapping(section, "process"), "process")
+    process = fields.build(ProcessParameters, job_classes.told(fields.mapping(section, "process")), "process")
     return with_path(process, path)
 
 

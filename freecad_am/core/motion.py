@@ -22,6 +22,7 @@ Roles = NDArray[np.int64]
 
 # what the move that ends at a row is for: with deposit; away from the bead before; over to the next; onto its start
 DEPOSIT, RETRACT, TRAVEL, APPROACH = range(4)
+UNKNOWN = -1  # class of a bead
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,8 @@ class Motion:
     duration: (n,) s of the segment that ends at the row. wire: (n,) mm/s of the wire on that segment where it follows the
     travel speed, else NaN, as when left out. role: (n,) DEPOSIT, RETRACT, TRAVEL or APPROACH; left out, as in documents from
     before there was one, it is that of one retract and one approach row between beads, and of none where there are too few.
+    bead_class: (n,) place in `parameters.bead_classes.CLASSES` of the class of the bead that the row is of, or leads to;
+    UNKNOWN where left out.
     """
 
     deposit: NDArray[np.bool_]
@@ -49,9 +52,12 @@ class Motion:
     duration: Array
     wire: Array = None  # type: ignore[assignment]
     role: Roles = None  # type: ignore[assignment]
+    bead_class: Roles = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         n = len(self.deposit)
+        if self.bead_class is None:
+            object.__setattr__(self, "bead_class", np.full(n, UNKNOWN))
         if self.role is None:
             object.__setattr__(self, "role", _roles(self.deposit))
         if self.wire is None:

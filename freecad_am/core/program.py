@@ -80,17 +80,26 @@ class Moves:
 @dataclass(frozen=True)
 class DepositOn:
     """Switch the deposit on and wait `lead` seconds before moving. wire: mm/s of the wire it begins with, where the program
-    has to tell it."""
+    has to tell it. schedule: that the arc instruction names, None where an output switches the deposit."""
 
     lead: float = 0.0
     wire: float | None = None
+    schedule: int | None = None
 
 
 @dataclass(frozen=True)
 class DepositOff:
-    """Wait `lead` seconds at the end of the bead, then switch the deposit off."""
+    """Wait `lead` seconds at the end of the bead, then switch the deposit off. schedule: as in `DepositOn`."""
 
     lead: float = 0.0
+    schedule: int | None = None
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """Set the number of a schedule on the output `Program.schedule_output`."""
+
+    number: int
 
 
 @dataclass(frozen=True)
@@ -127,12 +136,13 @@ class WaitBelow:
 
 @dataclass(frozen=True)
 class Call:
-    """Call another program of the controller, such as nozzle cleaning."""
+    """Call another program of the controller, such as nozzle cleaning. where: the parameter that names it."""
 
     program: str
+    where: str = "process.between_layers.call"
 
 
-Block = Moves | DepositOn | DepositOff | LayerStart | Wait | WaitInput | WaitBelow | Call
+Block = Moves | DepositOn | DepositOff | Schedule | LayerStart | Wait | WaitInput | WaitBelow | Call
 
 
 @dataclass(frozen=True)
@@ -177,7 +187,7 @@ class Program:
     external_kinds: 'linear' or 'rotary' of each axis beside the robot, which are the last ones of all. With rotary ones the
     part is on the last mechanism, and station is the program's origin on its face; a linear one is a track that carries the
     robot. unit: what the controller calls the mechanism of the part, or a track alone; first_external: the number there of
-    the first of these axes, from 1.
+    the first of these axes, from 1. schedule_output: what the numbers of schedules are set on.
     """
 
     name: str
@@ -204,6 +214,7 @@ class Program:
     external_kinds: tuple[str, ...] = ()
     unit: str = ""
     first_external: int = 1
+    schedule_output: int = 2
 
     @property
     def own_axes(self) -> int:

@@ -12,11 +12,15 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
+ARC = "ARC"  # in place of the word of an output, where the deposit is switched by an arc instruction
+
+
 @dataclass(frozen=True)
 class Event:
     """What a text does between its moves: before the move `row`, n after the last.
 
-    kind and value: 'on' and 'off', number and word of the output; 'wait', s; 'input', number; 'below', number and value of
+    kind and value: 'on' and 'off', number and word of the output, or the schedule that an arc instruction names, and ARC;
+    'schedule', number of the output and what it is set to; 'wait', s; 'input', number; 'below', number and value of
     an analogue input; 'call', the program's name; 'layer', its number in a remark. digits: half of the last digit.
     """
 

@@ -42,17 +42,16 @@ def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
 class Bead:
     """One uninterrupted deposit of n points, n >= 2. A closed bead repeats its first point as its last.
 
-    points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from the
-    deposit towards the tool). parameter: (n,) strictly monotonic, the variable of the layer's polynomial: the
-    unwrapped angle about the axis on parts of revolution, else the arc length, normalised to 2 pi. speed: (n,) mm/s
-    of the segment that ends at the point. width, height: (n,) mm as predicted, or None where no bead model was used.
-    wire_share: mm of wire to a mm of the bead where the wire follows the travel speed, else None. tangents: (n, 2, 3) unit
-    vectors along which the bead arrives at and leaves each point, the same but at corners; None where a strategy does
-    not know them. closing: fills a gap between beads, nearer to them than a layer height. kind: what it is in the filling of
-    its layer: 'contour', 'line', 'zigzag', 'spiral', 'centre' (in the middle of contours, or of a region narrower than a
-    bead), 'closing' (where other beads left a gap); '' where a strategy has no fillings. ring: how many contours are outside
-    of it. returns: it is the first one of a layer on a solid that has one already. external: (n, k) values of the axes
-    beside a robot, rad, once its joints are planned; None elsewhere.
+    points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from the deposit towards the
+    tool). parameter: (n,) strictly monotonic, the variable of the layer's polynomial: the unwrapped angle about the axis on
+    parts of revolution, else the arc length, normalised to 2 pi. speed: (n,) mm/s of the segment that ends at the point.
+    width, height: (n,) mm as predicted, or None where no bead model was used. wire_share: mm of wire to a mm of the bead
+    where the wire follows the travel speed, else None. tangents: (n, 2, 3) unit vectors along which the bead arrives at and
+    leaves each point, the same but at corners; None where a strategy does not know them. closing: fills a gap between beads,
+    nearer to them than a layer height. kind: what it is in the filling of its layer: 'contour', 'line', 'zigzag', 'spiral',
+    'centre' (in the middle of contours or thin regions), 'closing' (where other beads left a gap); '' where a strategy has
+    no fillings. ring: how many contours are outside of it. returns: it is the first one of a layer on a solid that has one
+    already. external: (n, k) rad of axes beside a robot, once planned. bead_class: of `bead_classes.CLASSES`, or ''.
     """
 
     points: Array
@@ -70,6 +69,7 @@ class Bead:
     ring: int = 0
     returns: bool = False
     external: Array | None = None
+    bead_class: str = ""
 
     def __post_init__(self) -> None:
         n = len(self.points)

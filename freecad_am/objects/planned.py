@@ -19,7 +19,7 @@ from ..core.kinematics.cell import mounted
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
-from ..core.process import bead_table
+from ..core.process import bead_table, classes
 from ..core.process.bead_model import BeadModel
 from ..core.process.laid_twice import laid_twice
 from ..core.process.wire import fed
@@ -81,6 +81,7 @@ def layers_of(of: Given) -> CoreToolpath:
             "NOT_FOR_FAMILY", "process.wire.feed_mode", "without a bead model the travel speed does not vary, and the wire "
             "has nothing to follow; use constant, or a process.bead_model"
         )
+    classes.refuse_speeds(process)
     family = family_of(of.strategy)
     if process.bead_model != "none" and not family.filled:
         raise InputError(

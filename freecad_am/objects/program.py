@@ -15,7 +15,7 @@ from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.planning import controllers, moving_tool, steps
+from ..core.planning import controllers, moving_tool, program_beads, steps
 from ..core.planning import program as programs
 from ..core.program import Program as Text
 from ..core.toolpath import Toolpath
@@ -121,6 +121,9 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     )
     if process.wire.feed_mode != "constant" and post.NO_WIRE and not parameters.dry_run:
         raise refusals.wire_refused(post.NO_WIRE)
+    by = parameters.schedule.by
+    if by in post.NO_SCHEDULE and (process.scheduled or by == program_beads.ARC):
+        raise refusals.schedule_refused(by, post.NO_SCHEDULE[by])
 
 
 def posted(job: Job) -> Posted:

@@ -22,6 +22,7 @@ from ..core.program import (
     DepositOn,
     LayerStart,
     Program,
+    Schedule,
     Wait,
     WaitBelow,
     WaitInput,
@@ -33,12 +34,12 @@ from .names import Naming
 from .on_controller import on_controller
 from .parts import Piece, Run, grouped, packed, size, unbroken, withdrawn
 from .refusals import (
-    CALL,
     refuse_calls_of_own,
     refuse_cooling,
     refuse_endless,
     refuse_external,
     refuse_incomplete,
+    refuse_schedules,
     refuse_wire,
     refuse_without_positions,
 )
@@ -48,6 +49,10 @@ __all__ = ["read", "write"]
 LAST_ANALOGUE = 4096
 # why the speed of the wire cannot follow that of the torch
 NO_WIRE = "an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried"
+NO_SCHEDULE = {
+    "arc": "ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one",
+}
+LAST_GROUP, LAST_SCHEDULE = 9999, 65535  # group outputs
 ON_CONTROLLER = on_controller(
     "The controller's world is the robot's base",
     "Signals do1, di1 and so on have these names",
@@ -123,11 +128,12 @@ def _refuse(program: Program) -> None:
     refuse_external(program, text.MOST_AXES, r"[A-Za-z]\w{0,31}", "the name of its mechanical unit, such as STN1")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
+    refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
     refuse_endless(program)
     refuse_without_positions(program, straight=True)
     for block in program.blocks:
         if isinstance(block, Call):
-            program_name(block.program, CALL)
+            program_name(block.program, block.where)
 
 
 
@@ -151,6 +157,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return [] if program.dry_run else [f"{output}1;", *text.wait(block.lead)]
     if isinstance(block, DepositOff):
         return [] if program.dry_run else [*text.wait(block.lead), f"{output}0;"]
+    if isinstance(block, Schedule):
+        return [f"    SetGO go{program.schedule_output},{block.number};"]
     if isinstance(block, LayerStart):
         return [f"    ! layer {block.layer}"]
     if isinstance(block, Wait):

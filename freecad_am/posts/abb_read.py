@@ -28,6 +28,7 @@ _PLACE, _TURN = (f"\\[({','.join([_N] * count)})\\]" for count in (3, 4))
 _LINEAR = re.compile(rf"MoveL \[{_PLACE},{_TURN},\[0,0,0,0\],{_AXES}\]{_TAIL}")
 _DECIMALS = re.compile(r"\.(\d+)")
 _OUTPUT = re.compile(r"SetDO do(\d+),([01]);$")
+_GROUP = re.compile(r"SetGO go(\d+),(\d+);$")
 _WAIT = re.compile(r"WaitTime (\d+\.(\d+));$")
 _INPUT = re.compile(r"WaitDI di(\d+),1;$")
 _COOL = re.compile(r"WaitAI ai(\d+),\\LT,(-?\d+(?:\.\d+)?);$")
@@ -148,6 +149,8 @@ def _other(line: str, run: _Run, where: str) -> None:
             raise unreadable(where, "a second output is switched")
         run.output, run.on = output[1], output[2] == "1"
         run.happens("on" if run.on else "off", float(output[1]), "do")
+    elif group := _GROUP.match(line):
+        run.happens("schedule", float(group[1]), float(group[2]))
     elif wait := _WAIT.match(line):
         run.happens("wait", float(wait[1]), digits=0.5 * 10.0 ** -len(wait[2]))
     elif given := _INPUT.match(line):

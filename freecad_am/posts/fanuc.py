@@ -26,6 +26,7 @@ from ..core.program import (
     LayerStart,
     Moves,
     Program,
+    Schedule,
     Wait,
     WaitBelow,
     WaitInput,
@@ -37,12 +38,12 @@ from .names import Naming
 from .on_controller import on_controller
 from .parts import Piece, Run, continued, grouped, packed
 from .refusals import (
-    CALL,
     refuse_calls_of_own,
     refuse_cooling,
     refuse_external,
     refuse_incomplete,
     refuse_named_track,
+    refuse_schedules,
     refuse_wire,
 )
 
@@ -53,6 +54,8 @@ Array = NDArray[np.float64]
 LAST_ANALOGUE = 25  # analogue inputs
 # why the speed of the wire cannot follow that of the torch
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
+NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
+LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
 ON_CONTROLLER = on_controller(
     "UFRAME and UTOOL of the numbers in the program are those of the cell",
     "Joint values mean what the machine file says, J3 above all",
@@ -139,9 +142,10 @@ def _refuse(program: Program) -> None:
     refuse_named_track(program, "E1 of the robot's own motion group")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
+    refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
     for block in program.blocks:
         if isinstance(block, Call):
-            program_name(block.program, CALL)
+            program_name(block.program, block.where)
         if isinstance(block, WaitBelow) and block.below != round(block.below):
             raise InputError(
                 "ANALOGUE_INPUT", "process.cooling",
@@ -194,9 +198,13 @@ def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
 def _instructions(program: Program, block: Block) -> list[str]:
     output = f"  DO[{program.deposit_output}]="
     if isinstance(block, DepositOn):
-        return [] if program.dry_run else [output + "ON ;", *text.wait(block.lead)]
+        on = output + "ON ;" if block.schedule is None else text.arc("Start", block.schedule)
+        return [] if program.dry_run else [on, *text.wait(block.lead)]
     if isinstance(block, DepositOff):
-        return [] if program.dry_run else [*text.wait(block.lead), output + "OFF ;"]
+        off = output + "OFF ;" if block.schedule is None else text.arc("End", block.schedule)
+        return [] if program.dry_run else [*text.wait(block.lead), off]
+    if isinstance(block, Schedule):
+        return [f"  GO[{program.schedule_output}]={block.number} ;"]
     if isinstance(block, LayerStart):
         return text.remark(f"layer {block.layer}")
     if isinstance(block, Wait):

@@ -103,6 +103,11 @@ def call(name: str) -> str:
     return f"  CALL {name}    ;"
 
 
+def arc(word: str, schedule: int) -> str:
+    """The arc instruction, Start or End, by a schedule."""
+    return f"  Arc {word}[{schedule}]    ;"
+
+
 def joint_records(degrees: Array, track: Array, beside: Array, user_frame: int, tool_frame: int, group: int = 1) -> str:
     """Records P[1].. of joint values (n, 6), of the track (n, 0 or 1) and of another group (n, k), degrees and mm already
     rounded to 3 decimals."""

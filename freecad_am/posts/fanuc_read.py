@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.read_moves import Configuration, Event, ReadMoves
+from ..core.read_moves import ARC, Configuration, Event, ReadMoves
 from .fanuc_parsed import UNITS, Listing, listing_of, name_of
 from .fanuc_records import unreadable
 
@@ -26,6 +26,8 @@ _TOLD = np.array([(1.0, np.nan, np.nan), (0.001, np.nan, np.nan), (np.nan, 1.0, 
 _SPEED, _SHARE = UNITS.index("mm/sec"), UNITS.index("%")
 _MOST_CNT, _OWN = 100.0, 6
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
+_GROUP = re.compile(r"GO\[(\d+)(?::[^\]]*)?\]=(\d+)$")
+_ARC = re.compile(r"Arc (Start|End)\[(\d+)\]$")
 _CALL = re.compile(r"CALL (\w+)$")
 _CALLS = re.compile(r"^ *\d*: *CALL (\w+) *; *\r?$", re.MULTILINE)
 _FRAME = re.compile(r"U(FRAME|TOOL)_NUM=(\d+)$")
@@ -178,6 +180,10 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
                 raise unreadable(f"{listing.file} line {number}", "a second output is switched")
             run.output, run.on = output[1], output[2] == "ON"
             run.happens("on" if run.on else "off", float(output[1]), "DO")
+        elif group := _GROUP.match(statement):
+            run.happens("schedule", float(group[1]), float(group[2]))
+        elif arc := _ARC.match(statement):
+            _arc(arc, f"{listing.file} line {number}", run)
         elif call := _CALL.match(statement):
             if call[1].upper() in files:
                 run.take(listing)
@@ -203,6 +209,14 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
         elif not _HARMLESS.match(statement):
             raise unreadable(f"{listing.file} line {number}", f"the instruction {statement!r} is not understood")
     run.take(listing)
+
+
+def _arc(arc: re.Match[str], where: str, run: _Run) -> None:
+    """The arc is struck, or ends, by a schedule."""
+    if run.output not in ("", ARC) or run.on == (arc[1] == "Start"):
+        raise unreadable(where, "an output is switched too, or the arc burns already, or not yet")
+    run.output, run.on = ARC, arc[1] == "Start"
+    run.happens("on" if run.on else "off", float(arc[2]), ARC)
 
 
 def _move(listing: Listing, some: slice, run: _Run) -> None:

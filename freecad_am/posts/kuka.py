@@ -19,6 +19,7 @@ from ..core.program import (
     DepositOn,
     LayerStart,
     Program,
+    Schedule,
     Wait,
     WaitInput,
 )
@@ -28,13 +29,13 @@ from .names import Naming
 from .on_controller import on_controller
 from .parts import Piece, Run, grouped, packed, whole
 from .refusals import (
-    CALL,
     refuse_calls_of_own,
     refuse_cooling,
     refuse_endless,
     refuse_external,
     refuse_incomplete,
     refuse_named_track,
+    refuse_schedules,
     refuse_wire,
     refuse_without_positions,
     refuse_without_speeds,
@@ -45,6 +46,8 @@ __all__ = ["read", "write"]
 NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found documented"
 # why the speed of the wire cannot follow that of the torch
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
+NO_SCHEDULE = {"arc": "instructions of ArcTech name weld data that only the pendant makes"}
+LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
 ON_CONTROLLER = on_controller(
     "BASE_DATA and TOOL_DATA of the numbers in the program are those of the cell, with their load",
     "Joint speeds of the machine file are those the controller calls 100 %",
@@ -127,6 +130,7 @@ def _refuse(program: Program) -> None:
     refuse_named_track(program, "what the robot's own base is on, which is not told by a MACHINE_DEF")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
+    _refuse_schedules(program)
     for what, number, last in (("tool_frame", program.tool_frame, LAST_TOOL), ("user_frame", program.user_frame, LAST_BASE)):
         if number > last:
             raise InputError(
@@ -138,9 +142,21 @@ def _refuse(program: Program) -> None:
     refuse_without_positions(program, straight=True)
     for block in program.blocks:
         if isinstance(block, Call):
-            program_name(block.program, CALL)
+            program_name(block.program, block.where)
 
 
+def _refuse_schedules(program: Program) -> None:
+    refuse_schedules(program, LAST_OUTPUT - text.BITS + 1, LAST_SCHEDULE)
+    own = range(program.schedule_output, program.schedule_output + text.BITS)
+    if _scheduled(program) and program.deposit_output in own:
+        raise InputError(
+            "SCHEDULE", "program.schedule.output", f"$OUT[{own[0]}] to $OUT[{own[-1]}] tell the schedule, and one of them "
+            "switches the deposit; use other ones, or another program.deposit_output",
+        )
+
+
+def _scheduled(program: Program) -> bool:
+    return any(isinstance(block, Schedule) for block in program.blocks)
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
@@ -166,6 +182,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return [] if program.dry_run else [_STAND, f"{output}TRUE", *text.wait(block.lead)]
     if isinstance(block, DepositOff):
         return [] if program.dry_run else [_STAND, *text.wait(block.lead), f"{output}FALSE"]
+    if isinstance(block, Schedule):
+        return [_STAND, f"{text.SCHEDULE}={block.number}"]
     if isinstance(block, LayerStart):
         return [f"; layer {block.layer}"]
     if isinstance(block, Wait):
@@ -184,6 +202,7 @@ def _body(program: Program, pieces: Sequence[Piece]) -> list[str]:
     unit, base = f"MACHINE_DEF[{program.unit}]", f"BASE_DATA[{program.user_frame}]"
     coupled = [f"$BASE=EK({unit}.ROOT,{unit}.MECH_TYPE,{base})"] if program.on_positioner else []
     lines = [
+        *(text.signal(program.schedule_output) if _scheduled(program) else []),
         "BAS(#INITMOV,0)", f"BAS(#BASE,{program.user_frame})", *coupled, f"BAS(#TOOL,{program.tool_frame})",
         "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR",
     ]

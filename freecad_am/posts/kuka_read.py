@@ -30,6 +30,7 @@ _PERCENT = re.compile(r"BAS\(#VEL_PTP,(\d+)\)$")
 _METRES, _ROUNDING = re.compile(r"\$VEL\.CP=(\d+\.(\d+))$"), re.compile(r"\$APO\.CDIS=(\d+\.\d+)$")
 _SELECTED = re.compile(r"BAS\(#(BASE|TOOL),(\d+)\)$")
 _SWITCHED, _PAUSE = re.compile(r"\$OUT\[(\d+)\]=(TRUE|FALSE)$"), re.compile(r"WAIT SEC (\d+(?:\.(\d+))?)$")
+_DECLARED, _NUMBERED = re.compile(r"SIGNAL (\w+) \$OUT\[(\d+)\] TO \$OUT\[(\d+)\]$"), re.compile(r"(\w+)=(\d+)$")
 _AWAITED, _LAYERED = re.compile(r"WAIT FOR \$IN\[(\d+)\]==TRUE$"), re.compile(r"; layer (\d+)$")
 _CALLED, _HEADED = re.compile(r"([A-Za-z]\w*)\(\)$"), re.compile(r"DEF ([A-Za-z]\w*)\(\)$")
 _TRACK = re.compile(r"; E([1-6]) is the track in mm\b")
@@ -45,8 +46,9 @@ class _Run:
     """What happened so far while the modules are followed, column by column.
 
     state: what was set last, by its name; a module counts on nothing that another one has set. standing: nothing moves, for
-    the program has waited. beside: values of the axes beside the robot at each move; unit: the mechanism that BASE
-    is coupled to, and numbers of all these axes; slides: of the one that a remark calls the track.
+    the program has waited. signals: outputs, the first and the last, by the name they have in the module. beside: values of
+    the axes beside the robot at each move; unit: the mechanism that BASE is coupled to, and numbers of all these axes;
+    slides: of the one that a remark calls the track.
     """
 
     files: dict[str, tuple[str, list[str]]]
@@ -63,6 +65,7 @@ class _Run:
     state: dict[str, float] = field(default_factory=dict)
     half_digits: dict[str, float] = field(default_factory=dict)
     beside: list[Array] = field(default_factory=list)
+    signals: dict[str, tuple[int, int]] = field(default_factory=dict)
     unit: str | None = None
     numbers: tuple[int, ...] = ()
     slides: tuple[int, ...] = ()
@@ -109,11 +112,15 @@ def _go(name: str, run: _Run) -> None:
     """Carry out the lines of a module in order, and of those it calls."""
     file, lines = run.files[name]
     run.followed.append(name)
-    run.state = {}
+    run.state, run.signals = {}, {}
     for number, line in enumerate(lines[3:-1], 4):
         where = f"{file} line {number}"
         if _TO_AXES.match(line) or _STRAIGHT.match(line):
             _moved(line, run, where)
+        elif declared := _DECLARED.match(line):
+            _declare(declared, lines[3 : number - 1], run, where)
+        elif (set_to := _NUMBERED.match(line)) and set_to[1] in run.signals:
+            _set(run.signals[set_to[1]], int(set_to[2]), run, where)
         elif setting := _PERCENT.match(line):
             run.state["percent"] = float(setting[1])
         elif setting := _METRES.match(line):
@@ -143,6 +150,22 @@ def _go(name: str, run: _Run) -> None:
             _done(line, run, where)
     if not run.standing:
         raise _not_read(file, "it ends before the last move does")
+
+
+def _declare(declared: re.Match[str], before: list[str], run: _Run, where: str) -> None:
+    """Name a group of outputs in a module, which comes before its instructions."""
+    if any(not line.startswith(";") for line in before):
+        raise _not_read(where, "it is declared behind an instruction")
+    run.signals[declared[1]] = int(declared[2]), int(declared[3])
+
+
+def _set(outputs: tuple[int, int], number: int, run: _Run, where: str) -> None:
+    """A group of outputs, the first and the last, is set to a number."""
+    if not run.standing or number >= 2 ** (outputs[1] - outputs[0] + 1):
+        raise _not_read(where, "it is set ahead of the motion, or its outputs cannot tell such a number")
+    if run.output and outputs[0] <= int(run.output) <= outputs[1]:
+        raise _not_read(where, "one of its outputs switches the deposit")
+    run.happens("schedule", float(outputs[0]), float(number))
 
 
 def _done(line: str, run: _Run, where: str) -> None:

@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 END_OF_LINE = "\r\n"
+SCHEDULE, BITS = "am_schedule", 8  # what is set to its number, and of how many outputs
 WIDTH = 80  # of remarks
 ANGLE_DECIMALS, LENGTH_DECIMALS = 4, 3
 # mm/s: the least that is told well in m/s with six decimals, and what arms reach
@@ -41,6 +42,11 @@ def module(name: str, lines: Iterable[str]) -> bytes:
 def remark(text: str) -> list[str]:
     """A comment on as many lines as it needs, in plain characters."""
     return [f"; {line}" for line in textwrap.wrap(plain(text), WIDTH)]
+
+
+def signal(first: int) -> list[str]:
+    """The declaration of the outputs that tell a schedule."""
+    return [f"SIGNAL {SCHEDULE} $OUT[{first}] TO $OUT[{first + BITS - 1}]"]
 
 
 def wait(seconds: float) -> list[str]:

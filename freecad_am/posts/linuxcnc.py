@@ -26,6 +26,7 @@ from ..core.program import (
     DepositOn,
     LayerStart,
     Program,
+    Schedule,
     Wait,
     WaitBelow,
     WaitInput,
@@ -36,7 +37,7 @@ from .linuxcnc_read import read
 from .names import Naming
 from .on_controller import on_controller
 from .parts import Piece, Run, grouped, lines_of, packed, whole
-from .refusals import CALL, refuse_calls_of_own, refuse_cooling
+from .refusals import refuse_calls_of_own, refuse_cooling, refuse_schedules
 
 __all__ = ["read", "write"]
 
@@ -45,6 +46,8 @@ Array = NDArray[np.float64]
 NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_")
 _NO_END = 10**9
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
+NO_SCHEDULE = {"arc": "it has no arc instructions"}
+LAST_SCHEDULE = 65535
 ON_CONTROLLER = on_controller(
     "The tool table has the torch's length, and the kinematics has the machine file's offsets",
     "M428 and M429 switch the kinematics, and the work offset is that of the remarks",
@@ -112,6 +115,14 @@ def _refuse(program: Program) -> None:
     common.refuse_words(program, _TAKEN)
     common.refuse_wire_output(program, LAST_PIN)
     refuse_cooling(program, LAST_PIN)
+    refuse_schedules(program, LAST_PIN, LAST_SCHEDULE)
+    scheduled, fed = (any(isinstance(block, Schedule) for block in program.blocks),
+                      any(run.wire is not None for run in program.moves))
+    if scheduled and fed and program.schedule_output == program.nc.wire_output:
+        raise InputError(
+            "SCHEDULE", "program.schedule.output", f"analogue output {program.schedule_output} tells the speed of the wire; "
+            "use another one for schedules",
+        )
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
@@ -200,6 +211,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, DepositOff):
         leave = [EXACT_STOP, *(_axes_again(program) if cartesian else [])]
         return [*(["G4 P0"] if program.dry_run else [*_dwell(block.lead), _output(program, False)]), *leave]
+    if isinstance(block, Schedule):  # at rest: at once
+        return [f"M68 E{program.schedule_output - 1} Q{block.number}"]
     if isinstance(block, LayerStart):
         return [_remark(f"layer {block.layer}")]
     if isinstance(block, Wait):
@@ -210,7 +223,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         sample, loop = f"M66 E{block.number - 1} L0", f"o<cool{block.layer}_{block.bead}>"
         return [sample, f"{loop} while [#5399 GE {numbers.level(block.below)}]", *_dwell(0.1), sample, f"{loop} endwhile"]
     if isinstance(block, Call):
-        return [f"o<{program_name(block.program, CALL)}> call", *_modes(program)]
+        return [f"o<{program_name(block.program, block.where)}> call", *_modes(program)]
     raise TypeError(f"no instruction for {block!r}")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import InputError
-from ..core.program import LINEAR_MOVE, Call, Moves, Program, WaitBelow
+from ..core.program import LINEAR_MOVE, Call, DepositOn, Moves, Program, Schedule, WaitBelow
 from .parts import place
 
 Array = NDArray[np.float64]
@@ -43,6 +43,29 @@ def refuse_cooling(program: Program, last: int, why: str = "") -> None:
             "ANALOGUE_INPUT", "process.cooling.input",
             f"the controller's program reads analogue inputs 1 to {last}, not {waits[0].number}; use one of these",
         )
+
+
+def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 0) -> None:
+    """Raises InputError SCHEDULE for a schedule beyond `most`, or beyond `most_of_arc` where arc instructions name it, or
+    one set on an output that is none of 1 to `last`."""
+    told = [block.number for block in program.blocks if isinstance(block, Schedule)]
+    if told and not 1 <= program.schedule_output <= last:
+        raise InputError(
+            "SCHEDULE", "program.schedule.output",
+            f"the number of a schedule is set on one of 1 to {last}, not {program.schedule_output}; use one of these",
+        )
+    named = [block.schedule for block in program.blocks if isinstance(block, DepositOn) and block.schedule is not None]
+    largest, most = (max(named), most_of_arc or most) if named else (max(told, default=0), most)
+    if largest > most:
+        raise InputError(
+            "SCHEDULE", "process.schedule", f"the controller is told schedules up to {most}, not {largest}; use another "
+            "number, there or in process.classes",
+        )
+
+
+def schedule_refused(by: str, why: str) -> InputError:
+    """The error for a controller that cannot be told schedules in this way."""
+    return InputError("SCHEDULE", "program.schedule.by", f"{by}: {why}; use another way, or another controller")
 
 
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:
@@ -115,9 +138,10 @@ def refuse_calls_of_own(program: Program, names: set[str], program_name: Callabl
     """Raises InputError PROGRAM_NAME where a program called between layers has the name of a part of this one."""
     own = {name.upper() for name in names}  # controllers and disks that know no case would take one for the other
     for block in program.blocks:
-        if isinstance(block, Call) and program_name(block.program, CALL).upper() in own:
+        if isinstance(block, Call) and program_name(block.program, block.where).upper() in own:
             raise InputError(
-                "PROGRAM_NAME", CALL, f"{block.program!r} is a program of this very job; call another one, or rename the job"
+                "PROGRAM_NAME", block.where,
+                f"{block.program!r} is a program of this very job; call another one, or rename the job",
             )
 
 

@@ -25,6 +25,7 @@ from ..core.program import (
     DepositOn,
     LayerStart,
     Program,
+    Schedule,
     Wait,
     WaitBelow,
     WaitInput,
@@ -34,7 +35,7 @@ from . import nc_parts as common
 from .names import Naming
 from .on_controller import on_controller
 from .parts import Piece, Run, grouped, lines_of, packed, place, whole
-from .refusals import CALL, refuse_calls_of_own, refuse_cooling
+from .refusals import refuse_calls_of_own, refuse_cooling, refuse_schedules
 from .siemens_read import read
 
 __all__ = ["read", "write"]
@@ -43,6 +44,8 @@ Array = NDArray[np.float64]
 
 _NO_END = 10**9
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
+NO_SCHEDULE = {"arc": "it has no arc instructions"}
+LAST_SCHEDULE = 65535
 ON_CONTROLLER = on_controller(
     "The tool offset has the torch's length, and G500 is the machine's zero",
     "TRAORI and the work offset are those of the machine file and of the remarks",
@@ -109,6 +112,7 @@ def _refuse(program: Program) -> None:
     common.refuse_table(program, "siemens")
     common.refuse_wire_output(program, LAST_ANALOGUE)
     refuse_cooling(program, LAST_ANALOGUE)
+    _refuse_schedules(program)
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_OUTPUT:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
@@ -124,6 +128,16 @@ def _refuse(program: Program) -> None:
             )
     refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
     _refuse_endless_steps(program)
+
+
+def _refuse_schedules(program: Program) -> None:
+    refuse_schedules(program, LAST_OUTPUT, LAST_SCHEDULE)
+    own = program.nc.deposit_on or f"H{program.deposit_output}="
+    if any(isinstance(block, Schedule) for block in program.blocks) and own.startswith(f"H{program.schedule_output}="):
+        raise InputError(
+            "SCHEDULE", "program.schedule.output", f"H{program.schedule_output} switches the deposit; use another one for "
+            "schedules",
+        )
 
 
 def _refuse_endless_steps(program: Program) -> None:
@@ -185,6 +199,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, DepositOff):
         off = [] if program.dry_run else [*_dwell(block.lead), _output(program, False)]
         return [*off, *(["TRAFOOF", "G500"] if cartesian else [])]
+    if isinstance(block, Schedule):
+        return [f"H{program.schedule_output}={block.number}"]
     if isinstance(block, LayerStart):
         return [f"; layer {block.layer}"]
     if isinstance(block, Wait):
@@ -194,7 +210,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, WaitBelow):
         return [f"WHILE $A_INA[{block.number}]>={numbers.level(block.below)}", *_dwell(0.1), "ENDWHILE"]
     if isinstance(block, Call):
-        return [program_name(block.program, CALL), *_HEAD, *_modes(program)]
+        return [program_name(block.program, block.where), *_HEAD, *_modes(program)]
     raise TypeError(f"no instruction for {block!r}")
 
 

@@ -39,9 +39,11 @@ _DWELL = re.compile(rf"G4 F({_NUMBER})$")
 
 @dataclass
 class _State:
-    """What is set while the programs are followed."""
+    """What is set while the programs are followed. switching: words that switch the deposit, of those that a number is set
+    to."""
 
     files: dict[str, list[tuple[str, str]]]
+    switching: set[str] = field(default_factory=set)
     track: Track = field(default_factory=Track)
     units: set[str] = field(default_factory=set)
     feed: str = "G94"
@@ -68,7 +70,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     if len(main) != 1 or any(not name.upper().endswith((".MPF", ".SPF")) for name in files):
         raise unreadable("program", f"there are {len(main)} main programs, expected one with its parts")
     programs = {name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()}
-    state = _State(programs)
+    words = {text for blocks in programs.values() for _, text in blocks}
+    # an H word that is ever 0 switches; others tell schedules, which begin with 1
+    state = _State(programs, switching={text.partition("=")[0] for text in words if text.endswith("=0")})
     start = main[0].upper().rpartition(".")[0]
     _follow(start, state, ())
     if state.track.on:
@@ -214,7 +218,12 @@ def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None
 
 
 def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> None:
-    if output := _OUTPUT.match(token):
+    output = _OUTPUT.match(token)
+    if output and output[3] and token.partition("=")[0] not in state.switching:
+        if state.compress or state.track.on:
+            raise unreadable(where, "a schedule is told within a bead")
+        state.track.happens("schedule", float(output[3]), float(output[4]))
+    elif output:
         if output[5] in ("0", "1", "2", "6", "17", "30"):
             raise unreadable(where, f"{token!r} is not understood")
         _switch(where, token, output, state)

@@ -49,6 +49,10 @@ Array = NDArray[np.float64]
 NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
 # why the speed of the wire cannot follow that of the torch
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
+NO_SCHEDULE = {
+    "output": "that VAL 3 sets several outputs to one number was not found documented",
+    "arc": "VAL 3 has no arc instructions",
+}
 ON_CONTROLLER = on_controller(
     "The controller's world is the robot's base, and joint speeds are its nominal ones",
     "The outputs and inputs are linked to the process",
@@ -126,9 +130,9 @@ def _refuse(program: Program) -> None:
     refuse_without_speeds(program, AXES)
     refuse_without_positions(program)
     for block in program.blocks:
-        if isinstance(block, Call) and re.fullmatch(rf"{program.name}\d*", program_name(block.program, _CALL), re.I):
+        if isinstance(block, Call) and re.fullmatch(rf"{program.name}\d*", program_name(block.program, block.where), re.I):
             raise InputError(
-                "PROGRAM_NAME", _CALL, f"{block.program!r} may be a program of this very job; call one of another name"
+                "PROGRAM_NAME", block.where, f"{block.program!r} may be a program of this very job; call one of another name"
             )
 
 

@@ -23,6 +23,7 @@ from ..core.program import (
     LayerStart,
     Moves,
     Program,
+    Schedule,
     Six,
     Wait,
     WaitBelow,
@@ -34,11 +35,11 @@ from .names import Naming
 from .on_controller import on_controller
 from .parts import Piece, Run, grouped, lines_of, packed, whole
 from .refusals import (
-    CALL,
     refuse_calls_of_own,
     refuse_cooling,
     refuse_endless,
     refuse_incomplete,
+    refuse_schedules,
     refuse_wire,
     refuse_without_positions,
 )
@@ -51,6 +52,8 @@ Array = NDArray[np.float64]
 AXES = 6
 # why the speed of the wire cannot follow that of the torch
 NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
+NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
+LAST_REGISTER, LAST_SCHEDULE = 47, 65535
 ON_CONTROLLER = on_controller(
     "Joint programs count on the nominal arm; the calibrated one stands up to millimetres beside it",
     "The robot keeps the time of every move through the blends",
@@ -126,6 +129,7 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "ur", AXES)
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
+    refuse_schedules(program, LAST_REGISTER, LAST_SCHEDULE)
     refuse_endless(program)
     refuse_without_positions(program)
     if program.setup == "part-on-robot" and any(run.flange is None for run in program.moves):
@@ -178,6 +182,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return [] if program.dry_run else [_output(program.deposit_output, True), *_sleep(block.lead)]
     if isinstance(block, DepositOff):
         return [] if program.dry_run else [*_sleep(block.lead), _output(program.deposit_output, False)]
+    if isinstance(block, Schedule):
+        return [f"write_output_integer_register({program.schedule_output}, {block.number})"]
     if isinstance(block, LayerStart):
         return [f"# layer {block.layer}"]
     if isinstance(block, Wait):
@@ -189,7 +195,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         level = f"while get_standard_analog_in({block.number - 1}) >= {block.below:.6f}:"
         return [level, f"{_INDENT}sleep(0.100)", "end"]
     if isinstance(block, Call):
-        return [f"{program_name(block.program, CALL)}()"]
+        return [f"{program_name(block.program, block.where)}()"]
     raise TypeError(f"no instruction for {block!r}")
 
 

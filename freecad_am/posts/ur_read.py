@@ -33,6 +33,7 @@ _STRAIGHT = re.compile(rf"movep\(pose_trans\(platform, p{_SIX}\), a=1\.2, v=({_N
 _TCP = re.compile(rf"set_tcp\(p{_SIX}\)$")
 _PLATFORM = re.compile(rf"global platform = p{_SIX}$")
 _OUTPUT = re.compile(r"set_(standard|configurable)_digital_out\(([0-7]), (True|False)\)$")
+_REGISTER = re.compile(r"write_output_integer_register\((\d+), (\d+)\)$")
 _SLEEP = re.compile(r"sleep\((\d+\.(\d+))\)$")
 _INPUT = re.compile(r"while get_(standard|configurable)_digital_in\(([0-7])\) == False:$")
 _BELOW = re.compile(r"while get_standard_analog_in\(([01])\) >= (-?\d+\.(\d+)):$")
@@ -148,6 +149,8 @@ def _follow(name: str, function: _Function, known: dict[str, _Function], run: _R
                 raise unreadable(where, "a second output is switched")
             run.output, run.on = number, output[3] == "True"
             run.happens("on" if run.on else "off", number, f"{output[1]}_digital_out")
+        elif register := _REGISTER.match(text):
+            run.happens("schedule", float(register[1]), float(register[2]))
         elif sleep := _SLEEP.match(text):
             run.happens("wait", float(sleep[1]), digits=0.5 * 10.0 ** -len(sleep[2]))
         elif given := _INPUT.match(text):

@@ -28,6 +28,7 @@ from ..core.program import (
     LayerStart,
     Moves,
     Program,
+    Schedule,
     Wait,
     WaitInput,
 )
@@ -35,13 +36,13 @@ from .names import Naming, plain
 from .on_controller import on_controller
 from .parts import continued, grouped, packed, place
 from .refusals import (
-    CALL,
     refuse_calls_of_own,
     refuse_cooling,
     refuse_endless,
     refuse_external,
     refuse_incomplete,
     refuse_named_track,
+    refuse_schedules,
     refuse_wire,
     refuse_without_speeds,
 )
@@ -49,12 +50,13 @@ from .yaskawa_read import read
 from .yaskawa_text import AXES, BASE, job, pulses
 
 __all__ = ["read", "write"]
-
 Array = NDArray[np.float64]
 
 NO_ANALOGUE = "how a job waits for an analogue input differs with the controller's options, and the post yaskawa knows none"
 # why the speed of the wire cannot follow that of the torch
 NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
+NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
+LAST_GROUP, LAST_SCHEDULE, LAST_FILE = 512, 255, 1000  # groups of eight outputs; files of arc conditions
 ON_CONTROLLER = on_controller(
     "Pulses per degree of the machine file are the controller's, and zero pulses the zero of its angles",
     "VJ is a share of the largest speeds of the machine file, those of the axis that takes longest",
@@ -68,7 +70,7 @@ LONGEST_WAIT = 600.0  # s of one TIMER
 # percent of the largest joint speed: the step it is told in, and what a bead may go at least, where that is right to 10 %
 STEP_PERCENT, LEAST_PERCENT = 0.01, 0.05
 LEVELS = 8  # of rounded corners
-# what a unit of path speed is in mm/s, its decimals, and the largest number written
+# what a unit of path speed is in mm/s, and its decimals
 UNITS = {"mm/s": (1.0, 1), "cm/min": (1.0 / 6.0, 0), "mm/min": (1.0 / 60.0, 0)}
 FASTEST = 1500.0  # mm/s
 _COMMENT = 32
@@ -149,6 +151,7 @@ def _refuse(program: Program) -> None:
                              f"for each of them from the first one on; use 1, not {program.first_external}")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
+    refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE, LAST_FILE)
     refuse_endless(program)
     if len(program.pulses_per_degree) != axes:
         raise InputError("NO_PULSES", "cell.machine", "the machine file has no controller.pulses_per_degree; add them")
@@ -245,13 +248,14 @@ def _path_speeds(program: Program, moves: Moves) -> list[str]:
     return [f"V={speed:.{decimals}f}" for speed in (moves.speed / unit).tolist()]
 
 
-
 def _instructions(program: Program, block: Block) -> list[str]:
     output = f"DOUT OT#({program.deposit_output})"
-    if isinstance(block, DepositOn):
-        return [] if program.dry_run else [f"{output} ON", *_timer(block.lead)]
-    if isinstance(block, DepositOff):
-        return [] if program.dry_run else [*_timer(block.lead), f"{output} OFF"]
+    if isinstance(block, (DepositOn, DepositOff)):
+        word, arc = ("ON", "ARCON ASF") if isinstance(block, DepositOn) else ("OFF", "ARCOF AEF")
+        lines = [f"{output} {word}" if block.schedule is None else f"{arc}#({block.schedule})", *_timer(block.lead)]
+        return [] if program.dry_run else lines if word == "ON" else [*lines[1:], lines[0]]
+    if isinstance(block, Schedule):
+        return [f"DOUT OG#({program.schedule_output}) {block.number}"]
     if isinstance(block, LayerStart):
         return _remark(f"layer {block.layer}")
     if isinstance(block, Wait):
@@ -259,7 +263,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, WaitInput):
         return [f"WAIT IN#({block.number})=ON"]
     if isinstance(block, Call):
-        return [f"CALL JOB:{program_name(block.program, CALL)}"]
+        return [f"CALL JOB:{program_name(block.program, block.where)}"]
     raise TypeError(f"no instruction for {block!r}")
 
 

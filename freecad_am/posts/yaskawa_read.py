@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import InputError
-from ..core.read_moves import Event, ReadMoves
+from ..core.read_moves import ARC, Event, ReadMoves
 
 Array = NDArray[np.float64]
 
@@ -32,6 +32,8 @@ _INST: tuple[str | re.Pattern[str], ...] = (
 _MOVJ = re.compile(r"MOVJ C(\d{5})(?: BC(\d{5}))?(?: EC(\d{5}))? VJ=(\d+\.(\d+)) PL=([0-8])$")
 _MOVL = re.compile(r"MOVL C(\d{5})()() V=(\d+(?:\.(\d+))?) PL=([0-8])$")
 _OUTPUT = re.compile(r"DOUT OT#\((\d+)\) (ON|OFF)$")
+_OUTPUTS = re.compile(r"DOUT OG#\((\d+)\) (\d+)$")
+_ARC = re.compile(r"ARC(ON ASF|OF AEF)#\((\d+)\)$")
 _TIMER = re.compile(r"TIMER T=(\d+\.(\d+))$")
 _INPUT = re.compile(r"WAIT IN#\((\d+)\)=ON$")
 _CALL = re.compile(r"CALL JOB:([A-Z][A-Z0-9_]{0,31})$")
@@ -206,6 +208,13 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
                 raise unreadable(where, "a second output is switched")
             run.output, run.on = output[1], output[2] == "ON"
             run.happens("on" if run.on else "off", float(output[1]), "OT")
+        elif group := _OUTPUTS.match(text):
+            run.happens("schedule", float(group[1]), float(group[2]))
+        elif arc := _ARC.match(text):
+            if run.output not in ("", ARC) or run.on == arc[1].startswith("ON"):
+                raise unreadable(where, "an output is switched too, or the arc burns already, or not yet")
+            run.output, run.on = ARC, arc[1].startswith("ON")
+            run.happens("on" if run.on else "off", float(arc[2]), ARC)
         elif timer := _TIMER.match(text):
             run.happens("wait", float(timer[1]), digits=0.5 * 10.0 ** -len(timer[2]))
         elif given := _INPUT.match(text):

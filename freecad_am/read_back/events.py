@@ -9,13 +9,26 @@ import numpy as np
 
 from ..core.issues import ERROR, Issue
 from ..core.kinematics.cell import ROTARY_TABLE
-from ..core.program import Block, Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitBelow, WaitInput
-from ..core.read_moves import Event, ReadMoves
+from ..core.program import (
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Schedule,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
+from ..core.read_moves import ARC, Event, ReadMoves
 from .planned import COMPUTED_AXIS, Planned
 
 # code and message of what is off, and the kinds of events that it is about
 _FAMILIES = (
     ("VERIFY_DEPOSIT", "the deposit is switched otherwise than planned", ("on", "off")),
+    ("VERIFY_SCHEDULE", "another schedule is told than planned", ("schedule",)),
     ("VERIFY_WAIT", "it is waited otherwise than planned", ("wait", "input")),
     ("VERIFY_COOLING", "a temperature is waited for otherwise", ("below",)),
     ("VERIFY_CALL", "other programs are called than planned", ("call",)),
@@ -60,6 +73,8 @@ def _alike(program: Program, found: Event, due: Event) -> bool:
     """Whether an event of a text is the one that is due."""
     if (found.row, found.kind) != (due.row, due.kind):
         return False
+    if ARC in (*found.value, *due.value):
+        return found.value == due.value
     if due.kind in ("on", "off") and program.nc.deposit_on and program.setup == ROTARY_TABLE:
         return found.value[1] == (program.nc.deposit_on if due.kind == "on" else program.nc.deposit_off).upper()
     if due.kind in ("on", "off"):
@@ -104,9 +119,11 @@ def _due(program: Program) -> Iterator[Event]:
 
 def _happening(program: Program, block: Block) -> list[tuple[float | str, ...]]:
     if isinstance(block, DepositOn):
-        return [] if program.dry_run else [("on", float(program.deposit_output)), ("wait", float(block.lead))]
+        return [] if program.dry_run else [("on", *_switched(program, block.schedule)), ("wait", float(block.lead))]
     if isinstance(block, DepositOff):
-        return [] if program.dry_run else [("wait", float(block.lead)), ("off", float(program.deposit_output))]
+        return [] if program.dry_run else [("wait", float(block.lead)), ("off", *_switched(program, block.schedule))]
+    if isinstance(block, Schedule):
+        return [("schedule", float(program.schedule_output), float(block.number))]
     if isinstance(block, LayerStart):
         return [("layer", float(block.layer))]
     if isinstance(block, Wait):
@@ -118,3 +135,8 @@ def _happening(program: Program, block: Block) -> list[tuple[float | str, ...]]:
     if isinstance(block, Call):
         return [("call", block.program.upper())]
     return []
+
+
+def _switched(program: Program, schedule: int | None) -> tuple[float | str, ...]:
+    """What switches the deposit: an output, or an arc instruction by a schedule."""
+    return (float(program.deposit_output),) if schedule is None else (float(schedule), ARC)

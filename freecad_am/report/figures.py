@@ -22,7 +22,7 @@ from freecad_am.core.planning.task import Task
 from freecad_am.core.process import deposit_balance, predicted
 from freecad_am.core.process import spacing as layer_spacing
 from freecad_am.core.process.deposit_balance import Balance
-from freecad_am.core.simulation import totals
+from freecad_am.core.simulation import class_figures, totals
 from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.strategies.families import family_of
 from freecad_am.core.toolpath import Array, Toolpath
@@ -65,6 +65,7 @@ def build(
         "spacing_comparison": [],
         "process": _process(process, toolpath),
         "beads": predicted.beads(toolpath),
+        "classes": class_figures.figures(motion, process),
         "machine": None,
         "timing_s": {},
         "programs": [],

@@ -259,6 +259,11 @@
         <translation>Autres espacements dont les trajectoires articulaires sont planifiées pour la comparaison du rapport.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Group output, H word, register or analogue output that tells it; of KUKA the first of eight outputs.</source>
+        <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
         <source>Height along the stacking direction.</source>
         <translation>Hauteur suivant la direction d&apos;empilement.</translation>
@@ -525,6 +530,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Name of the programs that are called, without their number: SCHEDULE3.</source>
+        <translation>Nom des programmes appelés, sans leur numéro : SCHEDULE3.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2), motion group of FANUC (2).</source>
         <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2), groupe de mouvement de FANUC (2).</translation>
     </message>
@@ -582,6 +592,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Number of the user frame named in the program.</source>
         <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number that tells the welder or extruder how to lay beads; program.schedule says how it is told.</source>
+        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -854,6 +869,11 @@
         <translation>La trajectoire articulaire à écrire.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The number of a schedule is set on a group output; named by the arc instructions, which then switch the deposit; or is that of a program that is called.</source>
+        <translation>Le numéro d&apos;un programme de soudage est mis sur une sortie de groupe ; nommé par les instructions d&apos;arc, qui commutent alors le dépôt ; ou est celui d&apos;un programme appelé.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
         <source>The points as they were read.</source>
         <translation>Les points tels qu&apos;ils ont été lus.</translation>
@@ -972,6 +992,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>What a joint path is judged by.</source>
         <translation>Ce qui juge une trajectoire articulaire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>What differs for classes of beads (first_layer, contour, fill, closing, link, wall), such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.</source>
+        <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -1115,6 +1140,11 @@
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source> or </source>
         <translation> ou </translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>$OUT[{0}] to $OUT[{1}] tell the schedule, and one of them switches the deposit; use other ones, or another program.deposit_output</source>
+        <translation>$OUT[{0}] à $OUT[{1}] transmettent le programme de soudage, et l&apos;une d&apos;elles commute le dépôt ; prenez-en d&apos;autres, ou un autre program.deposit_output</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
@@ -1382,6 +1412,11 @@
         <translation>Un autre panneau de tâche est ouvert ; fermez-le d&apos;abord.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one</source>
+        <translation>ArcL va à la vitesse de ses welddata tant que l&apos;arc brûle, autant qu&apos;on sache, et non à celle qui est planifiée</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
         <source>Area of the faces.</source>
         <translation>Aire des faces.</translation>
@@ -1562,6 +1597,11 @@
         <translation>Directions de dépôt</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>By</source>
+        <translation>Par</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>By default: {}.</source>
         <translation>Par défaut : {}.</translation>
@@ -1730,6 +1770,11 @@
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>Clamps and other bodies around the part, which the nozzle is kept clear of.</source>
         <translation>Brides et autres corps autour de la pièce, dont la buse est tenue éloignée.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Classes</source>
+        <translation>Classes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -2532,6 +2577,11 @@
         <translation>Aller à {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Group output, H word, register or analogue output that tells it; of KUKA the first of eight outputs.</source>
+        <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Grows on</source>
         <translation>Croît sur</translation>
@@ -2670,6 +2720,11 @@
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Hub</source>
         <translation>Moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens.py"/>
+        <source>H{0} switches the deposit; use another one for schedules</source>
+        <translation>H{0} commute le dépôt ; prenez-en un autre pour les programmes de soudage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
@@ -3343,6 +3398,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Name of the programs that are called, without their number: SCHEDULE3.</source>
+        <translation>Nom des programmes appelés, sans leur numéro : SCHEDULE3.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2), motion group of FANUC (2).</source>
         <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2), groupe de mouvement de FANUC (2).</translation>
     </message>
@@ -3482,6 +3542,11 @@
         <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number that tells the welder or extruder how to lay beads; program.schedule says how it is told.</source>
+        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Objective</source>
         <translation>Objectif</translation>
@@ -3610,6 +3675,11 @@
         <location filename="../../freecad_am/gui/simulation/told.py"/>
         <source>Out of reach</source>
         <translation>Hors d&apos;atteinte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Output</source>
+        <translation>Sortie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/solid.py"/>
@@ -4130,6 +4200,11 @@
         <location filename="../../freecad_am/gui/plots/dock.py"/>
         <source>Save…</source>
         <translation>Enregistrer…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Schedule</source>
+        <translation>Programme de soudage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -4912,6 +4987,11 @@
         <translation>La buse reste dégagée pendant les rapides</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The number of a schedule is set on a group output; named by the arc instructions, which then switch the deposit; or is that of a program that is called.</source>
+        <translation>Le numéro d&apos;un programme de soudage est mis sur une sortie de groupe ; nommé par les instructions d&apos;arc, qui commutent alors le dépôt ; ou est celui d&apos;un programme appelé.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>The outputs and inputs are linked to the process</source>
         <translation>Les sorties et entrées sont liées au procédé</translation>
@@ -5283,6 +5363,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur.py"/>
+        <source>URScript has no arc instructions</source>
+        <translation>URScript n&apos;a pas d&apos;instructions d&apos;arc</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
         <source>URScript moves a tool that the flange carries, at its speed; with the part on the robot the tool stands and the speed at the deposition point is another one at every point of the part, which no documented instruction of URScript holds; use `motion: joint`</source>
         <translation>URScript déplace un outil porté par la bride, à la vitesse de celui-ci ; avec la pièce sur le robot, l&apos;outil est fixe et la vitesse au point de dépôt est une autre en chaque point de la pièce, ce qu&apos;aucune instruction documentée d&apos;URScript ne tient ; utilisez `motion: joint`</translation>
     </message>
@@ -5335,6 +5420,11 @@
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
         <source>V has two units</source>
         <translation>V a deux unités</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>VAL 3 has no arc instructions</source>
+        <translation>VAL 3 n&apos;a pas d&apos;instructions d&apos;arc</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli.py"/>
@@ -5415,6 +5505,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>What a joint path is judged by.</source>
         <translation>Ce qui juge une trajectoire articulaire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>What differs for classes of beads (first_layer, contour, fill, closing, link, wall), such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.</source>
+        <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
@@ -5902,6 +5997,11 @@
         <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>a schedule is told within a bead</source>
+        <translation>un programme de soudage est transmis à l&apos;intérieur d&apos;un cordon</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc_read.py"/>
         <source>a second U{0} is selected</source>
         <translation>un deuxième U{0} est choisi</translation>
@@ -6157,9 +6257,19 @@
         <translation>une entrée a changé pendant le calcul ; recalculez</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>an output is switched too, or the arc burns already, or not yet</source>
+        <translation>une sortie est commutée aussi, ou l&apos;arc brûle déjà, ou pas encore</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>analogue inputs are whole numbers, not {0}; change below, gain or zero so that it is one</source>
         <translation>les entrées analogiques sont des nombres entiers, et non {0} ; changez below, gain ou zero pour qu&apos;il en soit un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>analogue output {0} tells the speed of the wire; use another one for schedules</source>
+        <translation>la sortie analogique {0} transmet la vitesse du fil ; prenez-en une autre pour les programmes de soudage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
@@ -6182,6 +6292,11 @@
         <translation>un autre programme est appelé au sein d&apos;un cordon</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>another schedule is told than planned</source>
+        <translation>un autre programme de soudage que prévu est transmis</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/placement/moved.py"/>
         <source>another set-up</source>
         <translation>une autre installation</translation>
@@ -6190,6 +6305,11 @@
         <location filename="../../freecad_am/posts/abb_read.py"/>
         <source>another unit is active than in moves before</source>
         <translation>une autre unité est active que dans les mouvements d&apos;avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>arc</source>
+        <translation>arc</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -6457,6 +6577,16 @@
         <translation>les cordons laissent {0} jour(s) ouverts, le plus large de {1} mm en {2} ; strategy.gap permet {3} mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/program_beads.py"/>
+        <source>beads of the class {0} have no schedule, and would be laid by that of the bead before; give process.schedule, or one in process.classes.{1}</source>
+        <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, et seraient déposés avec celui du cordon précédent ; donnez process.schedule, ou un dans process.classes.{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program_beads.py"/>
+        <source>beads of the class {0} have no schedule, which arc instructions name; give process.schedule, or one in process.classes.{1}</source>
+        <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, que les instructions d&apos;arc nomment ; donnez process.schedule, ou un dans process.classes.{1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>beads {0} mm wide (process.bead_width), {1} mm apart, leave stripes of {2} mm open between them; use {3} mm or less, or wider beads</source>
         <translation>des cordons larges de {0} mm (process.bead_width), distants de {1} mm, laissent entre eux des bandes ouvertes de {2} mm ; prenez {3} mm ou moins, ou des cordons plus larges</translation>
@@ -6545,6 +6675,11 @@
         <location filename="../../freecad_am/objects/program.py"/>
         <source>building moves and events</source>
         <translation>construction des mouvements et événements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>call</source>
+        <translation>appel</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -7187,6 +7322,11 @@
         <translation>contrôle</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>instructions of ArcTech name weld data that only the pendant makes</source>
+        <translation>les instructions d&apos;ArcTech nomment des données de soudage que seul le pupitre crée</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>inverse condition number of the Jacobian at the points of the deposit, against the least one allowed</source>
         <translation>inverse du conditionnement de la jacobienne aux points du dépôt, comparé au minimum permis</translation>
@@ -7422,6 +7562,11 @@
         <translation>il n&apos;a ni faces ni arêtes ; choisissez un autre objet</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>it has no arc instructions</source>
+        <translation>elle n&apos;a pas d&apos;instructions d&apos;arc</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/wall.py"/>
         <source>it has no closed direction; choose a tube that is closed around</source>
         <translation>elle n&apos;a pas de direction fermée ; choisissez un tube fermé sur son tour</translation>
@@ -7622,6 +7767,11 @@
         <translation>il est endommagé : sa lecture demande plus de {0} s de processeur, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>it is declared behind an instruction</source>
+        <translation>il est déclaré après une instruction</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/names.py"/>
         <source>it is empty</source>
         <translation>il est vide</translation>
@@ -7820,6 +7970,11 @@
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>it is not well-formed XML ({0})</source>
         <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>it is set ahead of the motion, or its outputs cannot tell such a number</source>
+        <translation>il est mis en avance sur le mouvement, ou ses sorties ne peuvent transmettre un tel numéro</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
@@ -8892,6 +9047,11 @@
         <translation>objet {0} de {1} : {2} objets, ou objets imbriqués {3} fois</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/program_beads.py"/>
+        <source>of an earlier version</source>
+        <translation>d&apos;une version antérieure</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>of its {0} solids {1} alone turns about an axis, {2} of its surface; name the faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub</source>
         <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
@@ -8945,6 +9105,11 @@
         <location filename="../../freecad_am/objects/part_file.py"/>
         <source>one object that nothing else is made from</source>
         <translation>un objet dont rien d&apos;autre n&apos;est fait</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>one of its outputs switches the deposit</source>
+        <translation>une de ses sorties commute le dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
@@ -9010,6 +9175,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>outer</source>
         <translation>extérieure</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>output</source>
+        <translation>sortie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
@@ -9512,6 +9682,11 @@
         <translation>tableau, ligne {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>that VAL 3 sets several outputs to one number was not found documented</source>
+        <translation>il n&apos;a pas été trouvé documenté que VAL 3 mette plusieurs sorties à un seul numéro</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
         <source>the X of {0} points out of the flange, not its Z: it is turned there, as tool0 stands to flange</source>
         <translation>le X de {0} sort de la bride, et non son Z : il y est tourné, comme tool0 se place par rapport à flange</translation>
@@ -9592,6 +9767,11 @@
         <translation>la base touche {what}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/classes.py"/>
+        <source>the bead model sets the travel speed of all beads; leave it out, or use bead_model: none</source>
+        <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; omettez-la, ou prenez bead_model: none</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/bead_table.py"/>
         <source>the calibration table cannot be read ({0}); give none, csw or the path of one</source>
         <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
@@ -9620,6 +9800,11 @@
         <location filename="../../freecad_am/posts/kuka.py"/>
         <source>the controller has numbers up to {0}, not {1}; use one of these</source>
         <translation>la commande a des numéros jusqu&apos;à {0}, pas {1} ; prenez l&apos;un de ceux-ci</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the controller is told schedules up to {0}, not {1}; use another number, there or in process.classes</source>
+        <translation>le contrôleur reçoit des programmes de soudage jusqu&apos;à {0}, non {1} ; prenez un autre numéro, là ou dans process.classes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/controllers.py"/>
@@ -10060,6 +10245,11 @@
         <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the nozzle touches {what}</source>
         <translation>la buse touche {what}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the number of a schedule is set on one of 1 to {0}, not {1}; use one of these</source>
+        <translation>le numéro d&apos;un programme de soudage est mis sur une sortie de 1 à {0}, non {1} ; prenez l&apos;une d&apos;elles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka.py"/>
@@ -11147,6 +11337,11 @@
         <translation>écrivez les décimales avec &apos;{0}&apos;, comme 1{1}5 {2}, et ne groupez pas les chiffres</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
+        <source>write such as: contour: travel_speed 8, schedule 3; fill: lead 5</source>
+        <translation>x</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
         <source>write such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</source>
         <translation>écrivez par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</translation>
@@ -11440,6 +11635,11 @@
         <location filename="../../freecad_am/core/planning/controllers.py"/>
         <source>{0} has no spherical wrist, and what its controller calls the configurations of cartesian positions is not known; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
+        <source>{0} has no {1}; it may have {2}</source>
+        <translation>{0} n&apos;a pas de {1} ; elle peut avoir {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
@@ -11787,6 +11987,11 @@
         <translation>{0} n&apos;est pas une branche ; utilisez [front|back, up|down, flip|noflip] ou auto</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
+        <source>{0} is not a class of beads; {1}</source>
+        <translation>{0} n&apos;est pas une classe de cordons ; {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a direction; {1}</source>
         <translation>{0} n&apos;est pas une direction ; {1}</translation>
@@ -12080,6 +12285,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>{0} is there twice; give each bead one</source>
         <translation>{0} y est deux fois ; donnez chaque cordon une fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
+        <source>{0} is there twice; write all of it in one place</source>
+        <translation>{0} y est deux fois ; écrivez le tout en un seul endroit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -12690,6 +12900,16 @@
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>{0}: {1} mm off; name the faces of the wall if it is not part of it</source>
         <translation>{0} : écart de {1} mm ; nommez les faces de la paroi si elle n&apos;en fait pas partie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
+        <source>{0}: {1} tells no number; {2}</source>
+        <translation>{0} : {1} ne donne pas de nombre ; {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0}: {1}; use another way, or another controller</source>
+        <translation>{0} : {1} ; prenez une autre manière, ou un autre contrôleur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>

@@ -54,7 +54,7 @@ def fin(workshop):
 def test_wire_in_proportion_from_the_job_to_the_program(fin):
     done, report, rows, texts = fin()
     assert done.status == 0, done.err
-    assert list(rows[0])[-1] == "wire_feed_mm_s"
+    assert list(rows[0])[-2] == "wire_feed_mm_s"
     assert {row["wire_feed_mm_s"] for row in rows if row["kind"] == "rapid"} == {""}
     deposit = [row for row in rows if row["kind"] == "deposit"]
     speed, wire = (np.array([float(row[name]) for row in deposit]) for name in ("speed_mm_s", "wire_feed_mm_s"))

@@ -131,7 +131,7 @@ def test_sections_left_out_end_the_job_early(workshop):
     assert workshop.run("plan", "cup.yaml", "--no-page").status == 0
     files = workshop.files()
     assert files["waypoints.csv"].startswith(
-        b"layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm\n0,0,0,deposit,")
+        b"layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm,class\n0,0,0,deposit,")
     report = json.loads(files["report.json"])
     assert report["joints"] is None and report["counts"]["layers"] == 16 and report["status"] == "ok"
 

@@ -2,17 +2,19 @@
 """waypoints.csv gives back the motion."""
 
 import csv
+import dataclasses
 import io
 
 import numpy as np
 import pytest
 
 from freecad_am.core.motion import Motion
+from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.simulation import deposit, waypoints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 COLUMNS = ("layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm,"
-           "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg")
+           "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,class")
 AXES = tuple(f"q{i}" for i in range(1, 7))
 
 
@@ -60,6 +62,15 @@ def test_reads_back_to_the_motion(count):
     assert all(len(cell.partition(".")[2]) >= 6 for cell in numbers)
 
 
+def test_the_last_column_is_the_class_whatever_comes_before():
+    motion = random_motion(500)
+    number = np.random.default_rng(4).integers(-1, len(CLASSES), 500)
+    for more in ({}, {"wire": np.full(500, 2.0)}):
+        changed = dataclasses.replace(motion, bead_class=number, **more)
+        rows = [line.rpartition(",")[2] for line in "".join(waypoints.text(changed, AXES)).splitlines()]
+        assert rows == ["class", *(CLASSES[one] if one >= 0 else "" for one in number)]
+
+
 def test_no_negative_zero():
     motion = random_motion(2)
     small = Motion(**{**{f: getattr(motion, f).copy() for f in motion.__dataclass_fields__},
@@ -78,7 +89,7 @@ def test_without_a_cell_the_deposit_alone():
     path = Toolpath((Layer((bead(0.0, True),)), Layer((bead(1.0, True), bead(1.5, True)))), np.eye(4), 1.0, 0.01)
     motion = deposit.alone(path)
     rows = list(csv.DictReader(io.StringIO("".join(waypoints.text(motion)))))
-    assert list(rows[0]) == COLUMNS.split(",")[:15]
+    assert list(rows[0]) == [*COLUMNS.split(",")[:15], "class"] and {row["class"] for row in rows} == {""}
     assert [(r["layer"], r["bead"], r["point"]) for r in rows] == [
         (str(i), str(j), str(k)) for i, j in ((0, 0), (1, 0), (1, 1)) for k in range(13)
     ]

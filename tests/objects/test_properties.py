@@ -26,6 +26,7 @@ CLASSES = (
 TEXTS = {"machine": "staubli-rx60bl", "limits": "paper", "call": "CLEAN", "gas": "argon 4.6", "bead_model": "csw",
          "post": "siemens", "plane": "0.6 0 -0.8", "deposit_on": "M7", "deposit_off": "H2=0", "unit": "STN1",
          "external": "motoman-motopos-d500 at 1500 0.25 -3 0 45 0 carries part", "world_up": "0 0.1 1",
+         "classes": "first_layer: travel_speed 4.5, schedule 2; fill: lead -5, lead_on 0.25",
          "obstacles": "post = box 60 60 400 at 900 -0.25 0 0 30 0"}
 
 

@@ -3,15 +3,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
+from typing import Any
 
+from . import bead_classes
 from . import field as f
+from .bead_classes import BeadClass
 
 # what each of several features may have of its own, with _ for nested keys; the rest holds for the whole program
 OF_FEATURE = (
     "travel_speed", "seam_angle", "seam_step", "direction", "bead_width", "fill_width", "bead_model", "acceleration",
 )
+
+IN_PROCESS = ("travel_speed", "schedule", "lead_on", "lead_off")  # what of a class stands for a key of the process
 
 
 @dataclass(frozen=True)
@@ -130,5 +136,31 @@ class ProcessParameters:
         low=0.0, open_low=True, advanced=True, unit="mm/s²",
     )
 
+    schedule: int | None = f.parameter(
+        None, f.COUNT, "Number that tells the welder or extruder how to lay beads; program.schedule says how it is told.",
+        low=1, high=bead_classes.LARGEST_SCHEDULE, optional=True,
+    )
+    classes: str = f.parameter(
+        bead_classes.NONE, f.TEXT, "What differs for classes of beads (first_layer, contour, fill, closing, link, wall), "
+        "such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.",
+    )
+
     def __post_init__(self) -> None:
         f.check(self, "process")
+        bead_classes.classes(self.classes)  # whether it is understood
+
+    def of_class(self, name: str) -> BeadClass:
+        """What beads of a class have of their own; nothing of a class that is not named."""
+        return bead_classes.classes(self.classes).get(name, BeadClass())
+
+    def for_class(self, name: str) -> ProcessParameters:
+        """The process as beads of a class are laid by."""
+        own = self.of_class(name).told()
+        mine: dict[str, Any] = {key: value for key, value in own.items() if key in IN_PROCESS}
+        return dataclasses.replace(self, **mine) if mine else self
+
+    @property
+    def scheduled(self) -> bool:
+        """Whether any bead has a schedule."""
+        classes = bead_classes.classes(self.classes).values()
+        return self.schedule is not None or any(one.schedule is not None for one in classes)

@@ -70,6 +70,24 @@ class AxesParameters:
 
 
 @dataclass(frozen=True)
+class ScheduleParameters:
+    """How the welder or extruder is told its schedule."""
+
+    by: str = f.parameter(
+        "output", f.CHOICE, "The number of a schedule is set on a group output; named by the arc instructions, which then "
+        "switch the deposit; or is that of a program that is called.", choices=("output", "arc", "call"),
+    )
+    output: int = f.parameter(
+        2, f.COUNT, "Group output, H word, register or analogue output that tells it; of KUKA the first of eight outputs.",
+        low=1, high=4096,
+    )
+    call: str = f.parameter("SCHEDULE", f.TEXT, "Name of the programs that are called, without their number: SCHEDULE3.")
+
+    def __post_init__(self) -> None:
+        f.check(self, "program.schedule")
+
+
+@dataclass(frozen=True)
 class ProgramParameters:
     """What is written for the controller."""
 
@@ -93,6 +111,7 @@ class ProgramParameters:
     tool_frame: int = f.parameter(1, f.COUNT, "Number of the tool frame named in the program.", low=1, high=29)
     deposit_output: int = f.parameter(1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096)
     axes: AxesParameters = f.group(AxesParameters, "What the controller calls the axes beside the robot.")
+    schedule: ScheduleParameters = f.group(ScheduleParameters, "How the welder or extruder is told its schedule.")
 
     def __post_init__(self) -> None:
         if self.origin is None:  # an empty property of a document

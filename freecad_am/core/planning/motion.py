@@ -13,6 +13,7 @@ from ..geometry.surroundings import Body
 from ..issues import Issue
 from ..kinematics.cell import Cell
 from ..motion import DEPOSIT, Motion
+from ..parameters.bead_classes import number_of
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
 from .arm_kept import Rods
@@ -26,6 +27,7 @@ Array = NDArray[np.float64]
 # share of an axis's largest speed a rapid move may ask for, and the shortest time of one
 RAPID_SHARE = 0.8
 SHORTEST = 0.05
+OF_ALL = ("layer", "bead", "bead_class")  # what is the same for all rows of a part
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,7 @@ class _Rows:
     role: NDArray[np.int64]
     layer: int
     bead: int
+    bead_class: int
     position: Array
     build: Array
     tool: Array
@@ -72,6 +75,11 @@ def assemble(
     return _joined(parts, cell, process), findings(ways)
 
 
+def _place(path: BeadPath) -> tuple[int, int, int]:
+    """Layer, bead and class."""
+    return path.layer, path.index, number_of(path.bead.bead_class)
+
+
 def _rapid(path: BeadPath, way: Way, onto: Leg | None, cell: Cell) -> _Rows:
     joints = way.joints
     flange = cell.machine.chain.forward(np.nan_to_num(joints))
@@ -83,7 +91,7 @@ def _rapid(path: BeadPath, way: Way, onto: Leg | None, cell: Cell) -> _Rows:
     build = tool.copy()
     build[-1] = path.bead.build[0]
     none = np.full(len(joints), np.nan)
-    return _Rows(way.role, path.layer, path.index, position, build, tool, none, none, joints, none, none)
+    return _Rows(way.role, *_place(path), position, build, tool, none, none, joints, none, none)
 
 
 def _retract(path: BeadPath, way: Way, away: Leg | None) -> _Rows:
@@ -91,7 +99,7 @@ def _retract(path: BeadPath, way: Way, away: Leg | None) -> _Rows:
     count = len(way.joints)
     tool, build = (np.repeat(column[-1:], count, axis=0) for column in (path.bead.tool, path.bead.build))
     none = np.full(count, np.nan)
-    return _Rows(way.role, path.layer, path.index, away.position, build, tool, none, none, way.joints, none, none)
+    return _Rows(way.role, *_place(path), away.position, build, tool, none, none, way.joints, none, none)
 
 
 def _deposit(path: BeadPath) -> _Rows:
@@ -101,7 +109,7 @@ def _deposit(path: BeadPath) -> _Rows:
     width = np.full(len(bead), np.nan) if bead.width is None else bead.width
     wire = np.full(len(bead), np.nan) if bead.wire_share is None else bead.wire_share * bead.speed
     return _Rows(
-        np.full(len(bead), DEPOSIT), path.layer, path.index, bead.points, bead.build, bead.tool, bead.speed, width,
+        np.full(len(bead), DEPOSIT), *_place(path), bead.points, bead.build, bead.tool, bead.speed, width,
         path.joints, duration, wire,
     )
 
@@ -110,7 +118,7 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
     counts = [len(part.joints) for part in parts]
     columns = {
         field.name: np.concatenate([getattr(part, field.name) for part in parts])
-        for field in fields(_Rows) if field.name not in ("layer", "bead")
+        for field in fields(_Rows) if field.name not in OF_ALL
     }
     joints, position, duration = columns["joints"], columns["position"], columns["duration"]
     speed = columns["speed"]
@@ -124,10 +132,10 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
     if len(rapid) and rapid[0] == 0:
         speed[0] = process.rapid_speed
     duration[0] = 0.0
-    number = {name: np.repeat([int(getattr(part, name)) for part in parts], counts) for name in ("layer", "bead")}
+    number = {name: np.repeat([int(getattr(part, name)) for part in parts], counts) for name in OF_ALL}
     return Motion(
         deposit=columns["role"] == DEPOSIT,
-        layer=number["layer"], bead=number["bead"],
+        **number,
         point=np.concatenate([np.arange(count) for count in counts]),
         position=position, build=columns["build"], tool=columns["tool"], speed=speed, width=columns["width"],
         joints=joints, duration=duration, wire=columns["wire"], role=columns["role"],

@@ -15,6 +15,7 @@ from ..issues import InputError
 from ..kinematics import opw
 from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, Cell
 from ..motion import Motion
+from ..parameters.bead_classes import CLASSES
 from ..parameters.process import BetweenLayersParameters, ProcessParameters
 from ..parameters.program import ProgramParameters, StartParameters
 from ..program import (
@@ -30,8 +31,6 @@ from ..program import (
     TRAVEL,
     Block,
     Call,
-    DepositOff,
-    DepositOn,
     LayerStart,
     Moves,
     NcOptions,
@@ -44,6 +43,7 @@ from ..program import (
 from ..toolpath import Toolpath
 from .controllers import FLANGE_TOLD, UNITS, check_controller, check_external, check_pulses, check_wrist
 from .joint_path import BeadPath
+from .program_beads import deposited
 from .program_remarks import frames_of, remarks_of, six_of
 
 # what the rows of a motion are for, by its numbers
@@ -61,7 +61,7 @@ def build(
     towards them. Before the first layer that is run there is nothing to wait for.
 
     Raises InputError: START_AT for a start past the last bead, WRONG_CONTROLLER for a post the machine cannot read,
-    NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT.
+    NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT, NO_SCHEDULE.
     """
     check_controller(cell.robot, parameters.post)
     check_external(cell, parameters.post)
@@ -102,6 +102,7 @@ def without_moves(cell: Cell, parameters: ProgramParameters, name: str) -> Progr
         external_kinds=external_kinds(cell),
         unit=_unit(cell, parameters),
         first_external=parameters.axes.first,
+        schedule_output=parameters.schedule.output,
     )
 
 
@@ -178,8 +179,7 @@ def _blocks(
         first = int(rows[0])
         if motion.deposit[first]:
             moves = _moves(motion, cell, rows[1:], DEPOSIT, parameters)
-            started = DepositOn(process.lead_on, None if moves.wire is None else float(moves.wire[0]))
-            blocks += [started, moves, DepositOff(process.lead_off)]
+            blocks += deposited(moves, _class_of(motion, first), process, parameters)
             continue
         here = int(motion.layer[first])
         last = number == len(groups) - 1
@@ -199,6 +199,11 @@ def _blocks(
             blocks += approach(rows[~retract])
         layer = here
     return tuple(blocks)
+
+
+def _class_of(motion: Motion, row: int) -> str:
+    number = int(motion.bead_class[row])
+    return "" if number == motions.UNKNOWN else CLASSES[number]
 
 
 def _groups(motion: Motion, rows: NDArray[np.int64]) -> list[NDArray[np.int64]]:

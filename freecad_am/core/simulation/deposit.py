@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion
+from ..parameters.bead_classes import number_of
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
 
@@ -65,4 +66,5 @@ def alone(toolpath: Toolpath, axes: int = 0) -> Motion:
         wire=np.concatenate([
             np.full(len(b), np.nan) if b.wire_share is None else b.wire_share * b.speed for _, _, b in beads
         ]),
+        bead_class=np.repeat([number_of(bead.bead_class) for _, _, bead in beads], sizes),
     )

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..motion import Motion
+from ..parameters.bead_classes import CLASSES
 from ..parameters.process import ProcessParameters
 
 Array = NDArray[np.float64]
@@ -97,8 +98,9 @@ def timeline(motion: Motion, process: ProcessParameters, waits: Sequence[float] 
     if n:
         first = motion.deposit & (motion.point == 0)
         last = motion.deposit & np.append(~motion.deposit[1:] | first[1:], True)
-        lit[first] += process.lead_on
-        lit[last] += process.lead_off
+        of_class = [process.for_class(name) for name in (*CLASSES, "")]  # of none the last one
+        lit[first] += np.array([one.lead_on for one in of_class])[motion.bead_class[first]]
+        lit[last] += np.array([one.lead_off for one in of_class])[motion.bead_class[last]]
         dark = _between_layers(motion, process, waits)
     steps = np.nan_to_num(motion.duration)
     stay = lit + dark

@@ -9,23 +9,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion
+from ..parameters.bead_classes import CLASSES
 from ..toolpath import Array
 
 HEADER = "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm"
 WIRE = "wire_feed_mm_s"
 _LENGTHS, _DIRECTIONS, _ANGLES = 6, 9, 7  # decimals
 _ROWS_AT_ONCE = 20_000
+CLASS = "class"
 _KINDS = np.frombuffer(b"rapid\0\0deposit", dtype=np.uint8).reshape(2, -1)
+_WIDEST = max(map(len, CLASSES))
+_CLASSES = np.array([list(name.encode().ljust(_WIDEST, b"\0")) for name in (*CLASSES, "")], dtype=np.uint8)
 
 Bytes = NDArray[np.uint8]
 
 
 def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
     """The file in pieces. `axes` names the columns of `motion.joints`, `units` are what they are written in: 'mm' where an
-    axis slides, 'deg' where it turns and where left out. Where the wire follows the travel speed, its own is the last
-    column."""
+    axis slides, 'deg' where it turns and where left out. Where the wire follows the travel speed, its own comes
+    next. The last column is the class of the bead, empty where it is not known."""
     units = units or ("deg",) * len(axes)
-    last = [WIRE] if told_of_wire(motion) else []
+    last = [WIRE, CLASS] if told_of_wire(motion) else [CLASS]
     yield ",".join((HEADER, *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)), *last)) + "\n"
     for start in range(0, len(motion), _ROWS_AT_ONCE):
         yield _rows(motion, units, slice(start, start + _ROWS_AT_ONCE))
@@ -49,6 +53,7 @@ def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
     if told_of_wire(motion):
         told.append((motion.wire[rows], _LENGTHS))
     texts = [_KINDS[motion.deposit[rows].astype(np.intp)].T if entry is None else _digits(*entry) for entry in told]
+    texts.append(_CLASSES[motion.bead_class[rows]].T)  # of none the last one
     count = len(motion.deposit[rows])
     parts = [part for text in texts for part in (text, np.full((1, count), ord(","), dtype=np.uint8))]
     parts[-1][:] = ord("\n")

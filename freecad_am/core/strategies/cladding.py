@@ -20,12 +20,11 @@ from ..process.bead_model import BeadModel
 from ..process.order import Laid, ordered, waited
 from ..toolpath import Array, Toolpath
 from .progress import Progress, silent
-from .solids.beads import Rolled, reversed_curve, rolled
+from .solids.beads import Rolled, classed, reversed_curve
 from .solids.filling import Filled, Pictures, bead_width, spaced
 from .solids.islands import island_by_island
 from .solids.lean_notes import lean_notes
 from .solids.notes import notes
-from .solids.outlines import leaning
 from .solids.volumes import of_layers, twice
 
 TOLD = 0.02  # distortion that is told
@@ -107,4 +106,4 @@ def _bead(
 ) -> Rolled:
     if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
         curve = reversed_curve(curve)
-    return rolled(curve, layer.surface, PART, strategy, build, process, model, leaning(curve, layer, strategy, build))
+    return classed(curve, layer, PART, strategy, build, process, model)

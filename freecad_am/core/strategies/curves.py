@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..geometry.curves.bead_curves import Array, BeadCurve, Curves
@@ -11,6 +13,7 @@ from ..issues import InputError
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import CurvesParameters
+from ..process import classes
 from ..slicing.wall_direction import held
 from ..toolpath import Bead, Layer, Toolpath
 from .progress import Progress, silent
@@ -32,7 +35,7 @@ def plan(
         progress(again / strategy.repeat, f"layer {len(layers)}")
         for number in numbers:
             beads = [
-                _bead(curve, fixed, again * strategy.layer_height, len(layers) + k, build, process, given.label)
+                _classed(curve, fixed, again * strategy.layer_height, (len(layers), k), build, process, given.label)
                 for k, curve in enumerate(given.curves) if curve.layer == number
             ]
             layers.append(Layer(tuple(beads)))
@@ -40,6 +43,16 @@ def plan(
         tuple(layers), np.eye(4), strategy.layer_height, strategy.chord_error, given.issues, process.overlap, "curves",
         given.surroundings, bead_width=process.bead_width,
     )
+
+
+def _classed(
+    curve: BeadCurve, fixed: Array, up: float, place: tuple[int, int], build: BuildDirectionParameters,
+    process: ProcessParameters, label: str,
+) -> Bead:
+    """The bead at a place, layer and number in it, as its class is laid."""
+    name = classes.of_wall(place[0])
+    own = classes.leaning(build, process, name), process.for_class(name)
+    return replace(_bead(curve, fixed, up, sum(place), *own, label), bead_class=name)
 
 
 def _bead(

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from ..geometry.curves.polyline import turn_segments
 from ..geometry.curves.profile import Array, RevolvedWall
 from ..issues import NOTE, WARNING, InputError, Issue
+from ..parameters.bead_classes import FIRST_LAYER, WALL
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import RevolutionParameters
-from ..process import seam
+from ..process import classes, seam
 from ..slicing import arc_length, iso_height
 from ..toolpath import Bead, Layer, Toolpath
 from . import platform, size, spiral
@@ -55,14 +56,16 @@ def plan(
     size.refuse_absurd(size.of_revolution(wall, strategy), strategy)
     progress(0.0, "cutting layers")
     under = platform.under(wall, platform_diameter, platform_frame)
-    tilting = Tilting(wall, strategy, build, nozzle, under, process.bead_width)
+    own = classes.leaning(build, process, WALL)
+    tilting = Tilting(wall, strategy, own, nozzle, under, process.bead_width)
     issues: list[Issue] = []
     if strategy.path == "spiral":
         layers, found = spiral.layers(wall, strategy, process, tilting)
     else:
         slices, issues = sliced(wall, strategy)
         progress(0.2, f"build directions of {slices.layer[-1] + 1} layers, keeping the nozzle clear")
-        layers, found = _layers(wall, slices, strategy, process, tilting)
+        first = replace(tilting, parameters=classes.leaning(build, process, FIRST_LAYER))
+        layers, found = _layers(wall, slices, strategy, process, tilting, first)
     progress(0.9, "checking")
     issues = [*wall.issues, *platform.overhanging(wall, under), *issues, *found]
     return Toolpath(
@@ -119,8 +122,9 @@ def _spacing_issues(wall: RevolvedWall, layers: list[Array], layer_height: float
 
 def _layers(
     wall: RevolvedWall, slices: Slices, strategy: RevolutionParameters, process: ProcessParameters, tilting: Tilting,
+    first: Tilting,
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
-    """One layer per index, its beads turned about the axis."""
+    """One layer per index, its beads turned about the axis. first: how the tool leans on the first layer."""
     azimuths, rising = [], []
     for index, (layer, radius) in enumerate(zip(slices.layer, slices.radius, strict=True)):
         segments = turn_segments(radius, strategy.chord_error, wall.end - wall.start, strategy.min_points)
@@ -131,15 +135,25 @@ def _layers(
             else seam.open_azimuths(wall.start, wall.end, segments, up)
         )
     builds, tools, issues = tilting.settle(slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer)
+    if first.parameters != tilting.parameters:  # below it is nothing that leans another way
+        count = int((slices.layer == 0).sum())
+        below, held, found = first.settle(
+            slices.radius[:count], slices.height[:count], slices.tangent[:count], azimuths[:count], rising[:count],
+            slices.layer[:count],
+        )
+        builds, tools = [*below, *builds[count:]], [*held, *tools[count:]]
+        issues = [*found, *(issue for issue in issues if issue.layer != 0)]
     beads: list[list[Bead]] = [[] for _ in range(int(slices.layer[-1]) + 1)]
     for index, azimuth in enumerate(azimuths):
-        bead = _bead(wall, slices, index, azimuth, builds[index], tools[index], process.travel_speed)
+        name = classes.of_wall(int(slices.layer[index]))
+        speed = process.for_class(name).travel_speed
+        bead = _bead(wall, slices, index, azimuth, builds[index], tools[index], speed, name)
         beads[int(slices.layer[index])].append(bead)
     return tuple(Layer(tuple(layer)) for layer in beads), issues
 
 
 def _bead(
-    wall: RevolvedWall, slices: Slices, index: int, azimuth: Array, build: Array, tool: Array, speed: float
+    wall: RevolvedWall, slices: Slices, index: int, azimuth: Array, build: Array, tool: Array, speed: float, name: str
 ) -> Bead:
     at = azimuth.copy()
     if wall.full:
@@ -148,5 +162,5 @@ def _bead(
     points = wall.points(np.full(n, slices.radius[index]), np.full(n, slices.height[index]), at)
     return Bead(
         points, wall.directions(build, at), wall.directions(tool, at), azimuth,
-        np.full(n, speed), wall.full,
+        np.full(n, speed), wall.full, bead_class=name,
     )

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..geometry.curves.polyline import largest_step
 from ..geometry.curves.profile import Array, Meridian, RevolvedWall
 from ..issues import InputError, Issue
+from ..parameters.bead_classes import WALL
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import RevolutionParameters
 from ..process import seam
@@ -46,7 +47,7 @@ def layers(
     build, tool, issues = _directions(wall.meridian, turns, s, rising, tilting)
     bead = Bead(
         wall.points(radius, height, parameter), wall.directions(build, parameter), wall.directions(tool, parameter),
-        parameter, np.full(len(s), process.travel_speed), False,
+        parameter, np.full(len(s), process.for_class(WALL).travel_speed), False, bead_class=WALL,
     )
     return (Layer((bead,)),), issues
 

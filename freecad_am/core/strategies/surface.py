@@ -14,6 +14,7 @@ from ..issues import NOTE, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import SurfaceParameters
+from ..process import classes
 from ..slicing import constant_distance, iso_parameter, smooth_spacing
 from ..slicing.curve_points import within_chord
 from ..slicing.first_layer import on_polyline
@@ -109,9 +110,11 @@ def _layers(
             way = _along(surface, line, side)
             if _backwards(piece.closed, line.points, way, process, index, number):
                 line, way = line.reversed(), way.reversed()
-            one = surface_directions.directions(line.points, piece.closed, way, build, normal, wall.label)
+            name = classes.of_wall(index)
+            own = classes.leaning(build, process, name)
+            one = surface_directions.directions(line.points, piece.closed, way, own, normal, wall.label)
             found.append((index, one))
-            beads.append(bead(line, one, piece.closed, process.travel_speed))
+            beads.append(bead(line, one, piece.closed, process.for_class(name).travel_speed, name))
             number += 1
         layers.append(Layer(tuple(beads)))
     return tuple(layers), surface_directions.notes(found)

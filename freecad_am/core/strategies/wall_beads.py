@@ -76,12 +76,12 @@ def along(bead: Traced, normal: Array, up: Array) -> Along:
     return Along(_unit(arriving + leaving), local(normal, arriving, leaving, up), normal)
 
 
-def bead(line: Traced, found: Directions, closed: bool, speed: float, closing: bool = False) -> Bead:
-    """The bead; its polynomial's variable is the arc length, one turn (2 pi) from end to end."""
+def bead(line: Traced, found: Directions, closed: bool, speed: float, name: str, closing: bool = False) -> Bead:
+    """The bead of the class `name`; its polynomial's variable is the arc length, one turn (2 pi) from end to end."""
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line.points, axis=0), axis=1))]
     return Bead(
         line.points, found.build, found.tool, TURN * length / length[-1], np.full(len(line.points), speed), closed, None,
-        line.tangents, closing,
+        line.tangents, closing, bead_class=name,
     )
 
 

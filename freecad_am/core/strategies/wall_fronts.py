@@ -19,6 +19,7 @@ from ..issues import NOTE, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import SurfaceParameters
+from ..process import classes
 from ..slicing import fronts
 from ..slicing.curve_points import within_chord
 from ..slicing.front_curve import feet
@@ -167,9 +168,12 @@ def _layers(
             over = along(line, out, np.cross(out, line.tangents.sum(axis=1)))  # up is on the left
             if way.backwards:
                 line, over = line.reversed(), over.reversed()
-            one = surface_directions.directions(line.points, curve.closed, over, build, normal, wall.label)
+            name = classes.of_wall(index, way.piece.closing)
+            own = classes.leaning(build, process, name)
+            one = surface_directions.directions(line.points, curve.closed, over, own, normal, wall.label)
             found.append((index, one))
-            beads.append(bead(line, one, curve.closed, process.travel_speed, way.piece.closing))
+            speed = process.for_class(name).travel_speed
+            beads.append(bead(line, one, curve.closed, speed, name, way.piece.closing))
             here = line.points[-1]
         layers.append(Layer(tuple(beads)))
     return tuple(layers), surface_directions.notes(found)

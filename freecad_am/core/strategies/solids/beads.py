@@ -14,16 +14,18 @@ from ...geometry.developable import TURN, Array
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import simplified
 from ...geometry.regions.telling import telling
-from ...layers.surface import LayerSurface
+from ...layers.surface import LayerSurface, Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
+from ...process import classes
 from ...process.bead_model import BeadModel
 from ...process.bead_speed import followed, radii
 from ...process.wire import with_model
 from ...toolpath import Bead
 from .filling import bead_width
 from .lean import Course, Lean, Turned, held
+from .outlines import leaning
 
 Mask = NDArray[np.bool_]
 
@@ -44,6 +46,18 @@ class Rolled(NamedTuple):
     clamped: Mask | None = None
     tight: Mask | None = None
     turned: Turned | None = None
+
+
+def classed(
+    curve: PlaneCurve, layer: Slice, base: Base, strategy: FilledParameters, build: BuildDirectionParameters,
+    process: ProcessParameters, model: BeadModel | None,
+) -> Rolled:
+    """The bead of a curve of a layer as its class is laid, with the torch leaning as its class does."""
+    name = classes.of_filled(curve.kind, layer.layer)
+    build, process = classes.leaning(build, process, name), process.for_class(name)
+    lean = leaning(curve, layer, strategy, build)
+    found = rolled(curve, layer.surface, base, strategy, build, process, model, lean)
+    return found._replace(bead=replace(found.bead, bead_class=name))
 
 
 def rolled(

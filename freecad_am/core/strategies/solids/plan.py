@@ -23,12 +23,11 @@ from ...process.order import Laid, ordered, waited
 from ...toolpath import Toolpath
 from .. import size
 from ..progress import Progress, silent
-from .beads import Rolled, reversed_curve, rolled
+from .beads import Rolled, classed, reversed_curve
 from .filling import Filled, Pictures, bead_width, spaced
 from .islands import as_below, island_by_island
 from .lean_notes import lean_notes
 from .notes import notes
-from .outlines import leaning
 from .volumes import twice, volumes
 
 FEWER = 1_000_000  # beads that a layer of a solid has
@@ -112,8 +111,7 @@ def _bead(
 ) -> Rolled:
     if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
         curve = reversed_curve(curve)
-    lean = leaning(curve, layer, strategy, build)
-    return rolled(curve, layer.surface, base, strategy, build, process, model, lean)
+    return classed(curve, layer, base, strategy, build, process, model)
 
 
 def _refuse_mode(solids: SolidsOnHub, strategy: FilledParameters, build: BuildDirectionParameters) -> None:

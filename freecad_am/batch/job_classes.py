@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`process.classes` of a job file, as the text that a process keeps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import bead_classes
+
+from . import fields, quantity
+
+
+def told(section: dict[str, Any]) -> dict[str, Any]:
+    """The section `process` with its classes as their text. InputError naming class and key."""
+    given = section.get("classes")
+    if given in (None, {}) or given == bead_classes.NONE:
+        return {key: value for key, value in section.items() if key != "classes"}
+    if not isinstance(given, dict):
+        raise InputError(
+            "BAD_VALUE", bead_classes.WHERE, f"{quantity.shown(given)} is not understood; write classes below it such as "
+            "contour: {travel_speed: 8 mm/s, schedule: 3}",
+        )
+    fields.known_keys(given, bead_classes.CLASSES, bead_classes.WHERE)
+    found = {
+        name: fields.build(bead_classes.BeadClass, {} if own is None else own, f"{bead_classes.WHERE}.{name}")
+        for name, own in given.items()
+    }
+    for name, one in found.items():
+        bead_classes.made(name, one.told())
+    return {**section, "classes": bead_classes.text_of(found)}

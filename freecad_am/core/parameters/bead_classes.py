@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Classes of beads, and what of the process is another one for a class: as a job names it, and as its text."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+from ..issues import InputError
+from . import field as f
+
+NONE = "none"
+WHERE = "process.classes"
+MORE = ";"  # between two of them
+FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = ("first_layer", "contour", "fill", "closing", "link", "wall")
+LARGEST_SCHEDULE = 65535  # 16 bits
+_FORM = "write such as: contour: travel_speed 8, schedule 3; fill: lead 5"
+_INNER = {f.ANGLE: math.radians}
+_OUTER = {f.ANGLE: math.degrees}
+
+
+@dataclass(frozen=True)
+class BeadClass:
+    """What beads of a class have of their own; what is None is that of the process, or of the build direction."""
+
+    travel_speed: float | None = f.parameter(
+        None, f.SPEED, "Speed of the torch along beads of the class.", low=0.0, open_low=True, optional=True
+    )
+    schedule: int | None = f.parameter(
+        None, f.COUNT, "Number that tells the welder or extruder how to lay beads of the class.", low=1,
+        high=LARGEST_SCHEDULE, optional=True,
+    )
+    lead: float | None = f.parameter(
+        None, f.ANGLE, "Tool axis turned forward, along the bead.", low=-0.5 * math.pi, high=0.5 * math.pi, optional=True
+    )
+    tilt: float | None = f.parameter(
+        None, f.ANGLE, "Tool axis turned sideways.", low=-0.5 * math.pi, high=0.5 * math.pi, optional=True
+    )
+    lead_on: float | None = f.parameter(
+        None, f.TIME, "Deposit switched on this long before a bead of the class starts.", low=0.0, optional=True
+    )
+    lead_off: float | None = f.parameter(
+        None, f.TIME, "Deposit switched off this long after a bead of the class ends.", low=0.0, optional=True
+    )
+
+    def told(self) -> dict[str, float]:
+        """What it has of its own, by name, in inner units."""
+        return {name: value for name, value in dataclasses.asdict(self).items() if value is not None}
+
+    def __str__(self) -> str:
+        fields = {one.name: f.spec_of(one).kind for one in dataclasses.fields(self)}
+        outer = {name: _OUTER.get(fields[name], float)(value) for name, value in self.told().items()}
+        return ", ".join(f"{name} {value:.12g}" for name, value in outer.items())
+
+
+SPECS = {one.name: f.spec_of(one) for one in dataclasses.fields(BeadClass)}
+
+
+def number_of(name: str) -> int:
+    """The place of a class in CLASSES; -1 of none."""
+    return CLASSES.index(name) if name in CLASSES else -1
+
+
+def made(name: str, values: dict[str, float | int | None], where: str = WHERE) -> BeadClass:
+    """The class of this name with values in inner units. InputError BAD_VALUE naming `where`, the class and the key."""
+    if name not in CLASSES:
+        raise f.unknown_choice(where, name, CLASSES)
+    for key, value in values.items():
+        f.check_value(SPECS[key], value, f"{where}.{name}.{key}")
+    return BeadClass(**values)  # type: ignore[arg-type]
+
+
+def text_of(classes: dict[str, BeadClass]) -> str:
+    """The text of classes, those that have something of their own in the usual order; NONE where there are none."""
+    parts = [f"{name}: {classes[name]}" for name in CLASSES if name in classes and classes[name].told()]
+    return f"{MORE} ".join(parts) or NONE
+
+
+@lru_cache(maxsize=64)
+def _parsed(text: str) -> tuple[tuple[str, BeadClass], ...]:
+    if text.strip() in (NONE, ""):
+        return ()
+    found: dict[str, BeadClass] = {}
+    for part in filter(str.strip, text.split(MORE)):
+        name, colon, rest = (piece.strip() for piece in part.partition(":"))
+        if not colon:
+            raise InputError("BAD_VALUE", WHERE, f"{part.strip()!r} is not a class of beads; {_FORM}")
+        if name in found:
+            raise InputError("BAD_VALUE", WHERE, f"{name} is there twice; write all of it in one place")
+        found[name] = made(name, _values(name, rest))
+    return tuple(found.items())
+
+
+def classes(text: str) -> dict[str, BeadClass]:
+    """What a text says, by class; nothing for none. Raises InputError BAD_VALUE."""
+    return dict(_parsed(text))
+
+
+def _values(name: str, text: str) -> dict[str, float | int | None]:
+    values: dict[str, float | int | None] = {}
+    for entry in filter(str.strip, text.split(",")):
+        key, _, number = entry.strip().partition(" ")
+        if key not in SPECS:
+            raise InputError("BAD_VALUE", WHERE, f"{name} has no {key!r}; it may have {', '.join(SPECS)}")
+        try:
+            value = float(number)
+        except ValueError:
+            raise InputError("BAD_VALUE", WHERE, f"{name}: {entry.strip()!r} tells no number; {_FORM}") from None
+        whole = SPECS[key].kind == f.COUNT and value.is_integer()
+        values[key] = int(value) if whole else _INNER.get(SPECS[key].kind, float)(value)
+    return values

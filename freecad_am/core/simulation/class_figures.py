@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What of a motion is of which class of beads: lengths, times, speeds, schedules."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..motion import Motion
+from ..parameters.bead_classes import CLASSES
+from ..parameters.process import ProcessParameters
+
+
+def figures(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
+    """Of each class that beads are of, in the usual order: number of beads, mm and s of deposit, lead times left out, least
+    and largest mm/s, and its schedule. Nothing of motions from before there were classes."""
+    found: list[dict[str, Any]] = []
+    way = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
+    for number, name in enumerate(CLASSES):
+        mine = motion.deposit & (motion.bead_class == number)
+        rows = mine & motion.moves
+        if not rows.any():
+            continue
+        places = np.unique(np.stack((motion.layer[mine], motion.bead[mine])), axis=1)
+        found.append({
+            "class": name, "beads": places.shape[1], "length_mm": float(way[rows].sum()),
+            "deposit_s": float(np.nan_to_num(motion.duration)[rows].sum()),
+            "travel_speed_mm_s": {"min": float(motion.speed[rows].min()), "max": float(motion.speed[rows].max())},
+            "schedule": process.for_class(name).schedule,
+        })
+    return found

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Texts of bead classes: they read back to what was said, and what is wrong with them is named."""
+
+import math
+import random
+
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import bead_classes
+from freecad_am.core.parameters.bead_classes import CLASSES, BeadClass, classes, text_of
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.process.classes import leaning, of_filled, of_wall
+
+KEYS = {"travel_speed": (0.1, 50.0), "lead": (-1.5, 1.5), "tilt": (-1.5, 1.5), "lead_on": (0.0, 9.0), "lead_off": (0.0, 9.0)}
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_texts_read_back(seed):
+    rng = random.Random(seed)
+    given = {}
+    for name in rng.sample(CLASSES, rng.randint(0, len(CLASSES))):
+        values = {key: rng.uniform(*ends) for key, ends in KEYS.items() if rng.random() < 0.6}
+        given[name] = BeadClass(**values, schedule=rng.choice([None, rng.randint(1, 65535)]))
+    found = classes(text_of(given))
+    assert set(found) == {name for name, one in given.items() if one.told()}
+    for name, one in found.items():
+        assert set(one.told()) == set(given[name].told()) and one.schedule == given[name].schedule
+        for key, value in one.told().items():
+            assert math.isclose(value, given[name].told()[key], rel_tol=1e-11, abs_tol=1e-11)
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    ("contour", "is not a class of beads"), ("contour: travel_speed 0", "more than 0"),
+    ("outer: lead 5", "'outer' is not known"),
+    ("contour: lead 5; contour: tilt 5", "contour is there twice"), ("fill: speed 5", "no 'speed'"),
+    ("fill: lead", "tells no number"), ("fill: schedule 2.5", "whole number"), ("fill: schedule 0", "at least 1"),
+    ("wall: lead 91", "at most 90 deg"), ("wall: lead_on -1", "at least 0"), ("wall: travel_speed nan", "is not a number"),
+])
+def test_what_is_wrong_is_named(text, words):
+    with pytest.raises(InputError) as error:
+        ProcessParameters(classes=text)
+    assert error.value.code == "BAD_VALUE" and words in error.value.message
+    assert error.value.where.startswith(bead_classes.WHERE)
+
+
+def test_a_class_changes_what_it_names_alone():
+    process = ProcessParameters(travel_speed=6.0, schedule=2, lead_on=0.5, classes="fill: travel_speed 9, lead 10")
+    fill, wall = process.for_class("fill"), process.for_class("wall")
+    assert (fill.travel_speed, fill.schedule, fill.lead_on) == (9.0, 2, 0.5) and wall is process
+    build = BuildDirectionParameters(lead=0.2, tilt=0.1)
+    assert leaning(build, process, "wall") is build
+    leant = leaning(build, process, "fill")
+    assert math.isclose(leant.lead, math.radians(10.0)) and leant.tilt == 0.1
+
+
+def test_which_class_a_bead_is_of():
+    kinds = ("contour", "connected", "line", "zigzag", "spiral", "centre", "closing")
+    assert [of_filled(kind, 3) for kind in kinds] == ["contour"] * 2 + ["fill"] * 4 + ["closing"]
+    assert {of_filled(kind, 0) for kind in kinds} == {of_wall(0), of_wall(0, True)} == {"first_layer"}
+    assert (of_wall(2), of_wall(2, True)) == ("wall", "closing")
