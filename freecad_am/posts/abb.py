@@ -8,6 +8,7 @@ be set on the controller and what was confirmed where: docs/posts/abb.md.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -53,6 +54,7 @@ NO_SCHEDULE = {
     "arc": "ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one",
 }
 LAST_GROUP, LAST_SCHEDULE = 9999, 65535  # group outputs
+MOVE_LINE = re.compile(rb" *Move(?:AbsJ|L|J) ")
 ON_CONTROLLER = on_controller(
     "The controller's world is the robot's base",
     "Signals do1, di1 and so on have these names",

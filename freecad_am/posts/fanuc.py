@@ -9,6 +9,7 @@ What is written, what must be set on the controller and what was confirmed where
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
@@ -56,6 +57,7 @@ LAST_ANALOGUE = 25  # analogue inputs
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
+MOVE_LINE = re.compile(rb" *\d+:[JL] P\[")
 ON_CONTROLLER = on_controller(
     "UFRAME and UTOOL of the numbers in the program are those of the cell",
     "Joint values mean what the machine file says, J3 above all",

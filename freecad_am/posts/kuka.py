@@ -7,6 +7,7 @@ at the tip. What is written, what must be set on the controller and what was con
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -48,6 +49,7 @@ NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found do
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
 NO_SCHEDULE = {"arc": "instructions of ArcTech name weld data that only the pendant makes"}
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
+MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")
 ON_CONTROLLER = on_controller(
     "BASE_DATA and TOOL_DATA of the numbers in the program are those of the cell, with their load",
     "Joint speeds of the machine file are those the controller calls 100 %",

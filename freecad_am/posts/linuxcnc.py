@@ -48,6 +48,7 @@ _NO_END = 10**9
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
+MOVE_LINE = re.compile(rb"G[01] ")
 ON_CONTROLLER = on_controller(
     "The tool table has the torch's length, and the kinematics has the machine file's offsets",
     "M428 and M429 switch the kinematics, and the work offset is that of the remarks",

@@ -10,6 +10,7 @@ and what was confirmed where: docs/posts/siemens.md.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -46,6 +47,7 @@ _NO_END = 10**9
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
+MOVE_LINE = re.compile(rb"N\d+ (?:G9 )?G[01] ")
 ON_CONTROLLER = on_controller(
     "The tool offset has the torch's length, and G500 is the machine's zero",
     "TRAORI and the work offset are those of the machine file and of the remarks",

@@ -53,6 +53,7 @@ NO_SCHEDULE = {
     "output": "that VAL 3 sets several outputs to one number was not found documented",
     "arc": "VAL 3 has no arc instructions",
 }
+MOVE_LINE = re.compile(rb" *move[jl]\(")
 ON_CONTROLLER = on_controller(
     "The controller's world is the robot's base, and joint speeds are its nominal ones",
     "The outputs and inputs are linked to the process",

@@ -8,6 +8,7 @@ cannot load another file. What is written, what must be set on the controller an
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -54,6 +55,7 @@ AXES = 6
 NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
 NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
 LAST_REGISTER, LAST_SCHEDULE = 47, 65535
+MOVE_LINE = re.compile(rb" *move[jlp]\(")
 ON_CONTROLLER = on_controller(
     "Joint programs count on the nominal arm; the calibrated one stands up to millimetres beside it",
     "The robot keeps the time of every move through the blends",

@@ -9,6 +9,7 @@ What is written, what must be set on the controller and what was confirmed where
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 from collections.abc import Iterator, Sequence
 
@@ -57,6 +58,7 @@ NO_ANALOGUE = "how a job waits for an analogue input differs with the controller
 NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE, LAST_FILE = 512, 255, 1000  # groups of eight outputs; files of arc conditions
+MOVE_LINE = re.compile(rb"MOV[JL] ")
 ON_CONTROLLER = on_controller(
     "Pulses per degree of the machine file are the controller's, and zero pulses the zero of its angles",
     "VJ is a share of the largest speeds of the machine file, those of the axis that takes longest",

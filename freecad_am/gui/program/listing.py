@@ -7,6 +7,7 @@ from typing import Any
 
 from PySide import QtGui
 
+FAINT = 70  # of 255, the ground of a marked line
 
 def listing(name: str) -> Any:
     """A field of that name for lines that are shown as they stand, in letters of one width."""
@@ -18,3 +19,18 @@ def listing(name: str) -> Any:
     font.setStyleHint(QtGui.QFont.TypeWriter)
     text.setFont(font)
     return text
+
+
+def mark(text: Any, line: int, there: bool = False) -> None:
+    """Mark a line, from 0; `there`: and put the cursor into it, so that it is seen."""
+    cursor = QtGui.QTextCursor(text.document().findBlockByNumber(line))
+    if there:
+        text.setTextCursor(cursor)
+        text.centerCursor()
+    marked = QtGui.QTextEdit.ExtraSelection()
+    marked.cursor = cursor
+    ground = text.palette().color(QtGui.QPalette.Highlight)
+    ground.setAlpha(FAINT)
+    marked.format.setBackground(ground)
+    marked.format.setProperty(QtGui.QTextFormat.FullWidthSelection, True)
+    text.setExtraSelections([marked])

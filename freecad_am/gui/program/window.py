@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
+import numpy as np
 from PySide import QtCore, QtGui
 
 from ... import api
@@ -16,10 +18,12 @@ from ...objects import preferences
 from ...objects.staleness import UP_TO_DATE
 from .. import icons
 from ..colours import WRONG
+from ..path import path_view
 from ..simulation import told
 from ..simulation.run import run_of
 from ..texts.translation import error_line, tr, translated, translated_error
-from .listing import listing
+from .listing import listing, mark
+from .located import Located
 
 
 class ProgramWindow:
@@ -43,6 +47,12 @@ class ProgramWindow:
         self.choice = QtGui.QComboBox()
         self.choice.setObjectName("file")
         self.text = listing("text")
+        self.text.setToolTip(tr("A click shows the point of a line in the path; a click on the path marks its line"))
+        self.text.cursorPositionChanged.connect(self._at_line)
+        self.place = QtGui.QLabel()
+        self.place.setObjectName("place")
+        self.located: Located | None = None
+        self.filling = False  # while the cursor is moved by what is shown, not by a click
         self.export_button = _button(
             tr("Export…"), "export", tr("Writes all files of the program into a folder"), self._export
         )
@@ -69,9 +79,13 @@ class ProgramWindow:
         warning = "" if fits or not names else tr("This text is of an earlier plan; do not run it.")
         status = tr("Status: {}.").format(translated(self.obj.Status))
         self.state.setText(" ".join(filter(None, (warning, status, translated(self.obj.Message)))))
+        self.located = None
+        self.place.clear()
         try:
-            sums = told.totals(run_of(self.obj))
-            self.sums.setText("  ·  ".join(tr("{}: {}").format(name, value) for name, value in sums))
+            run = run_of(self.obj)
+            self.sums.setText("  ·  ".join(tr("{}: {}").format(name, value) for name, value in told.totals(run)))
+            if fits and names:
+                self.located = Located.of(self.obj.Post, self.files, run.motion)
         except (AmError, AttributeError):  # its joint path is gone, or undo has not yet brought all of it back
             self.sums.setText("")
         self.state.setStyleSheet("" if fits else f"QLabel {{ color: {WRONG}; }}")
@@ -85,13 +99,46 @@ class ProgramWindow:
         row.addWidget(_button(tr("Close"), "close", tr("Closes this window"), lambda *_: self.window.close()))
         column.addLayout(row)
         column.addWidget(self.text, 1)
+        column.addWidget(self.place)
         column.addWidget(self.sums)
         column.addWidget(self.state)
 
     def _show(self, *_: Any) -> None:
         text = self.files.get(self.choice.currentText(), b"").decode("latin-1").replace("\r\n", "\n")
         if text != self.text.toPlainText():
+            self.filling = True
             self.text.setPlainText(text)
+            self.filling = False
+
+    def _at_line(self) -> None:
+        """The cursor was put into a line: the path is shown up to its point."""
+        cursor = self.text.textCursor()
+        if self.located is None or self.filling or cursor.hasSelection():
+            return
+        row = self.located.row_at(self.choice.currentText(), cursor.blockNumber())
+        if row is not None:
+            mark(self.text, cursor.blockNumber())
+            self._tell(cursor.blockNumber(), row)
+            with contextlib.suppress(ReferenceError):  # the document is closed
+                self.located.show(self.obj.JointPath, row)
+
+    def show_point(self, layer: int, bead: int, position: Any) -> None:
+        """Mark the line that lays a point of a bead (3,), mm."""
+        found = None if self.located is None else self.located.line_at(layer, bead, position)
+        if self.located is None or found is None:
+            return
+        name, line = found
+        self.choice.setCurrentText(name)
+        self.filling = True
+        mark(self.text, line, True)
+        self.filling = False
+        row = self.located.row_at(name, line)
+        if row is not None:
+            self._tell(line, row)
+
+    def _tell(self, line: int, row: int) -> None:
+        if self.located is not None:
+            self.place.setText(tr("Line {}: {}").format(line + 1, self.located.told(row)))
 
     def _export(self, *_: Any) -> None:
         try:
@@ -107,6 +154,23 @@ def _button(text: str, name: str, help: str, act: Any) -> Any:
     button.setAutoDefault(False)
     button.clicked.connect(act)
     return button
+
+
+def _clicked(view: Any, row: int) -> None:
+    """A point of a path was clicked in the 3D view: programs of it that are open mark its line."""
+    rows = view.rows
+    if rows is None or row >= len(rows):
+        return
+    number = rows.bead_of(row)
+    layer = int(rows.layers[number])
+    bead = int(number - np.searchsorted(rows.layers, layer))
+    for shown in _shown:
+        with contextlib.suppress(ReferenceError):  # of another document, which is closed
+            if shown.obj.JointPath is view.obj:
+                shown.show_point(layer, bead, rows.points[row])
+
+
+path_view.listen_to_clicks(lambda: bool(_shown), _clicked)
 
 
 _shown: list[ProgramWindow] = []  # Python must keep them as long as they are open

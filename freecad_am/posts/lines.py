@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where the moves of a program stand in its text: for whoever shows both, not for reading it back."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import catalogue
+
+_NUMBER = re.compile(r"\d+")
+_LOOP = re.compile(rb"for \w+=(\d+) to (\d+)")  # of VAL 3, about a single move
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The lines of n moves, in the order of execution. files: names; file: (n,) which of them; line: (n,) from 0."""
+
+    files: tuple[str, ...]
+    file: NDArray[np.int64]
+    line: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+    def of(self, row: int) -> tuple[str, int]:
+        """File and line of a move."""
+        return self.files[self.file[row]], int(self.line[row])
+
+    def move_at(self, name: str, line: int) -> int | None:
+        """The move that a line of a file tells, the first one of a loop; between two moves the next one, after the last
+        the last one. None of a file without any."""
+        mine = np.flatnonzero(self.file == self.files.index(name)) if name in self.files else np.zeros(0, np.int64)
+        if not len(mine):
+            return None
+        return int(mine[min(int(np.searchsorted(self.line[mine], line)), len(mine) - 1)])
+
+
+def lines_of(post: str, files: dict[str, bytes]) -> Lines:
+    """The lines of all moves of a program of ours. Parts of a program are run in the order of their numbers."""
+    pattern = catalogue.load(post).MOVE_LINE
+    names = tuple(sorted(files, key=lambda name: [int(number) for number in _NUMBER.findall(name)] + [0]))
+    found = [_moves(pattern, files[name]) for name in names]
+    file = np.repeat(np.arange(len(names)), [len(lines) for lines in found])
+    return Lines(names, file, np.array([line for lines in found for line in lines], dtype=np.int64))
+
+
+def _moves(pattern: re.Pattern[bytes], content: bytes) -> list[int]:
+    """The line of each move of a file, as often as it is run."""
+    found: list[int] = []
+    times = 1
+    for number, line in enumerate(content.split(b"\n")):
+        loop = _LOOP.search(line)
+        if loop:
+            times = int(loop[2]) - int(loop[1]) + 1
+        elif pattern.match(line):
+            found += [number] * times
+            times = 1
+    return found
