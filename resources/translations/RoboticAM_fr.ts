@@ -1242,6 +1242,11 @@
         <translation>Un fichier URDF</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/program/window.py"/>
+        <source>A click shows the point of a line in the path; a click on the path marks its line</source>
+        <translation>Un clic montre le point d&apos;une ligne dans la trajectoire ; un clic sur la trajectoire marque sa ligne</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>A copy of another machine</source>
         <translation>Une copie d&apos;une autre machine</translation>
@@ -3110,6 +3115,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>Limits, speeds, accelerations and jerks</source>
         <translation>Limites, vitesses, accélérations et jerks</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program/window.py"/>
+        <source>Line {}: {}</source>
+        <translation>Ligne {} : {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -8397,6 +8407,11 @@
         <translation>couche {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/program/located.py"/>
+        <source>layer {} bead {}</source>
+        <translation>couche {} cordon {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>layer-by-layer</source>
         <translation>couche par couche</translation>
@@ -13252,6 +13267,11 @@
         <translation>{} ou vide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/program/located.py"/>
+        <source>{} point {}</source>
+        <translation>{} point {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>{} shows {} at zero</source>
         <translation>{} montre {} à zéro</translation>
@@ -13300,6 +13320,11 @@
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>{}: cancelled</source>
         <translation>{} : annulé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program/located.py"/>
+        <source>{}: on the way there</source>
+        <translation>{} : en chemin vers lui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/background/busy.py"/>
