@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import functools
 import os
 import time
 from collections.abc import Iterator, Sequence
@@ -15,7 +14,7 @@ from typing import Any
 from freecad_am.core.issues import ERROR, InfeasibleError, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
 
-from . import outputs, paths
+from . import for_report, outputs, paths
 from .job import SECTIONS, Job
 from .job_features import in_words_of_job
 
@@ -244,7 +243,7 @@ def _write(
     from freecad_am.report import figures, made
 
     programs = {} if stages.program is None or has_errors(stages.issues) else api.result(stages.program).files
-    results = _results(stages, [f"{outputs.PROGRAMS}/{name}" for name in programs])
+    results = for_report.results(stages, [f"{outputs.PROGRAMS}/{name}" for name in programs])
     _, motion = made.as_run(results, cell)
     axes, units = ((), ()) if cell is None else (cell.machine.columns, cell.machine.units)
     with stages.timed("waypoints", session):
@@ -253,7 +252,8 @@ def _write(
         files.write(f"{outputs.PROGRAMS}/{name}", content)
     with stages.timed("document", session):
         _save(stages.document, files.path(job.name + outputs.DOCUMENT_ENDING))
-    report = made.made(_reported(job, stages), results, cell, lambda stage: stages.timed(stage, session), session.progress)
+    asked = for_report.job(job, stages)
+    report = made.made(asked, results, cell, lambda stage: stages.timed(stage, session), session.progress)
     report.content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [figures.text(report.content)])
     if page:
@@ -262,37 +262,6 @@ def _write(
     written = files.publish(outputs.earlier_outputs(files.folder))
     status = 0 if report.content["status"] == "ok" else 3
     return Result([os.path.join(files.folder, name) for name in written], report.content, status)
-
-
-def _results(stages: Stages, programs: Sequence[str]) -> Any:
-    """What the stages came to, as far as they got, for the report."""
-    from freecad_am import api
-    from freecad_am.objects import preflight
-    from freecad_am.report.asked import Results
-
-    path = stages.joint_path
-    return Results(
-        api.result(stages.toolpath), None if path is None else api.result(path), 0.0 if path is None else path.Seconds,
-        stages.issues, programs,
-        lambda distances: preflight.of_stages(stages.toolpath, path, stages.program, distances),
-    )
-
-
-def _reported(job: Job, stages: Stages) -> Any:
-    """The job as its report tells of it."""
-    from freecad_am.report import asked
-
-    features = tuple(
-        asked.Feature(one.name, one.strategy, one.build_direction, one.process, functools.partial(_result, feature))
-        for one, feature in zip(job.features, stages.features, strict=True)
-    )
-    return asked.Job(job.name, features, job.process, job.joints, job.cell)
-
-
-def _result(obj: Any) -> Any:
-    from freecad_am import api
-
-    return api.result(obj)
 
 
 def _save(document: Any, path: str) -> None:

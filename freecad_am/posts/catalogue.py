@@ -22,8 +22,8 @@ _LEVEL_TABLE = ("linuxcnc",)  # whose rotary tables have to stand level in Carte
 
 class Post(Protocol):
     """What a post module offers. NO_WIRE: why programs cannot tell the speed of the wire along a bead, '' where they can.
-    NO_SCHEDULE: why it cannot be told schedules, by the ways ('output', 'arc') in which it cannot. MOVE_LINE: how a line begins
-    that tells a move, or, in a loop, several. ON_CONTROLLER: what only the controller can show."""
+    NO_SCHEDULE: why it cannot be told schedules, by the ways ('output', 'arc') in which it cannot. MOVE_LINE: how a line
+    begins that tells a move, or, in a loop, several. ON_CONTROLLER: what only the controller can show."""
 
     NO_WIRE: str
     NO_SCHEDULE: Mapping[str, str]

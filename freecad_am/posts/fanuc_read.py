@@ -176,10 +176,7 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
         if end > first:
             _move(listing, slice(first, end), run)
         elif output := _OUTPUT.match(statement):
-            if run.output not in ("", output[1]):
-                raise unreadable(f"{listing.file} line {number}", "a second output is switched")
-            run.output, run.on = output[1], output[2] == "ON"
-            run.happens("on" if run.on else "off", float(output[1]), "DO")
+            _switch(output, f"{listing.file} line {number}", run)
         elif group := _GROUP.match(statement):
             run.happens("schedule", float(group[1]), float(group[2]))
         elif arc := _ARC.match(statement):
@@ -201,14 +198,27 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
         elif track := _TRACK.match(statement):
             run.track = int(track[1]), run.track[1]
         elif frame := _FRAME.match(statement):
-            if run.frame.setdefault(frame[1], frame[2]) != frame[2]:
-                raise unreadable(f"{listing.file} line {number}", f"a second U{frame[1]} is selected")
-            run.recorded = ("", "")
+            _frame(frame, f"{listing.file} line {number}", run)
         elif statement == "END" and position == len(listing.instructions) - 1:
             break
         elif not _HARMLESS.match(statement):
             raise unreadable(f"{listing.file} line {number}", f"the instruction {statement!r} is not understood")
     run.take(listing)
+
+
+def _switch(output: re.Match[str], where: str, run: _Run) -> None:
+    """The deposit goes on or off."""
+    if run.output not in ("", output[1]):
+        raise unreadable(where, "a second output is switched")
+    run.output, run.on = output[1], output[2] == "ON"
+    run.happens("on" if run.on else "off", float(output[1]), "DO")
+
+
+def _frame(frame: re.Match[str], where: str, run: _Run) -> None:
+    """A user or a tool frame is selected."""
+    if run.frame.setdefault(frame[1], frame[2]) != frame[2]:
+        raise unreadable(where, f"a second U{frame[1]} is selected")
+    run.recorded = ("", "")
 
 
 def _arc(arc: re.Match[str], where: str, run: _Run) -> None:

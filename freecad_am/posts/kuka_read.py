@@ -133,9 +133,7 @@ def _go(name: str, run: _Run) -> None:
             if setting[1] == "BASE":
                 run.state.pop("EK", None)
         elif coupled := _COUPLED.match(line):
-            if coupled[1] != coupled[2] or run.state.get("BASE") != float(coupled[3]):
-                raise _not_read(where, "root and type are of two mechanisms, or the base is not the one selected")
-            run.state["EK"] = float(coupled[1])
+            _couple(coupled, run, where)
         elif setting := _SHARED.match(line):
             run.state[f"E{setting[1]}"] = float(setting[2])
         elif line in (_INITIAL, _ON_FLANGE, _TURNING):
@@ -150,6 +148,13 @@ def _go(name: str, run: _Run) -> None:
             _done(line, run, where)
     if not run.standing:
         raise _not_read(file, "it ends before the last move does")
+
+
+def _couple(coupled: re.Match[str], run: _Run, where: str) -> None:
+    """The base is carried by a mechanism."""
+    if coupled[1] != coupled[2] or run.state.get("BASE") != float(coupled[3]):
+        raise _not_read(where, "root and type are of two mechanisms, or the base is not the one selected")
+    run.state["EK"] = float(coupled[1])
 
 
 def _declare(declared: re.Match[str], before: list[str], run: _Run, where: str) -> None:

@@ -14,14 +14,13 @@ from freecad_am.core.strategies.wall_comparison import Compared
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.plots.source import Source
 
-from . import hub_figures, view, wall_figures
+from . import hub_figures, places, view, wall_figures
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
 from .style import STYLE
 from .tables import axis_names, clock, figure_text, grid_of, in_units, pairs_of, table_of
 from .turned import columns, element
 
-_MOST_ISSUES = 200
 _WHOLE = (
     ("feasible", "feasible"), ("objective_value", "objective"), ("condition_min", "smallest condition"),
     ("planning_time_s", "planning time, s"),
@@ -44,8 +43,6 @@ _MOTION_PER_AXIS = (
     ("speed_ratio_max", "largest share of the speed limit"),
     ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"), ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"),
 )
-# how a promise is marked: what was not checked is never green
-_MARKS = {True: ("good", "kept"), False: ("error", "broken"), None: ("unknown", "not checked")}
 
 
 @dataclass(frozen=True)
@@ -74,11 +71,11 @@ def render(content: Content) -> str:
     path = element.turned(shown, toolpath, width, content.platform_diameter)
     sections = [
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
-        f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{_issues(report["issues"], shown)}',
+        f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{places.findings(report["issues"], shown)}',
         f"<h2>Path</h2>{path.element}",
         f'<figure id="path-still">{view.picture(toolpath, content.platform_diameter)}<figcaption>The beads, coloured by '
         "layer; short strokes show the build direction.</figcaption></figure>",
-        _preflight(report["preflight"], shown),
+        places.preflight(report["preflight"], shown),
         "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
         _process(content, pictures),
@@ -262,46 +259,6 @@ def _comparison(report: dict[str, Any]) -> str:
         for key, word in _PER_AXIS for number, entry in enumerate(methods)
     ]
     return f"<h2>Comparison of the methods</h2>{table_of(whole)}{table_of(axes)}"
-
-
-def _issues(issues: list[dict[str, Any]], shown: columns.Shown) -> str:
-    if not issues:
-        return ""
-    rows = []
-    for issue in sorted(issues, key=lambda entry: ("error", "warning", "note").index(entry["level"]))[:_MOST_ISSUES]:
-        place = _where(issue, shown)
-        rows.append(
-            f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
-            f'<td class="place">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
-        )
-    more = f"<p>{len(issues) - len(rows)} more stand in report.json.</p>" if len(issues) > len(rows) else ""
-    return f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}'
-
-
-def _where(place: dict[str, Any], shown: columns.Shown) -> str:
-    """Layer, bead and point, as far as they are told; a click shows them in the path."""
-    words = " ".join(f"{word} {place[word]}" for word in ("layer", "bead", "point") if place[word] is not None)
-    row = shown.row_of(place["layer"], place["bead"], place["point"])
-    return words if row is None else f'<button data-row="{row}">{words}</button>'
-
-
-def _preflight(promises: list[dict[str, Any]], shown: columns.Shown) -> str:
-    """Every promise with its mark: kept, broken, or not checked."""
-    if not promises:
-        return ""
-    rows = []
-    for one in promises:
-        mark, word = _MARKS[one["ok"]]
-        where = "" if one["place"] is None else _where(one["place"], shown)
-        worst = "" if one["worst"] is None else f"{figure_text(one['worst'])} {one['unit']}".strip()
-        sign = "\u2265" if one["at_least"] else "\u2264"
-        bound = "" if one["bound"] is None else f"{sign} {figure_text(one['bound'])} {one['unit']}".strip()
-        rows.append(
-            f'<tr><td class="{mark}">{word}</td><td class="text">{escape(one["promise"])}</td><td>{worst}</td>'
-            f'<td>{bound}</td><td class="place">{where}</td><td class="text">{escape(one["how"])}</td></tr>'
-        )
-    head = "".join(f"<th>{word}</th>" for word in ("", "promise", "worst", "allowed", "place", "how it was checked"))
-    return f'<h2>Preflight</h2><div class="table"><table><tr>{head}</tr>{"".join(rows)}</table></div>'
 
 
 def _programs(programs: list[str]) -> str:

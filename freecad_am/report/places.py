@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Findings and preflight of the page, with their places, which a click shows in the path."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Any
+
+from .tables import figure_text
+from .turned.columns import Shown
+
+_MOST_ISSUES = 200
+# how a promise is marked: what was not checked is never green
+_MARKS = {True: ("good", "kept"), False: ("error", "broken"), None: ("unknown", "not checked")}
+
+
+def findings(issues: list[dict[str, Any]], shown: Shown) -> str:
+    """The table of findings, errors first; nothing without any."""
+    if not issues:
+        return ""
+    rows = []
+    for issue in sorted(issues, key=lambda entry: ("error", "warning", "note").index(entry["level"]))[:_MOST_ISSUES]:
+        place = _place(issue, shown)
+        rows.append(
+            f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
+            f'<td class="place">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
+        )
+    more = f"<p>{len(issues) - len(rows)} more stand in report.json.</p>" if len(issues) > len(rows) else ""
+    return f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}'
+
+
+def _place(place: dict[str, Any], shown: Shown) -> str:
+    """Layer, bead and point, as far as they are told; a click shows them in the path."""
+    words = " ".join(f"{word} {place[word]}" for word in ("layer", "bead", "point") if place[word] is not None)
+    row = shown.row_of(place["layer"], place["bead"], place["point"])
+    return words if row is None else f'<button data-row="{row}">{words}</button>'
+
+
+def preflight(promises: list[dict[str, Any]], shown: Shown) -> str:
+    """Every promise with its mark: kept, broken, or not checked."""
+    if not promises:
+        return ""
+    rows = []
+    for one in promises:
+        mark, word = _MARKS[one["ok"]]
+        where = "" if one["place"] is None else _place(one["place"], shown)
+        worst = "" if one["worst"] is None else f"{figure_text(one['worst'])} {one['unit']}".strip()
+        sign = "\u2265" if one["at_least"] else "\u2264"
+        bound = "" if one["bound"] is None else f"{sign} {figure_text(one['bound'])} {one['unit']}".strip()
+        rows.append(
+            f'<tr><td class="{mark}">{word}</td><td class="text">{escape(one["promise"])}</td><td>{worst}</td>'
+            f'<td>{bound}</td><td class="place">{where}</td><td class="text">{escape(one["how"])}</td></tr>'
+        )
+    head = "".join(f"<th>{word}</th>" for word in ("", "promise", "worst", "allowed", "place", "how it was checked"))
+    return f'<h2>Preflight</h2><div class="table"><table><tr>{head}</tr>{"".join(rows)}</table></div>'
