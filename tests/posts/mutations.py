@@ -469,7 +469,6 @@ YASKAWA: dict[str, tuple[str, Change]] = {
     "a call doubled": (_YA_CALL, TWICE),
     "a wait and a call swapped": (rf"({_YA_TIMER})({_YA_IN})({_YA_CALL})", r"\3\2\1"),
     "the track moved": (r"^BC\d{5}=(-?\d+)", moved(30.0)),
-    "two places of the track exchanged": (r"^(BC\d{5}=)([^\r]*)(\r\nBC\d{5}=)([^\r]*)", r"\1\4\3\2"),
     "another place of the track named": (r"^(MOVJ C\d{5} BC)(\d{5})", next_position),
     "no place of the track named": (r"^(MOVJ C\d{5}) BC\d{5}", r"\1"),
     "the track of no group": (r"RB1,BS1", "RB1"),
