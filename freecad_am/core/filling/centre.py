@@ -19,6 +19,7 @@ LONGER = 8  # attempts to make a bead long enough
 COARSE = 0.01  # of the gap; what is open is found no finer
 NETWORK = 12.0  # squares of half a bead's width: a region that large, without room for contours, is not a dot but ribs
 RIB = 0.6  # of a bead's width; what stands out thicker than that in the mean is a rib
+SLIVER = 1.0  # of the chord error; of what is narrower its border is as good as its middle, which takes long to find there
 ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
 
 
@@ -90,7 +91,9 @@ def _network(region: Region, beads: Beads) -> list[PlaneCurve]:
     for _ in range(ROUNDS):
         rest: list[Region] = []
         for part in left:
-            points, closed = _middle(part, beads, 0.15 * part.width)
+            width = part.width
+            sliver = width < SLIVER * beads.chord_error
+            points, closed = _along_border(part) if sliver else _middle(part, beads, 0.15 * width)
             if len(points) > 1 and (not found or length(points, closed) >= beads.shortest):
                 found.append(PlaneCurve(points, closed, "centre", 0))
                 rest += part.without(along([(points, closed)], beads.inset, beads.chord_error), beads.gap)
@@ -128,6 +131,19 @@ def _is_rib(piece: Region, foot: Region, beads: Beads) -> bool:
         return False
     out = float(foot.nearest(piece.rings()[0])[1].max())
     return out > 2.0 * beads.inset and piece.area > RIB * 2.0 * beads.inset * out
+
+
+def _along_border(region: Region) -> tuple[Array, bool]:
+    """The border (n, 2) of a sliver from one of its ends to the other, and whether it is closed: the way round a hole."""
+    rings = region.rings()
+    if len(rings) > 1:
+        return rings[0], True
+    ring = rings[0]
+    end = 0
+    for _ in range(2):
+        start, end = end, int(np.argmax(np.hypot(*(ring - ring[end]).T)))
+    ways = [np.roll(ring, -start, axis=0)[: (end - start) % len(ring) + 1] for start, end in ((start, end), (end, start))]
+    return min(ways, key=lambda way: length(way, False)), False
 
 
 def _middle(region: Region, beads: Beads, least: float) -> tuple[Array, bool]:

@@ -3,6 +3,7 @@
 
 import functools
 import importlib.util
+import time
 from pathlib import Path
 
 import numpy as np
@@ -210,3 +211,21 @@ def test_unknown_patterns_are_refused():
 def test_no_lines_where_they_have_room_but_nothing_to_run_through():
     region, = regions(SHAPES["circle"])
     assert rows(Frame([], (region,), (), ()), BEADS, 0.3) == []
+
+
+@pytest.mark.parametrize(("loops", "closed"), [
+    ([np.array([[0.0, 0.0], [30.0, 0.0], [12.0, 4e-4]])], False),
+    ([np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 0.003], [40.0, 20.0], [29.997, 0.003], [0.0, 0.003]])], False),
+    ([shapes.circle(40.0, 720), shapes.circle(39.997, 720)[::-1]], True),
+], ids=["needle", "hook", "ring"])
+def test_slivers_thinner_than_the_chord_error_take_no_time(loops, closed):
+    """What triangles leave of a section along a rim: their middle was searched for by places as near as they are thin."""
+    region, = regions(loops)
+    began = time.process_time()
+    curves = fill(region, Beads(5.0, 1.0, 2.0, chord_error=0.02))
+    assert time.process_time() - began < 0.5 and curves[0].closed == closed
+    border = np.vstack(loops)
+    line = np.vstack([shapes.dense(curve.points, curve.closed, 0.5) for curve in curves])
+    away = shapes.distance(shapes.tree([(loop, True) for loop in loops], 0.05), line, 1.0)
+    assert away.max() < 0.03  # the beads run along it, from one end of it to the other
+    assert shapes.distance(shapes.tree([(line, False)], 0.05), border, 10.0).max() < 2.6
