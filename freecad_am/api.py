@@ -34,6 +34,7 @@ from .core.parameters.inspection import InspectionParameters
 from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
+from .core.parameters.scan import ScanParameters
 from .core.planning.controllers import written_by
 from .macro.changes import change, recompute
 from .macro.export import (
@@ -54,6 +55,7 @@ from .macro.features import (
     make_solid_feature,
     make_surface_feature,
 )
+from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
 from .objects import user_machines
 from .objects.cell import Cell
@@ -70,8 +72,8 @@ from .posts import catalogue
 __all__ = (
     "change", "export", "export_cell", "export_report", "export_waypoints", "export_wires", "inspect", "issues", "make_all",
     "make_cam_path", "make_cell", "make_cladding_feature", "make_curves_feature", "make_developable_feature", "make_feature",
-    "make_feature_of", "make_joint_path", "make_program", "make_solid_feature", "make_surface_feature", "make_toolpath",
-    "make_trajectory", "open_part", "place", "proposed_name", "recompute", "result", "stages_of", "told_to",
+    "make_feature_of", "make_joint_path", "make_program", "make_scan", "make_solid_feature", "make_surface_feature",
+    "make_toolpath", "make_trajectory", "open_part", "place", "proposed_name", "recompute", "result", "stages_of", "told_to",
 )
 
 
@@ -82,23 +84,23 @@ def make_cell(doc: Any, label: str = "Cell", *, parameters: CellParameters | Non
 
 def make_toolpath(
     doc: Any, feature: Any, cell: Any = None, label: str = "Toolpath", *, further: Sequence[Any] = (),
-    sequence: str = "feature", processes: Sequence[ProcessParameters] = (),
-    process: ProcessParameters | None = None, **values: Any,
+    sequence: str = "feature", processes: Sequence[ProcessParameters] = (), scan: Any = None,
+    process: ProcessParameters | None = None, fitting: ScanParameters | None = None, **values: Any,
 ) -> Any:
     """Layers and beads of a feature; the cell gives the nozzle to keep clear. `am.make_toolpath(doc, doc.Feature)`
 
     further: features that are deposited after it in one go, `sequence="feature"` in this order or `sequence="height"` the
     lowest layer first; `processes` are those of each, where they differ in what a feature has of its own. A list as the
-    feature stands for it and further ones.
+    feature stands for it and further ones. scan: of `make_scan`, what the first layers are fitted to.
     """
     if "bead_width" in values:  # it is meant, even where it is the default
         values.setdefault("fill_width", "bead_width")
     first, *more = [*feature, *further] if isinstance(feature, (list, tuple)) else [feature, *further]
-    links: dict[str, Any] = {"Feature": first, "Cell": cell}
+    links: dict[str, Any] = {"Feature": first, "Cell": cell, "Scan": scan}
     if more:
         own = [own_process(one, process or ProcessParameters()) for one in processes]
         links = {**links, "Further": more, "Sequence": sequence, "FeatureProcess": own}
-    return make_stage(doc, Toolpath, "Toolpath", label, links, [process], values)
+    return make_stage(doc, Toolpath, "Toolpath", label, links, [process, fitting], values)
 
 
 def make_joint_path(

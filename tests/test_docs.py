@@ -16,6 +16,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.place import PlaceParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.scan import ScanParameters
 from freecad_am.core.strategies.families import FAMILIES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -28,10 +29,13 @@ SECTIONS = (
     ("process", ProcessParameters),
     ("program", ProgramParameters),
     ("place", PlaceParameters),
+    ("substrate", ScanParameters),
 )
 # keys that are not fields of a parameters dataclass
 BY_HAND = {"version", "name", "part.file", "part.object", "part.solids", "part.faces", "part.start_edges", "part.edges",
-           "part.scale", "part.set", "substrate", "fixtures", "strategy.kind", "strategy.guide",
+           "part.scale", "part.set", "substrate", "substrate.scan",
+           "substrate.scan_unit", "substrate.scan_fit", "substrate.scan_pairs", "fixtures", "strategy.kind",
+           "strategy.guide",
            "strategy.start_faces", "features", "sequence"}
 WORDS = {f.LENGTH: "length", f.ANGLE: "angle", f.SPEED: "speed", f.TIME: "time", f.RATIO: "percentage", f.NUMBER: "number",
          f.COUNT: "whole number", f.TEXT: "text", f.POSE: "pose", f.ANGLE_RANGE: "two angles",

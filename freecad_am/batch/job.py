@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from freecad_am.core.issues import InputError
@@ -106,6 +106,13 @@ def _checked(job: tree.Tree, path: str) -> Job:
     else:
         process = process_of_all(values.get("process") or {}, path)
         features = several(values, path, job)
+    program = _program(values.get("program"))
+    scan = next((one.scan for one in features if one.scan is not None), None)
+    if scan is not None and len(features) > 1:
+        raise InputError("NOT_YET", "substrate.scan", "several features in one job are not fitted to a scan yet; leave it "
+                         "out, or give each feature a job of its own")
+    if scan is not None and program is not None:
+        program = _resumed(program, scan.parameters.first)
     sequence = values.get("sequence") or SEQUENCES[0]
     if sequence not in SEQUENCES:
         raise f.unknown_choice("sequence", sequence, SEQUENCES)
@@ -117,7 +124,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
         joints=_joints(values.get("joints") or {}),
         process=process,
         cell=job_cell.read(values.get("cell"), path),
-        program=_program(values.get("program")),
+        program=program,
         tree=job,
         place=fields.build(PlaceParameters, values.get("place") or {}, "place"),
     )
@@ -140,6 +147,13 @@ def _name(value: Any, path: str) -> str:
 def _joints(section: Any) -> JointParameters:
     one = fields.mapping(section, "joints").get("compare")
     return fields.build(JointParameters, {**section, "compare": [one]} if isinstance(one, str) else section, "joints")
+
+
+def _resumed(program: ProgramParameters, layer: int) -> ProgramParameters:
+    """The program from this layer on, unless it says itself where it resumes: what lies below is there."""
+    if program.start_at.layer or program.start_at.bead:
+        return program
+    return replace(program, start_at=replace(program.start_at, layer=layer))
 
 
 def _program(section: Any) -> ProgramParameters | None:

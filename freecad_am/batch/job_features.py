@@ -26,6 +26,7 @@ from .feature_sections import (
     with_path,
 )
 from .part_source import PartSource, faces_of, fixtures_of, guide_of, part_of
+from .scan_source import ScanSource, scan_of, split
 
 # what a job calls the links of a feature, which the window picks in a document
 _KEYS = {
@@ -39,7 +40,7 @@ KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", 
 class JobFeature:
     """What is deposited, and how. `substrate` is there as the family of the strategy has it (`core.strategies.families`), or
     where what was deposited before may be it. `guide` of layers along one; None: their centre line. `start_faces` of the
-    part, that curved layers start on."""
+    part, that curved layers start on. `scan` of the substrate, that layers are fitted to."""
 
     name: str
     part: PartSource
@@ -51,6 +52,7 @@ class JobFeature:
     guide: PartSource | None = None
     sections: Any = dataclasses.field(default=None, repr=False, compare=False)  # of the job, where the family is left to us
     start_faces: tuple[str, ...] = ()
+    scan: ScanSource | None = None
 
 
 def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
@@ -77,9 +79,10 @@ def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
             "NOT_FOR_FAMILY", "strategy.start_faces", "only layers: geodesic and offset start from faces; leave them out, "
             "or use those layers",
         )
+    ground, scanned = split(values.get("substrate"))
     return JobFeature(
-        name, part, substrate_of(values.get("substrate"), strategy, part, path),
-        fixtures_of(values.get("fixtures"), path), strategy, build_direction, process, guide, start_faces=start_faces,
+        name, part, substrate_of(ground, strategy, part, path), fixtures_of(values.get("fixtures"), path), strategy,
+        build_direction, process, guide, start_faces=start_faces, scan=scan_of(scanned, strategy, path),
     )
 
 
@@ -88,7 +91,7 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str, path:
     fields.known_keys(section, ("kind", *sorted({key for family in KINDS.values() for key in _keys(family)})), "strategy")
     common = {key: value for key, value in section.items() if key in _keys(AUTO)}
     part = {key: value for key, value in fields.mapping(values["part"], "part").items() if key != "fuse"}
-    ground = values.get("substrate")
+    ground, _ = split(values.get("substrate"))
     substrate = None if ground is None else part_of(fields.mapping(ground, "substrate"), path, "substrate")
     return JobFeature(
         name, part_of(part, path), substrate,

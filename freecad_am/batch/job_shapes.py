@@ -12,6 +12,7 @@ from freecad_am import api
 from freecad_am.brep.chosen import owners_of
 from freecad_am.brep.overlap import touching
 from freecad_am.core.issues import NOTE, InputError, Issue
+from freecad_am.core.parameters.inspection import NONE as AS_MEASURED
 from freecad_am.core.strategies.families import NONE, family_of
 from freecad_am.objects.shapes import taken
 
@@ -19,6 +20,7 @@ from .job import Job
 from .job_features import about_feature, chosen, planes_of
 from .part import bring
 from .part_source import PartSource
+from .scan_source import ScanSource
 
 TOUCHING = 0.01  # mm
 INSTEAD = "; but these end with {}, so planes are laid instead"
@@ -31,6 +33,7 @@ class Shapes:
         """fails: code of the error that curved layers end with, which then are not chosen."""
         self.document, self.job, self.number, self.fails = document, job, number, fails
         self.of = job.features[number]
+        self.scan: Any = None  # the inspection of the substrate by its scan, once the feature is made
         try:
             self.part = bring(document, self.of.part, meshes=family_of(self.of.strategy).meshes)
             self.substrate = None if self.of.substrate is None else bring(document, self.of.substrate, "substrate")
@@ -82,13 +85,24 @@ class Shapes:
             "Guide": self.guide, "StartFaces": list(self.of.start_faces),
         }
         try:
-            return api.make_feature_of(
+            made = api.make_feature_of(
                 self.document, family_of(self.of.strategy).kind, self.part, self.faces,
                 label=self.of.name if several else "Feature", links=links,
                 parameters=[self.of.strategy, self.of.build_direction],
             )
+            self.scan = None if self.of.scan is None else self._scan(self.of.scan)
+            return made
         except InputError as error:
             raise self.placed(error) from None
+
+    def _scan(self, source: ScanSource) -> Any:
+        """The points of a scan laid onto the substrate; after a layer onto nothing, for what has grown is not drawn."""
+        if source.parameters.after_layer is not None:
+            return api.inspect(self.document, self.part, source.file, "Scan", unit=source.unit, fit=AS_MEASURED)
+        return api.make_scan(
+            self.document, self.substrate, source.file, fit=source.fit, unit=source.unit, pairs=source.pairs,
+            within=source.parameters.scan_within,
+        )
 
     def _guide(self, source: PartSource) -> tuple[Any, list[str]]:
         """The object that layers are guided by, of the part itself or brought into the document, and edges of it."""
@@ -128,6 +142,17 @@ class Shapes:
         whole.recompute()
         whole.purgeTouched()
         return whole
+
+
+def toolpath_of(job: Job, document: Any, features: Sequence[Any], cell: Any, scan: Any) -> Any:
+    """The toolpath of the features of a job, of one fitted to its scan where there is one."""
+    if len(features) == 1:
+        fitting = None if scan is None or job.features[0].scan is None else job.features[0].scan.parameters
+        return api.make_toolpath(document, features[0], cell, process=job.process, scan=scan, fitting=fitting)
+    return api.make_toolpath(
+        document, features, cell, sequence=job.sequence, process=job.process,
+        processes=[one.process for one in job.features],
+    )
 
 
 def _has_shape(obj: Any) -> bool:

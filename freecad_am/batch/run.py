@@ -180,7 +180,7 @@ def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -
     from freecad_am import api
     from freecad_am.core.strategies.size import LARGE
 
-    from .job_shapes import Shapes
+    from .job_shapes import Shapes, toolpath_of
 
     stages = Stages(document)
     with stages.timed("part", session):
@@ -199,22 +199,10 @@ def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -
         stages.issues += api.issues(feature)
     session.issues(issue for issue in stages.issues if issue.code == LARGE)  # before the work that takes long
     with stages.timed("toolpath", session):
-        stages.toolpath = _toolpath(stages)
+        stages.toolpath = toolpath_of(job, document, stages.features, stages.cell, shapes[0].scan)
     # a toolpath repeats the findings about its wall
     stages.issues += [issue for issue in api.issues(stages.toolpath) if issue not in stages.issues]
     return stages
-
-
-def _toolpath(stages: Stages) -> Any:
-    from freecad_am import api
-
-    job, cell = stages.job, stages.cell
-    if len(job.features) == 1:
-        return api.make_toolpath(stages.document, stages.features[0], cell, process=job.process)
-    return api.make_toolpath(
-        stages.document, stages.features, cell, sequence=job.sequence, process=job.process,
-        processes=[one.process for one in job.features],
-    )
 
 
 def _make_program(stages: Stages) -> None:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from .geometry.columns import lengths
 from .geometry.curves.outline import Outline, estimated, outline
+from .geometry.fitted import Fitted
 from .geometry.surroundings import Body
 from .issues import Issue
 
@@ -212,20 +213,16 @@ class Bead:
 
     def part(self, rows: slice) -> Bead:
         """Some of its points, two or more in a row, as an open bead of their own."""
-        columns = {
-            entry.name: getattr(self, entry.name)[rows]
-            for entry in dataclasses.fields(self) if isinstance(getattr(self, entry.name), np.ndarray)
-        }
-        first = not rows.start
-        return dataclasses.replace(self, **columns, closed=False, returns=self.returns and first)
+        return dataclasses.replace(self, **self._rows(rows), closed=False, returns=self.returns and not rows.start)
 
     def thinned(self, index: NDArray[np.intp]) -> Bead:
         """The bead with some of its points alone, by their numbers, rising, the first and the last among them."""
-        columns = {
-            entry.name: getattr(self, entry.name)[index]
-            for entry in dataclasses.fields(self) if isinstance(getattr(self, entry.name), np.ndarray)
-        }
-        return dataclasses.replace(self, **columns)
+        return dataclasses.replace(self, **self._rows(index))
+
+    def _rows(self, which: slice | NDArray[np.intp]) -> dict[str, Any]:
+        """Some of the rows of each column."""
+        columns = [(entry.name, getattr(self, entry.name)) for entry in dataclasses.fields(self)]
+        return {name: column[which] for name, column in columns if isinstance(column, np.ndarray)}
 
 
 @dataclass(frozen=True)
@@ -280,7 +277,7 @@ class Toolpath:
     then speaks for the first of them. uneven: (k, 3) number, least and largest height, mm, of layers that are not as
     high everywhere; None where all are. twice: mm3 of beads, as wide as they are apart, laid over others of their layer;
     None where it is not known. max_from_vertical: rad, how far the tool axis may be from the vertical of a cell with a
-    positioner.
+    positioner. fitted: what a scan told of the surface that layers were fitted to; None without one.
     """
 
     layers: tuple[Layer, ...]
@@ -302,6 +299,7 @@ class Toolpath:
     uneven: Array | None = None
     twice: float | None = None
     max_from_vertical: float = math.pi
+    fitted: Fitted | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))

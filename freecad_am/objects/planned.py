@@ -57,9 +57,9 @@ class Given:
         return None if self.process.bead_model == "none" else bead_table.load(self.process.bead_model)
 
 
-def planned(of: Given) -> CoreToolpath:
-    """The toolpath of a feature that is deposited alone; what of it lies over nothing is told."""
-    made = layers_of(of)
+def planned(of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made: made) -> CoreToolpath:
+    """The toolpath of a feature that is deposited alone, layers changed by `fit`; what of it lies over nothing is told."""
+    made = fit(layers_of(of))
     if of.build.clearance != "none":
         progress.report(STRATEGY, "keeping the nozzle clear")
         made = kept_clear(made, of, (*of.wall.surroundings, *platforms(of.cell, made)))

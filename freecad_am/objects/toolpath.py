@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.process import OF_FEATURE, ProcessParameters
+from ..core.parameters.scan import ScanParameters
 from ..core.parameters.strategy import RevolutionParameters
 from ..core.process import bead_table, deposit_balance
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
@@ -35,12 +37,14 @@ class Toolpath(Stage):
     """
 
     kind = "toolpath"
-    sections = (Section(ProcessParameters, "process", "Process"),)
+    sections = (Section(ProcessParameters, "process", "Process"), Section(ScanParameters, "substrate", "Scan"))
     links = (
         Link("Feature", "feature", "The feature to deposit."),
         Link("Further", "feature", "Further features, deposited after it in this order.", required=False,
              type_name="App::PropertyLinkList"),
         Link("Cell", "cell", "The cell, for the clearance of nozzle and platform.", required=False),
+        Link("Scan", "inspection", "An inspection of the substrate by a scan of it, which the first layers are fitted to.",
+             required=False),
     )
     figures = (
         ("Layers", "App::PropertyInteger", "Number of layers."),
@@ -70,20 +74,36 @@ class Toolpath(Stage):
             _given(feature, process, cell) for feature, process in zip(features, self.processes(obj), strict=True)
         ]
         if len(features) > 1:
+            if obj.Scan is not None:
+                raise InputError("NOT_YET", f"{obj.Label}.Scan", "several features in one go are not fitted to a scan yet; "
+                                 "leave it out, or deposit them one by one")
             members = [member(feature, one, features) for feature, one in zip(features, given, strict=True)]
             names = [tuple(one.Name for one in _sources(feature)) for feature in features]
             order = obj.Sequence
             return lambda: _outcome(planned_in_sequence(members, order, names))
         sources = tuple(taken(one) for one in _sources(features[0]))
+        fit = self._fit(obj)
 
         def work() -> Outcome:
-            toolpath = looked_at(planned(given[0]), given[0], sources)
+            if fit is None:
+                toolpath = looked_at(planned(given[0]), given[0], sources)
+            else:  # layers that were fitted lie where the part was not planned
+                toolpath = planned(given[0], lambda made: fit(looked_at(made, given[0], sources)))
             told = deposit_balance.issues(
                 deposit_balance.of_toolpath(given[0].wall, toolpath, given[0].process.bead_width)
             )
             return _outcome(dataclasses.replace(toolpath, issues=(*told, *toolpath.issues)))
 
         return work
+
+    def _fit(self, obj: Any) -> Callable[[CoreToolpath], CoreToolpath] | None:
+        """What fits the layers to a scan; None without one. InputError."""
+        parameters = self.parameters(obj, ScanParameters)
+        if obj.Scan is None:
+            return None
+        from .scan import fit_of  # jobs without a scan need none of it
+
+        return fit_of(obj, parameters)
 
     def processes(self, obj: Any) -> list[ProcessParameters]:
         """The process of each feature. InputError for what of it no feature has of its own."""

@@ -27,6 +27,7 @@ from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.strategies.families import family_of
 from freecad_am.core.toolpath import Array, Toolpath
 
+from . import scan_figures
 from .asked import Feature
 
 VERSION = 1
@@ -59,6 +60,7 @@ def build(
         "on_part": None if toolpath.on_part is None else dict(
             zip(("places", "worst_mm", "allowed_mm"), (int(toolpath.on_part[0]), *toolpath.on_part[1:]), strict=True)
         ),
+        "scan": None if toolpath.fitted is None else scan_figures.as_dict(toolpath.fitted),
         "joints": None,
         "preflight": [],
         "comparison": [],

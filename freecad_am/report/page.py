@@ -14,7 +14,7 @@ from freecad_am.core.strategies.wall_comparison import Compared
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.plots.source import Source
 
-from . import hub_figures, places, view, wall_figures
+from . import hub_figures, places, scan_figures, view, wall_figures
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
 from .style import STYLE
@@ -78,6 +78,7 @@ def render(content: Content) -> str:
         places.preflight(report["preflight"], shown),
         "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
+        "" if content.toolpath.fitted is None else scan_figures.section(content.toolpath.fitted, content.toolpath.frame),
         _process(content, pictures),
         _on_hub(content, pictures),
         *(_spacings(one) for one in content.features if one.rows),

@@ -29,6 +29,11 @@
         <translation>Rotation permise autour de l&apos;axe de l&apos;outil ; un tour entier veut dire libre, moins pour une torche qui n&apos;est pas coaxiale.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>An inspection of the substrate by a scan of it, which the first layers are fitted to.</source>
+        <translation>Un contrôle du substrat par sa numérisation, sur laquelle les premières couches sont ajustées.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Analogue output that tells the speed of the wire where it follows the travel speed.</source>
         <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
@@ -294,6 +299,16 @@
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>How far the height of layers may differ from the layer height where they lead from what was scanned back to the plan. (%)</source>
+        <translation>Écart permis entre la hauteur des couches et la hauteur de couche là où elles ramènent de ce qui a été numérisé au plan. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>How far the scan may lie from what was planned; farther, and it is taken for a scan of something else.</source>
+        <translation>Distance permise entre la numérisation et ce qui était prévu ; au-delà, elle passe pour la numérisation d&apos;autre chose.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How far the start moves from layer to layer.</source>
         <translation>De combien le départ se déplace d&apos;une couche à l&apos;autre.</translation>
@@ -345,8 +360,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none.</source>
-        <translation>Comment les points peuvent être amenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou pas du tout.</translation>
+        <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none but what pairs of points say.</source>
+        <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -889,6 +904,11 @@
         <translation>Le même mouvement sans dépôt.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>The scan was made after this layer, counted from 0: the layers above are fitted to it; none: it is of the bare substrate.</source>
+        <translation>La numérisation a été faite après cette couche, comptée à partir de 0 : les couches au-dessus y sont ajustées ; aucune : elle est du substrat nu.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>The shape to deposit, or some of its faces.</source>
         <translation>La forme à déposer, ou certaines de ses faces.</translation>
@@ -1337,6 +1357,11 @@
         <translation>Après</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>After layer</source>
+        <translation>Après la couche</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Against gravity, as x y z in the world.</source>
         <translation>À l&apos;opposé de la pesanteur, sous la forme x y z dans le monde.</translation>
@@ -1390,6 +1415,11 @@
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>An axis without limits has the Continuous Turn option</source>
         <translation>Un axe sans limites a l’option Continuous Turn</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>An inspection of the substrate by a scan of it, which the first layers are fitted to.</source>
+        <translation>Un contrôle du substrat par sa numérisation, sur laquelle les premières couches sont ajustées.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -2662,6 +2692,16 @@
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>How far the height of layers may differ from the layer height where they lead from what was scanned back to the plan.</source>
+        <translation>Écart permis entre la hauteur des couches et la hauteur de couche là où elles ramènent de ce qui a été numérisé au plan.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>How far the scan may lie from what was planned; farther, and it is taken for a scan of something else.</source>
+        <translation>Distance permise entre la numérisation et ce qui était prévu ; au-delà, elle passe pour la numérisation d&apos;autre chose.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How far the start moves from layer to layer.</source>
         <translation>De combien le départ se déplace d&apos;une couche à l&apos;autre.</translation>
@@ -2713,8 +2753,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none.</source>
-        <translation>Comment les points peuvent être amenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou pas du tout.</translation>
+        <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none but what pairs of points say.</source>
+        <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2762,7 +2802,7 @@
         <translation>Contrôler</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/inspection.py"/>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Inspection</source>
         <translation>Contrôle</translation>
     </message>
@@ -4212,6 +4252,21 @@
         <translation>Enregistrer…</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Scan</source>
+        <translation>Numérisation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>Scan band</source>
+        <translation>Bande de numérisation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>Scan within</source>
+        <translation>Numérisation à moins de</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Schedule</source>
         <translation>Programme de soudage</translation>
@@ -5045,6 +5100,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>The same motion without deposit.</source>
         <translation>Le même mouvement sans dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/scan.py"/>
+        <source>The scan was made after this layer, counted from 0: the layers above are fitted to it; none: it is of the bare substrate.</source>
+        <translation>La numérisation a été faite après cette couche, comptée à partir de 0 : les couches au-dessus y sont ajustées ; aucune : elle est du substrat nu.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -6397,6 +6457,11 @@
         <translation>à {0} extrémités de cordons le retrait de {1} mm sortirait des limites, de l&apos;atteinte ou du conditionnement ; il y est de {2} à {3} mm, {4} fois dans une autre direction que le long de l&apos;axe de l&apos;outil et {5} fois avec l&apos;outil tourné</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>at {0} of {1} places of layer {2} there are no points of the scan around, the first at {3}; it reaches over {4} mm, the layer over {5} mm: scan all that the layer lies on, or check its unit and fit</source>
+        <translation>à {0} des {1} endroits de la couche {2} il n&apos;y a pas de points de la numérisation autour, le premier en {3} ; elle s&apos;étend sur {4} mm, la couche sur {5} mm : numérisez tout ce sur quoi la couche repose, ou vérifiez son unité et son ajustement</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/speeds.py"/>
         <source>at {0} short places, {1} mm in all, the deposit is slowed, here to {2} mm/s, for the axes go no faster; up to {3} mm of the bead more than meant lie there{4}</source>
         <translation>en {0} endroits courts, {1} mm en tout, le dépôt est ralenti, ici à {2} mm/s, car les axes ne vont pas plus vite ; jusqu&apos;à {3} mm de cordon de plus que prévu s&apos;y trouvent{4}</translation>
@@ -7402,6 +7467,11 @@
         <translation>il s&apos;appelle lui-même</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/scan_motion.py"/>
+        <source>it cannot be laid onto {0}: {1}</source>
+        <translation>elle ne peut pas être ramenée sur {0} : {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/document_file.py"/>
         <source>it cannot be read as a FreeCAD document; save it again</source>
         <translation>il ne peut pas être lu comme un document FreeCAD ; enregistrez-le de nouveau</translation>
@@ -8032,6 +8102,11 @@
         <translation>ce sont {0} morceaux qui ne tiennent pas ensemble, et aucune couche ne commence sur celui en {1}, à {2} mm du départ des couches ; choisissez aussi son arête comme départ, ou déposez-le seul</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/scan_motion.py"/>
+        <source>it lies as well on the part turned by {0} deg: the scan does not tell which; give three points of it and where they are on the part as substrate.scan_pairs, or measure it in the part&apos;s coordinates</source>
+        <translation>elle repose aussi bien sur la pièce tournée de {0} deg : la numérisation ne dit pas laquelle ; donnez trois de ses points et où ils sont sur la pièce par substrate.scan_pairs, ou mesurez-la dans les coordonnées de la pièce</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/names.py"/>
         <source>it may hold only the letters A to Z, digits and underscores</source>
         <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
@@ -8430,6 +8505,11 @@
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>layers begin at other places than planned</source>
         <translation>des couches commencent ailleurs que planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>layers of the family {0} are not fitted to a scan yet; solids in plane layers and walls on a substrate are: leave the scan out</source>
+        <translation>les couches de la famille {0} ne s&apos;ajustent pas encore à une numérisation ; les solides en couches planes et les parois sur un substrat le font : retirez la numérisation</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wall_checks.py"/>
@@ -9517,6 +9597,11 @@
         <translation>sélectionner</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>several features in one go are not fitted to a scan yet; leave it out, or deposit them one by one</source>
+        <translation>plusieurs entités à la fois ne s&apos;ajustent pas encore à une numérisation ; retirez-la, ou déposez-les une par une</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
         <source>several solutions of this arm bear the same configuration; along each bead the one it begins with is followed</source>
         <translation>plusieurs solutions de ce bras ont la même configuration ; le long de chaque cordon, celle du début est suivie</translation>
@@ -10287,6 +10372,11 @@
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>the part has too few layers to lead back to the plan: the last one is up to {0} mm off it; a larger substrate.scan_band leads back in fewer layers</source>
+        <translation>la pièce a trop peu de couches pour ramener au plan : la dernière en est éloignée de {0} mm au plus ; un substrate.scan_band plus grand y ramène en moins de couches</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the part touches {what}</source>
         <translation>la pièce touche {what}</translation>
@@ -10435,6 +10525,21 @@
         <location filename="../../freecad_am/core/planning/findings.py"/>
         <source>the rotation about the tool axis would be {0} deg, outside the range allowed</source>
         <translation>la rotation autour de l&apos;axe de l&apos;outil serait de {0} deg, hors de la plage permise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>the scan lies {0} mm from layer {1} at {2}, more than substrate.scan_within = {3} mm; check that it is of this part, its unit and its fit</source>
+        <translation>la numérisation est à {0} mm de la couche {1} en {2}, plus que substrate.scan_within = {3} mm ; vérifiez qu&apos;elle est de cette pièce, son unité et son ajustement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
+        <source>the scan reaches over {0} mm, {1} over {2} mm; check its unit, substrate.scan_unit, and what was scanned</source>
+        <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; vérifiez son unité, substrate.scan_unit, et ce qui a été numérisé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
+        <source>the scan reaches over {0} mm, {1} over {2} mm; in {3} it would be about as large, give that as substrate.scan_unit</source>
+        <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; en {3} elle serait à peu près aussi grande, donnez cela comme substrate.scan_unit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns.py"/>
@@ -10830,6 +10935,11 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>there is no joint path yet; recompute the document</source>
         <translation>il n&apos;y a pas encore de trajectoire articulaire ; recalculez le document</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>there is no layer above {0}: the last one of {1} is {2}</source>
+        <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} est {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
@@ -11540,6 +11650,11 @@
         <location filename="../../freecad_am/objects/in_sequence.py"/>
         <source>{0} cm3 of it are within {1} and would be deposited twice; cut one from the other</source>
         <translation>{0} cm3 de lui se trouvent dans {1} et seraient déposés deux fois ; découpez l&apos;un de l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/scan.py"/>
+        <source>{0} compares with {1}; choose an inspection of the part that is deposited on</source>
+        <translation>{0} compare avec {1} ; choisissez un contrôle de la pièce sur laquelle on dépose</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
@@ -12487,6 +12602,11 @@
         <translation>{0} de ses points sont sur {1} ; choisissez l&apos;objet qui a été mesuré, son unité, ou des paires de points pour commencer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/scan_checks.py"/>
+        <source>{0} of its {1} points lie within {2} mm of {3}, at least {4} have to; half of them are farther off than {5} mm. It reaches over {6} mm, {7} over {8} mm: scan this part, crop the scan to it, check its unit, or raise substrate.scan_within</source>
+        <translation>{0} de ses {1} points sont à moins de {2} mm de {3}, il en faut au moins {4} ; la moitié en est plus loin que {5} mm. Elle s&apos;étend sur {6} mm, {7} sur {8} mm : numérisez cette pièce, rognez la numérisation à celle-ci, vérifiez son unité, ou augmentez substrate.scan_within</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
         <source>{0} of the points left out, expected 0 or more and less than 0.5</source>
         <translation>{0} des points laissés de côté ; attendu : 0 ou plus et moins de 0.5</translation>
@@ -12870,6 +12990,16 @@
         <location filename="../../freecad_am/api.py"/>
         <source>{0}: give source, and any of {1}</source>
         <translation>{0} : donnez source, et au besoin {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/scan.py"/>
+        <source>{0}: how far a part has grown is told by a scan in the part&apos;s own coordinates alone; give none</source>
+        <translation>{0} : seule une numérisation dans les coordonnées de la pièce dit jusqu&apos;où une pièce a grandi ; donnez none</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>{0}: layer {1} lies on what was scanned, {2} to {3} mm from the plan, now within {4} mm; {5} layers lead back to the plan. {6} points were looked at, {7} that face another way left out; along the beads it rises by up to {8} deg against the plan{9}</source>
+        <translation>{0} : la couche {1} repose sur ce qui a été numérisé, de {2} à {3} mm du plan, maintenant à moins de {4} mm ; {5} couches ramènent au plan. {6} points ont été regardés, {7} tournés ailleurs laissés de côté ; le long des cordons elle monte de {8} deg au plus par rapport au plan{9}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>

@@ -108,7 +108,7 @@ def _laid(
     few = points[np.unique(np.linspace(0, len(points) - 1, planned.most).astype(np.intp))]
     exact = sided(planned.exact, parameters.side, parameters.thickness)
     if parameters.fit == NONE:
-        start = np.eye(4)
+        start = _by_pairs(parameters, where)
     else:
         nearest = sided(planned.nearest, parameters.side, parameters.thickness)
         start = _begun(few, nearest, exact, planned, parameters, where)
@@ -121,7 +121,7 @@ def _laid(
             )
         if parameters.fit == NONE:
             distance, _ = exact(on_part)
-            found = Registration(np.eye(4), on_part, distance - radius, np.ones(len(on_part), dtype=np.bool_), ())
+            found = Registration(start, on_part, distance - radius, np.ones(len(on_part), dtype=np.bool_), ())
         else:
             found = register(on_part, exact, start[None], where, trim, radius, _allowed(planned, parameters), planned.free)
             start = found.motion
@@ -134,9 +134,8 @@ def _begun(
     """The motion (4, 4) to begin with: from pairs of points where they are given. Else, where that does about as well as the
     best of many attitudes, from as it was measured by shifts first, so that what deviations do not feel is not turned."""
     trim, radius = parameters.trim, parameters.probe_radius
-    pairs = parameters.start_pairs()
-    if pairs:
-        start = by_pairs(np.array([one for one, _ in pairs]), np.array([other for _, other in pairs]), where)
+    if parameters.start_pairs():
+        start = _by_pairs(parameters, where)[None]
         return roughly(points, nearest, start, trim, radius, _allowed(planned, parameters))
     if parameters.fit != BEST:
         return roughly(points, nearest, as_measured(), trim, radius, _allowed(planned, parameters))
@@ -146,6 +145,14 @@ def _begun(
     few = points[:: max(1, len(points) // 400)]
     first, second = (mean_square(few, nearest, one, trim, radius) for one in (start, other))
     return start if first <= ALIKE * second + planned.chord**2 + 1e-18 else other
+
+
+def _by_pairs(parameters: InspectionParameters, where: str) -> Array:
+    """The motion (4, 4) that pairs of points say; none without them."""
+    pairs = parameters.start_pairs()
+    if not pairs:
+        return np.eye(4)
+    return np.asarray(by_pairs(np.array([one for one, _ in pairs]), np.array([other for _, other in pairs]), where)[0])
 
 
 def _allowed(planned: Planned, parameters: InspectionParameters) -> Array | None:

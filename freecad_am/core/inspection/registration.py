@@ -30,6 +30,7 @@ FIRST_ROUNDS, TRIAL_ROUNDS, ROUNDS = 4, 10, 100
 HOPE = 30.0  # starts whose mean square is more than this of the best are tried no longer
 ALIKE = 1.02  # mean squares that differ by no more are alike
 SETTLED = 1e-9  # mm that the last round moved any point by
+STILL = 1e-6  # mm that the last round may have moved a point by for the fit to count
 FREE = 1e-5  # of the stiffest motion's: a singular value of a motion that distances do not feel
 LEAST_POINTS = 6
 
@@ -64,7 +65,7 @@ def refuse_too_few(points: Array, where: str) -> None:
 
 def register(
     points: Array, surface: Surface, starts: Iterable[Array], where: str, trim: float = 0.0, radius: float = 0.0,
-    allowed: Array | None = None, free: float = FREE,
+    allowed: Array | None = None, free: float = FREE, still: float = STILL,
 ) -> Registration:
     """The best fit of points (n, 3) from any of the starts (4, 4): each is tried with a few points, the best with all.
 
@@ -73,6 +74,7 @@ def register(
     allowed: (6, k) motions that may be made, as columns: three turns about the part's origin over three shifts; all without.
     Their products must be of the same kind, as the turns about and shifts along one axis are.
     free: motions that distances feel by no more than this share of the one they feel most are not made.
+    still: mm that the last round may move a point by.
     Raises InputError for too few points; InfeasibleError NOT_SETTLED naming `where`.
     """
     refuse_too_few(points, where)
@@ -80,7 +82,7 @@ def register(
         raise InputError("OUT_OF_RANGE", where, f"{trim:g} of the points left out, expected 0 or more and less than 0.5")
     best = roughly(points, surface, starts, trim, radius, allowed, free)
     motion, _, moved = _settled(points, surface, best, trim, radius, ROUNDS, allowed, free)
-    if moved > 1e-6:
+    if moved > still:
         raise InfeasibleError(
             "NOT_SETTLED", where, "the measured points do not settle on the part; give pairs of points to begin with",
         )

@@ -32,7 +32,7 @@ class InspectionParameters:
     )
     fit: str = f.parameter(
         BEST, f.CHOICE, "How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along "
-        "the part's axis, or none.", choices=(BEST, SHIFT, AXIS, NONE),
+        "the part's axis, or none but what pairs of points say.", choices=(BEST, SHIFT, AXIS, NONE),
     )
     trim: float = f.parameter(
         0.0, f.RATIO, "Share of the points, those farthest off, that the fit leaves out.", low=0.0, high=0.49

@@ -16,6 +16,8 @@ from ..texts.translation import tr, translated
 from . import picking
 from .selection import meant, selected
 
+INSPECTION = "inspection"
+
 
 class Input:
     """A row of the panel that gives arguments of the macro function."""
@@ -53,13 +55,14 @@ class StageChoice(Input):
         names = []
         for obj in self.document.Objects:
             stage = stage_of(obj)
-            if stage is not None and stage.kind == link.kind:
+            if stage is not None and stage.kind == link.kind and not _compares_stages(obj):
                 names.append(obj.Name)
                 self.widget.addItem(obj.Label, obj.Name)
         if not link.required:
             self.widget.addItem(tr("none"), "")
         wished = [obj.Name for obj in meant() if obj.Name in names]
-        self.proposed = present.Name if present is not None else (wished or names[-1:] or [""])[0]
+        last = [] if link.kind == INSPECTION else names[-1:]  # what is compared elsewhere is no input unless it is chosen
+        self.proposed = present.Name if present is not None else (wished or last or [""])[0]
         self.widget.setCurrentIndex(max(0, self.widget.findData(self.proposed)))
 
     def follow(self, toolpath: StageChoice) -> None:
@@ -89,6 +92,11 @@ class StageChoice(Input):
     def arguments(self) -> dict[str, str]:
         chosen = self.value()
         return {self.link.key: "None" if chosen is None else recorded.reference(chosen)}
+
+
+def _compares_stages(obj: Any) -> bool:
+    """Whether an object is an inspection of what was planned, not of a part."""
+    return stage_of(getattr(obj, "Planned", None)) is not None
 
 
 class ShapeChoice(Input):

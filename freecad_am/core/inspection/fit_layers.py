@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers fitted to what was scanned: the first one lies on it, and the next ones lead back to the plan.
+
+Points move along the direction in which layers grow, by less and less from layer to layer; where layers get thinner or
+thicker by that, the torch is faster or slower, so that as much is deposited as there is room for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..geometry.fitted import Fitted
+from ..geometry.told import place
+from ..issues import NOTE, WARNING, InputError, Issue
+from ..parameters.scan import ScanParameters
+from ..toolpath import Bead, Layer, Toolpath
+from .scan_heights import Scan
+from .scanned_beads import STEP, Off, Scanned, Ways, along_beads, moved
+
+Array = NDArray[np.float64]
+
+FAMILIES = ("solid", "surface")  # solids in plane layers, and walls
+RUN = 20  # steps over which a slope is told
+LOOKED = 20_000  # places of the first layer that are kept for pictures
+
+
+@dataclass(frozen=True)
+class _Course:
+    """Which layers move by which share of what the scan is off: all of it in the layer `first`, nothing `layers` later. What
+    lies below was scanned from above: it moves in proportion to its height."""
+
+    first: int
+    layers: int
+
+    def share(self, layer: int) -> float:
+        if layer < self.first:
+            return layer / self.first
+        return max(0.0, 1.0 - (layer - self.first) / self.layers)
+
+
+def refuse_family(toolpath: Toolpath, where: str) -> None:
+    """InputError NOT_YET for families whose layers are not fitted to scans."""
+    if toolpath.family not in FAMILIES:
+        raise InputError(
+            "NOT_YET", where, f"layers of the family {toolpath.family} are not fitted to a scan yet; solids in plane layers "
+            "and walls on a substrate are: leave the scan out"
+        )
+
+
+def fitted(toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out: int, motion: Array) -> Toolpath:
+    """The toolpath with its layers fitted to a scan. left_out: points of its file that are not in it; motion: (4, 4) from
+    where it was measured to the part. InputError NO_LAYER, SCAN_MISSES, SCAN_OFF, and those of `refuse_family`."""
+    refuse_family(toolpath, scan.label)
+    first = parameters.first
+    if first >= len(toolpath.layers):
+        raise InputError(
+            "NO_LAYER", "substrate.after_layer", f"there is no layer above {first - 1}: the last one of "
+            f"{len(toolpath.layers)} is {len(toolpath.layers) - 1}"
+        )
+    ways = ways_of(toolpath)
+    beads = toolpath.layers[first].beads
+    planned = along_beads(beads, ways, _refusing(scan, first, toolpath.layer_height), 1.0, toolpath.chord_error)
+    off = np.concatenate([one.off for one in planned])
+    most = float(np.abs(off).max())
+    count = max(1, math.ceil(most / (parameters.scan_band * toolpath.layer_height) - 1e-9))
+    course = _Course(first, count)
+    above = _Above(toolpath, planned, ways, scan)
+    layers, uneven = [], []
+    for number, layer in enumerate(toolpath.layers):
+        share = course.share(number)
+        if share == 0.0:
+            layers.append(layer)
+            continue
+        found = planned if number == first else along_beads(layer.beads, ways, above, share, toolpath.chord_error)
+        thinner = share - course.share(number + 1) if number >= first else 0.0
+        made = [moved(one, share, thinner / toolpath.layer_height, toolpath.layer_height) for one in found]
+        layers.append(replace(layer, beads=tuple(made)))
+        if thinner:
+            heights = toolpath.layer_height - thinner * np.concatenate([one.off for one in found])
+            uneven.append((number, heights.min(), heights.max()))
+    record = _record(planned, layers[first], ways, scan, course, most, len(toolpath.layers), left_out, motion)
+    return replace(
+        toolpath, layers=tuple(layers), uneven=np.array(uneven) if uneven else toolpath.uneven, fitted=record,
+        issues=(*_told(record, toolpath.layer_height), *toolpath.issues),
+    )
+
+
+def ways_of(toolpath: Toolpath) -> Ways:
+    """Directions (n, 3) in which layers grow at points of a bead."""
+    if toolpath.family == "solid":
+        up = toolpath.frame[:3, 2]
+        return lambda bead: np.tile(up, (len(bead), 1))
+    return lambda bead: bead.build
+
+
+def _refusing(scan: Scan, layer: int, height: float) -> Off:
+    """How far the scan is from points of the first layer that lies on it. InputError where it is not, or too far off."""
+
+    def off(points: Array, ways: Array) -> Array:
+        found = scan.heights(points, ways)
+        bare = np.flatnonzero(~found.covered)
+        if len(bare):
+            size = float(np.linalg.norm(np.ptp(scan.points, axis=0))) if len(scan.points) else 0.0
+            raise InputError(
+                "SCAN_MISSES", scan.label, f"at {len(bare)} of {len(points)} places of layer {layer} there are no points of "
+                f"the scan around, the first at {place(points[bare[0]])}; it reaches over {size:.4g} mm, the layer over "
+                f"{float(np.linalg.norm(np.ptp(points, axis=0))):.4g} mm: scan all that the layer lies on, or check its "
+                "unit and fit"
+            )
+        far = int(np.abs(found.off).argmax())
+        if abs(found.off[far]) > scan.within:
+            raise InputError(
+                "SCAN_OFF", scan.label, f"the scan lies {found.off[far]:.4g} mm from layer {layer} at {place(points[far])}, "
+                f"more than substrate.scan_within = {scan.within:g} mm; check that it is of this part, its unit and its fit"
+            )
+        return found.off
+
+    return off
+
+
+class _Above:
+    """How far the scan is from what lies above or below its layer, at the places of that layer below or above them."""
+
+    def __init__(self, toolpath: Toolpath, planned: Sequence[Scanned], ways: Ways, scan: Scan) -> None:
+        self.first = planned
+        self.solid, self.scan = toolpath.family == "solid", scan
+        points, off = zip(*(one.samples() for one in planned), strict=True)
+        self.off, self.tree = np.concatenate(off), cKDTree(np.concatenate(points))
+        self.plane = planned[0].bead.points[0]
+
+    def __call__(self, points: Array, ways: Array) -> Array:
+        if not self.solid:
+            return np.asarray(self.off[self.tree.query(points)[1]])
+        feet = points - ((points - self.plane) * ways).sum(axis=1)[:, None] * ways
+        found = self.scan.heights(feet, ways)
+        sure = found.covered & (np.abs(np.where(found.covered, found.off, np.inf)) <= np.abs(self.off).max() + 1e-9)
+        # beyond the first layer it leads on as at its edge
+        return np.where(sure, found.off, self.off[self.tree.query(feet)[1]])
+
+
+def _record(
+    planned: Sequence[Scanned], layer: Layer, ways: Ways, scan: Scan, course: _Course, most: float, layers: int,
+    left_out: int, motion: Array,
+) -> Fitted:
+    beads: list[Bead] = [bead.halved(np.arange(len(bead) - 1)) for bead in layer.beads]  # between points, too
+    laid = np.concatenate([bead.points for bead in beads])
+    found = scan.heights(laid, np.concatenate([ways(bead) for bead in beads]))
+    looked = np.unique(np.linspace(0, len(laid) - 1, LOOKED).astype(np.intp))
+    places, off = np.concatenate([one.bead.points for one in planned]), np.concatenate([one.off for one in planned])
+    some = np.unique(np.linspace(0, len(places) - 1, LOOKED).astype(np.intp))
+    return Fitted(
+        scan.label, len(scan.points), left_out, course.first, min(course.layers, layers - course.first), places[some],
+        off[some], laid[looked], np.where(found.covered, found.off, 0.0)[looked], _slope(planned),
+        most * course.share(layers - 1), motion,
+    )
+
+
+def _moved(motion: Array) -> str:
+    """In words, how a scan was laid onto what was planned."""
+    if np.array_equal(motion, np.eye(4)):
+        return "; it was taken as it was measured, in the part's coordinates"
+    angle = math.degrees(math.acos(min(1.0, max(-1.0, 0.5 * (float(np.trace(motion[:3, :3])) - 1.0)))))
+    return f"; it was turned by {angle:.3f} deg and its origin moved by {np.linalg.norm(motion[:3, 3]):.3f} mm onto the plan"
+
+
+def _slope(planned: Sequence[Scanned]) -> float:
+    """The most that the scan rises along a bead against the plan, per mm."""
+    rises = [0.0]
+    for one in planned:
+        off = one.samples()[1]
+        if len(off) > RUN:
+            rises.append(float(np.abs(off[RUN:] - off[:-RUN]).max()) / (RUN * STEP))
+    return max(rises)
+
+
+def _told(record: Fitted, height: float) -> list[Issue]:
+    issues = [Issue(
+        NOTE, "SCAN_FITTED", f"{record.file}: layer {record.layer} lies on what was scanned, {record.off.min():.3f} to "
+        f"{record.off.max():.3f} mm from the plan, now within {np.abs(record.left).max():.3f} mm; {record.layers} layers "
+        f"lead back to the plan. {record.points} points were looked at, {record.left_out} that face another way left "
+        "out; along the "
+        f"beads it rises by up to {math.degrees(math.atan(record.slope)):.1f} deg against the plan{_moved(record.motion)}",
+    )]
+    if record.remains > 0.05 * height:
+        issues.append(Issue(
+            WARNING, "SCAN_REMAINS", f"the part has too few layers to lead back to the plan: the last one is up to "
+            f"{record.remains:.3f} mm off it; a larger substrate.scan_band leads back in fewer layers"
+        ))
+    return issues

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether a scan is of the part that it is said to be of, and in the unit that it is read in."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.mesh.solid import SolidMesh
+from ..geometry.surroundings import Body
+from ..issues import InputError
+from ..parameters.inspection import UNITS
+from .inspect import UNLIKE
+
+Array = NDArray[np.float64]
+
+LOOKED = 10_000  # points
+NEAR = 0.8  # share of the points of a scan that have to lie on what was scanned
+ALIKE = 1.5  # times that a scan may be larger or smaller than a part for its unit to be guessed
+
+
+def near(points: Array, body: Body, within: float) -> float:
+    """The share of points (n, 3) that lie within so many mm of the body."""
+    return float((_off(points, body) <= within).mean())
+
+
+def refuse_size(points: Array, label: str, body: Body) -> None:
+    """InputError SCAN_UNIT where points (n, 3) of a file are of quite another size than the body."""
+    size, asked = extent(points), extent(body.vertices)
+    if asked <= size * UNLIKE and size <= UNLIKE * asked:
+        return
+    ratio = asked / max(size, 1e-12)
+    unit = next((name for name, scale in UNITS.items() if name != "mm" and 1.0 / ALIKE < ratio / scale < ALIKE), "")
+    remedy = f"in {unit} it would be about as large, give that as substrate.scan_unit" if unit else (
+        "check its unit, substrate.scan_unit, and what was scanned"
+    )
+    raise InputError(
+        "SCAN_UNIT", label, f"the scan reaches over {size:.4g} mm, {body.name} over {asked:.4g} mm; {remedy}"
+    )
+
+
+def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
+    """InputError SCAN_OTHER with what was measured where points (n, 3), as they are laid, are none of the body."""
+    off = _off(points, body)
+    share = float((off <= within).mean())
+    if share >= NEAR:
+        return
+    raise InputError(
+        "SCAN_OTHER", label, f"{share:.0%} of its {len(points)} points lie within {within:g} mm of {body.name}, at least "
+        f"{NEAR:.0%} have to; half of them are farther off than {np.median(off):.3g} mm. It reaches over "
+        f"{extent(points):.4g} mm, {body.name} over {extent(body.vertices):.4g} mm: scan this part, crop the scan to it, "
+        "check its unit, or raise substrate.scan_within"
+    )
+
+
+def _off(points: Array, body: Body) -> Array:
+    """Distance (k,), mm, of some of points (n, 3) from the body."""
+    some = points[np.unique(np.linspace(0, len(points) - 1, LOOKED).astype(np.intp))]
+    solid = SolidMesh(body.vertices, body.triangles)
+    return np.asarray(solid.searched(0.02 * float(np.ptp(body.vertices, axis=0).max())).away(some))
+
+
+def extent(points: Array) -> float:
+    """How far points (n, 3) reach from corner to corner, mm, but for the outermost percent on each side."""
+    low, high = np.quantile(points, (0.01, 0.99), axis=0) if len(points) > 500 else (points.min(axis=0), points.max(axis=0))
+    return float(np.linalg.norm(high - low))
+

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The body of a substrate as it was scanned, for the nozzle to be kept clear of."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.mesh.refined import refined
+from ..geometry.mesh.solid import SolidMesh
+from ..geometry.surroundings import Body
+from .scan_heights import Scan
+
+Array = NDArray[np.float64]
+
+PARTS = 40  # along the longest side of the body, of its triangles once they are divided
+FINEST = 4.0  # mm
+MOST = 100_000  # triangles
+FACING = 0.2  # cosine; faces that lean farther away from where layers grow are not scanned along their normals
+
+
+def facing(points: Array, body: Body, ways: Array) -> NDArray[np.bool_]:
+    """Which of points (n, 3) are nearest to triangles of the body that face one of the directions (m, 3)."""
+    solid = SolidMesh(body.vertices, body.triangles)
+    extent = float(np.ptp(body.vertices, axis=0).max())
+    _, _, nearest = solid.searched(extent / PARTS).signed(points)
+    some = ways[np.unique(np.linspace(0, len(ways) - 1, 50).astype(np.intp))]
+    return np.asarray((solid.units @ some.T).max(axis=1)[nearest] > FACING)
+
+
+def scanned(body: Body, scan: Scan, ways: Array) -> Body:
+    """The body with its vertices where the scan has them, of the faces that look along one of the directions (m, 3); what
+    was not scanned stays."""
+    longest = max(float(np.ptp(body.vertices, axis=0).max()) / PARTS, FINEST)
+    owner = np.zeros(len(body.triangles), dtype=np.intp)
+    found = refined(body.vertices, body.triangles, owner, longest, lambda middle, *_: middle, MOST)
+    vertices, triangles = (body.vertices, body.triangles) if found is None else found[:2]
+    units = SolidMesh(vertices, triangles).units
+    some = ways[np.unique(np.linspace(0, len(ways) - 1, 50).astype(np.intp))]
+    level = (units @ some.T).max(axis=1)
+    order = np.argsort(level, kind="stable")  # the triangle that faces them most is written last
+    way, best = np.zeros_like(vertices), np.full(len(vertices), -1.0)
+    for corner in range(3):
+        here = triangles[order, corner]
+        better = level[order] >= best[here]
+        best[here[better]], way[here[better]] = level[order][better], units[order][better]
+    looking = np.flatnonzero(best > FACING)
+    if not len(looking):
+        return body
+    heights = scan.heights(vertices[looking], way[looking])
+    good = heights.covered & (np.abs(np.where(heights.covered, heights.off, np.inf)) <= scan.within)
+    shifted = vertices.copy()
+    shifted[looking[good]] += heights.off[good, None] * way[looking[good]]
+    return Body(body.name, shifted, triangles)

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a report says of layers that were fitted to a scan: figures, and the first of them before and after."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from freecad_am.core.geometry.fitted import Fitted
+from freecad_am.core.inspection.bands import band_of, bands
+from freecad_am.core.toolpath import Array
+
+from .svg import Plot
+from .tables import grid_of
+
+TOLERANCE = 0.1  # mm, of the bands that both pictures are coloured by
+MOST = 4000  # dots of a picture
+DOT = 2.2
+
+
+def as_dict(fitted: Fitted) -> dict[str, Any]:
+    """The key `scan` of a report."""
+    return {
+        "file": fitted.file, "points": fitted.points, "left_out": fitted.left_out, "layer": fitted.layer,
+        "layers": fitted.layers,
+        "off_mm": {"min": float(fitted.off.min()), "mean": float(fitted.off.mean()), "max": float(fitted.off.max())},
+        "left_mm": float(np.abs(fitted.left).max()), "slope_deg": math.degrees(math.atan(fitted.slope)),
+        "remains_mm": fitted.remains, "motion": fitted.motion.tolist(),
+    }
+
+
+def section(fitted: Fitted, frame: Array) -> str:
+    """The section of the page: both pictures as seen along Z of the feature's frame (4, 4)."""
+    before = _map(f"Layer {fitted.layer} as planned", fitted.places, fitted.off, frame)
+    after = _map(f"Layer {fitted.layer} as laid", fitted.laid, fitted.left, frame)
+    key = "".join(
+        f'<span style="white-space:nowrap"><span style="color:{_css(band.colour)}">&#9632;</span> {escape(band.text)}&ensp;'
+        "</span> " for band in bands(TOLERANCE)
+    )
+    return (
+        f"<h2>Fitted to {escape(fitted.file)}</h2>{grid_of([before, after])}"
+        f'<p class="sub">How far the scan lies above the layer, mm: {key}</p>'
+    )
+
+
+def _map(title: str, places: Array, off: Array, frame: Array) -> str:
+    some = np.unique(np.linspace(0, len(places) - 1, MOST).astype(np.intp))
+    x, y = ((places[some] - frame[:3, 3]) @ frame[:3, :2]).T
+    plot = Plot(f"{title}: {off.min():.3f} to {off.max():.3f} mm", (0.0, 1.0), (0.0, 1.0), "mm", "mm", height=300)
+    wide, high = plot.width - plot.left - plot.right, plot.height - plot.top - plot.bottom
+    scale = 1.08 * max(float(np.ptp(x)) / wide, float(np.ptp(y)) / high, 1e-6)
+    plot.x, plot.y = (
+        (0.5 * (float(values.min()) + float(values.max())) - 0.5 * scale * size,
+         0.5 * (float(values.min()) + float(values.max())) + 0.5 * scale * size)
+        for values, size in ((x, wide), (y, high))
+    )
+    shades, number = [_css(band.colour) for band in bands(TOLERANCE)], band_of(off[some], TOLERANCE)
+    plot.parts += [
+        f'<circle cx="{px:.1f}" cy="{py:.1f}" r="{DOT}" fill="{shades[k]}"/>'
+        for px, py, k in zip(plot.to_x(x).tolist(), plot.to_y(y).tolist(), number.tolist(), strict=True)
+    ]
+    return plot.text()
+
+
+def _css(colour: tuple[float, float, float]) -> str:
+    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers fitted to scans: judged by the equation of the surface that was scanned, between points too."""
+
+import itertools
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
+
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.inspection import scan_checks, scan_motion
+from freecad_am.core.inspection.fit_layers import fitted
+from freecad_am.core.inspection.scan_heights import Scan
+from freecad_am.core.inspection.scanned_body import facing, scanned
+from freecad_am.core.issues import InputError
+from freecad_am.core.layers.stacking import stacked
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.filled import SolidParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.scan import ScanParameters
+from freecad_am.core.strategies.solids.plan import plan
+
+HEIGHT = 2.0
+UP = np.array([[0.0, 0.0, 1.0]])
+
+
+def hull(points, name):
+    made = ConvexHull(points)
+    faces = made.simplices.copy()
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    inward = (np.cross(b - a, c - a) * made.equations[:, :3]).sum(axis=1) < 0.0
+    faces[inward] = faces[inward][:, ::-1]
+    return Body(name, points, faces.astype(np.int64))
+
+
+def box(low, high, name="box"):
+    return hull(np.array(list(itertools.product(*zip(low, high, strict=True))), dtype=float), name)
+
+
+PLATE = box((-100, -60, -10), (100, 60, 0), "plate")
+
+
+def bent(x, y):
+    """mm: how high a plate lies that is tilted and bent."""
+    return 0.02 * x - 0.01 * y + 0.8 * (x / 100.0) ** 2 - 0.5 * np.sin(y / 25.0)
+
+
+def points_on(surface, size=(100.0, 60.0), count=30_000, noise=0.02, outliers=0.01, seed=1):
+    rng = np.random.default_rng(seed)
+    x, y = rng.uniform(-1.0, 1.0, (2, count)) * np.array(size)[:, None]
+    z = surface(x, y) + rng.normal(0.0, noise, count)
+    wrong = rng.choice(count, int(outliers * count), replace=False)
+    z[wrong] += rng.uniform(-20.0, 60.0, len(wrong))
+    return np.column_stack([x, y, z])
+
+
+@pytest.fixture(scope="module")
+def block():
+    strategy = SolidParameters(layer_height=HEIGHT, bead_spacing=6.25, chord_error=0.05)
+    solids = stacked([box((-60, -25, 0), (60, 25, 30))], strategy, "block")
+    return plan(solids, strategy, BuildDirectionParameters(), ProcessParameters(travel_speed=6.0), None)
+
+
+@pytest.fixture(scope="module")
+def laid(block):
+    return fit(block, points_on(bent))
+
+
+def fit(toolpath, points, **parameters):
+    of = ScanParameters(**parameters)
+    return fitted(toolpath, Scan(points, "scan.csv", of.scan_within), of, 0, np.eye(4))
+
+
+def between(layer):
+    """Nine places from each point of a layer to the next, on the straight way between them."""
+    share = np.linspace(0.0, 1.0, 10)[:, None, None]
+    return np.vstack([(bead.points[:-1] + share * np.diff(bead.points, axis=0)).reshape(-1, 3) for bead in layer.beads])
+
+
+def test_the_first_layer_lies_on_what_was_scanned_and_the_others_lead_back(block, laid):
+    made = laid
+    x, y, _ = made.fitted.places.T
+    assert np.abs(made.fitted.off - bent(x, y)).max() < 0.06
+    count = made.fitted.layers
+    assert count - 1 < np.abs(made.fitted.off).max() / (0.2 * HEIGHT) <= count  # the fewest that keep heights within a fifth
+    for number, layer in enumerate(made.layers):
+        x, y, z = between(layer).T
+        share = max(0.0, 1.0 - number / count)
+        assert np.abs(z - number * HEIGHT - share * bent(x, y)).max() < 0.06  # three times the noise
+    for one, other in zip(block.layers[count:], made.layers[count:], strict=True):
+        assert one is other  # what is back at the plan is the plan
+
+
+def test_outliers_move_nothing(laid):
+    """Where one point in a hundred is wrong patches are the same as without, but for less than their noise."""
+    points, clean = points_on(bent), points_on(bent, outliers=0.0)
+    places = laid.layers[0].beads[0].points
+    wrong, right = (Scan(some, "s", 5.0).heights(places, np.tile(UP, (len(places), 1))).off for some in (points, clean))
+    assert (np.abs(points - clean).max(axis=1) > 1.0).mean() > 0.009
+    assert np.abs(wrong - right).max() < 0.02
+
+
+def test_thinner_layers_are_laid_faster_by_as_much(laid):
+    made = laid
+    for number in range(made.fitted.layers):
+        low, high = made.uneven[number, 1:]
+        assert 0.79 * HEIGHT < low < high < 1.21 * HEIGHT
+        for bead in made.layers[number].beads:
+            middle = 0.5 * (bead.height[1:] + bead.height[:-1])
+            assert bead.speed[1:] * middle == pytest.approx(6.0 * HEIGHT, rel=1e-9)  # as much at every place
+    tops = [np.concatenate([bead.points[:, 2] for bead in layer.beads]) for layer in made.layers]
+    assert made.layers[0].beads[0].height[0] == pytest.approx(
+        HEIGHT - bent(*made.layers[0].beads[0].points[0, :2]) / made.fitted.layers, abs=0.02
+    )
+    assert tops[-1] == pytest.approx((len(made.layers) - 1) * HEIGHT)
+
+
+def test_after_a_layer_the_next_lies_on_what_has_grown(block):
+    def grown(x, y):
+        return 10.0 - 0.4 + 0.004 * x + 0.2 * (y / 25.0) ** 2
+
+    made = fit(block, points_on(grown, (60.0, 25.0), 15_000), after_layer=4)
+    x, y, z = between(made.layers[5]).T
+    assert np.abs(z - grown(x, y)).max() < 0.06
+    for number in range(5):  # what lies below is spread evenly up to what was measured
+        x, y, z = between(made.layers[number]).T
+        assert np.abs(z - number / 5.0 * grown(x, y)).max() < 0.06
+    assert all(one is other for one, other in zip(made.layers[9:], block.layers[9:], strict=True))
+
+
+def test_scans_that_do_not_serve_are_refused(block):
+    points = points_on(bent)
+    for code, of, more in (
+        ("SCAN_MISSES", points[points[:, 0] < 0.0], {}), ("SCAN_MISSES", points[:5], {}),
+        ("SCAN_OFF", points + (0.0, 0.0, 4.0), {}), ("NO_LAYER", points, {"after_layer": 14}),
+    ):
+        with pytest.raises(InputError) as error:
+            fit(block, of, **more)
+        assert error.value.code == code
+    assert fit(block, points + (0.0, 0.0, 4.0), scan_within=7.0).fitted.off.min() > 2.0
+
+
+def test_a_part_with_few_layers_tells_what_remains(block):
+    few = fit(block, points_on(lambda x, y: 4.5 + 0.0 * x), scan_band=0.1)
+    told = [issue for issue in few.issues if issue.code == "SCAN_REMAINS"]
+    left = np.concatenate([bead.points[:, 2] for bead in few.layers[-1].beads]) - 14 * HEIGHT
+    assert len(told) == 1 and left.max() > 1.0
+    assert f"up to {few.fitted.remains:.3f} mm" in told[0].message
+    assert few.fitted.remains == pytest.approx(left.max(), abs=0.02)
+
+
+def test_units_and_other_parts_are_told_from_the_part():
+    points = points_on(bent)
+    scan_checks.refuse_size(points, "s", PLATE)
+    for factor, unit in ((1e-3, "m"), (1.0 / 25.4, "inch"), (0.1, "cm")):
+        with pytest.raises(InputError, match=rf"in {unit} it would be") as error:
+            scan_checks.refuse_size(points * factor, "s", PLATE)
+        assert error.value.code == "SCAN_UNIT"
+    scan_checks.refuse_other(points, "s", PLATE, 5.0)
+    ball = np.random.default_rng(2).normal(size=(5000, 3))
+    ball *= 80.0 / np.linalg.norm(ball, axis=1, keepdims=True)
+    with pytest.raises(InputError, match=r"% of its 5000 points lie within 5 mm of plate") as error:
+        scan_checks.refuse_other(ball, "s", PLATE, 5.0)
+    assert error.value.code == "SCAN_OTHER"
+
+
+def test_a_scan_from_anywhere_is_laid_onto_the_part():
+    """All sides of a wedge, that no turn makes another place of it; one that is alike turned by half a turn is refused."""
+    wedge = hull(np.array([(0, 0, 0), (90, 0, 0), (0, 50, 0), (90, 50, 0), (0, 0, 40), (0, 30, 40)], dtype=float), "wedge")
+    rng, corner = np.random.default_rng(3), wedge.corners()
+    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    share = rng.dirichlet((1.0, 1.0, 1.0), 8000)
+    points = np.einsum("nk,nkc->nc", share, corner[rng.choice(len(corner), 8000, p=area / area.sum())])
+    points += rng.normal(0.0, 0.02, points.shape)
+    points[:80] += rng.uniform(-40.0, 40.0, (80, 3))
+    turn = Rotation.from_euler("xyz", [70.0, -40.0, 130.0], degrees=True).as_matrix()
+    motion = scan_motion.laid(points @ turn.T + (500.0, -200.0, 90.0), wedge, "s")
+    back = (points @ turn.T + (500.0, -200.0, 90.0)) @ motion[:3, :3].T + motion[:3, 3]
+    assert np.linalg.norm(back - points, axis=1).max() < 0.1
+    top = points_on(bent)
+    with pytest.raises(InputError) as error:
+        scan_motion.laid(top @ turn.T + (500.0, -200.0, 90.0), PLATE, "s")
+    assert error.value.code == "SCAN_AMBIGUOUS"
+
+
+def test_the_body_to_keep_clear_of_is_where_it_was_scanned():
+    points = points_on(bent)
+    found = scanned(PLATE, Scan(points, "s", 5.0), UP)
+    x, y, z = found.vertices[found.vertices[:, 2] > -3.0].T
+    inside = (np.abs(x) < 95.0) & (np.abs(y) < 55.0)
+    assert inside.sum() > 100 and np.abs(z - bent(x, y))[inside].max() < 0.06
+    assert found.vertices[:, 2].min() == -10.0 and (found.vertices[:, 2] == -10.0).sum() > 100  # its underside stays
+    both = np.vstack([points[:500], points[:500] - (0.0, 0.0, 10.0)])
+    assert facing(both, PLATE, UP)[:500].mean() > 0.95 and facing(both, PLATE, UP)[500:].mean() < 0.05
