@@ -18,8 +18,10 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.program import build
 from freecad_am.core.program import DepositOff, DepositOn, LayerStart, Moves, Program
+from freecad_am.core.read_moves import Event
 from freecad_am.posts import fanuc
 from freecad_am.read_back import points, text_path
+from freecad_am.read_back.events import _alike
 
 RADIUS, CHORD_ERROR, SPEED, RAPID_SPEED = 45.0, 0.01, 6.0, 100.0
 ON_ROBOT = CellParameters(limits="paper")
@@ -411,3 +413,13 @@ def test_the_program_origin_moves_the_user_frame_and_nothing_else(table):
     # a user frame that is not the one told of is caught
     wrong = dataclasses.replace(program, station=(*program.station[:2], program.station[2] + 0.1, *program.station[3:]))
     assert "VERIFY_POINT" in codes(verify(cell, motion, wrong, files))
+
+
+@pytest.mark.parametrize(("told", "meant", "alike"), [
+    ("0.001", 0.0001, True), ("0.010", 0.0001, False), ("0.500", 0.5004, True), ("0.500", 0.52, False), ("2.5", 2.5, True),
+])
+def test_a_wait_is_told_to_its_last_digit(told, meant, alike):
+    """One that is shorter than that may be one of it, and no more; half a digit is rounding."""
+    half = 0.5 * 10.0 ** -len(told.split(".")[1])
+    found, due = (Event(3, "wait", (value,), half) for value in (told, meant))
+    assert _alike(None, found, due) is alike

@@ -2,6 +2,7 @@
 """Time, length, volume and mass of the report, against the toolpath and the joint path's properties."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -39,6 +40,10 @@ def test_the_joint_path_and_the_report_tell_the_same_sums(doc, tmp_path):
     assert [sums[key] for key in ("time_s", "deposit_s", "wait_s", "deposit_mm", "volume_cm3", "mass_g")] == pytest.approx(
         [path.TotalTime, path.DepositTime, path.WaitTime, path.DepositLength.Value, path.DepositVolume, path.DepositMass]
     )
+    for density in (7.85, 11.34):
+        other = figures.build("x", api.result(toolpath), api.result(path).motion, (), replace(process, density=density), ())
+        mass = json.loads(figures.text(other))["totals"]["mass_g"]
+        assert mass == pytest.approx(density * length * 4.0 * 15.0 / 1000.0, rel=1e-6)
     assert sums["fed_cm3"] == pytest.approx(path.DepositVolume, rel=1e-6)  # the wire balances by default
     wire = told["process"]["wire"]
     assert wire["feed"] == "auto" and wire["feed_mm_s"] * np.pi * 0.6**2 == pytest.approx(4.0 * 15.0 * 6.0)

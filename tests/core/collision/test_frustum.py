@@ -60,6 +60,21 @@ def test_as_by_convex_minimisation(kind, seed):
     assert clear_cut.sum() > 195 and 15 < meets.sum() < 185
 
 
+@pytest.mark.parametrize("lean", [0.0, 1e-8, 1e-6, 1e-4, 1e-2, 0.3, 2.0])
+def test_the_farthest_point_along_a_direction_that_leans_as_little_as_may_be(lean):
+    """Support of two discs: of heights along the axis and radii across it."""
+    rng = np.random.default_rng(7)
+    frustum = Frustum(0.5, 0.36, 0.67, 60.0)
+    axis = unit(rng.normal(size=(50, 3)))
+    across = unit(np.cross(axis, rng.normal(size=(50, 3))))
+    direction = np.cos(lean) * axis + np.sin(lean) * across
+    found = frustum.farthest(direction, axis)
+    radii = np.array([0.5 + 0.36 * height for height in (0.67, 60.0)])
+    support = (np.cos(lean) * np.array([0.67, 60.0]) + abs(np.sin(lean)) * radii).max()
+    assert (found * direction).sum(axis=1) == pytest.approx(np.full(50, support), abs=2e-6)
+    assert frustum.gap(found, axis) == pytest.approx(np.zeros(50), abs=2e-6)
+
+
 def test_a_large_face_through_the_nozzle_and_one_beside_it():
     frustum = Frustum(0.5, 0.36, 0.67, 60.0)
     big = 1e3 * np.array([[1, 0, 0], [-0.5, 0.9, 0], [-0.5, -0.9, 0]])

@@ -119,7 +119,7 @@ def test_a_rapid_through_the_part_is_refused(planned):
 )
 def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, met):
     """Tips over, under and beside the platform, upright and laid over: 60 mm of nozzle, opening by 20 deg."""
-    _, cell, _, motion = planned()
+    _, cell, path, motion = planned()
     some = motion.deposit
     flat = np.zeros(int(some.sum()))
     deposit = Beads(motion.position[some], motion.build[some], motion.tool[some], flat, flat, motion.point[some] == 0)
@@ -132,6 +132,14 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     lost = Driven(np.r_[joints, np.nan * joints], np.r_[joints, joints], np.zeros(2, dtype=int))  # one cannot be reached
     assert surroundings.names(lost) == ["the platform"] * met
     assert surroundings.names(lost.of(np.array([1]))) == []
+    # what looks at rapids alone finds it too, by a row of its own, and by a platform alone
+    row, led = 1, motion.joints.copy()  # before there is a bead
+    assert not motion.deposit[:2].any()
+    led[: row + 1] = joints[0]
+    there = dataclasses.replace(motion, joints=led)
+    for one, expected in ((cell, met), (dataclasses.replace(cell, platform_diameter=0.0), False)):
+        looked = rapid_look.looked_at(there, [bead.bead for bead in path.beads], one, (), 0.0, 0.0, 20_000)
+        assert (row in looked.rows) == expected
 
 
 def test_rapids_are_raised_until_the_nozzle_is_clear(sliced, cell_of):

@@ -15,6 +15,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import link_rods
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.obstacles import Obstacle, obstacles
+from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_arm_clearance import CELL, CLEARANCE, DOWN, SIZE, dome, on_rods, planned
 
@@ -123,6 +124,12 @@ def test_rapids_of_a_carried_nozzle_go_over_an_obstacle_that_links_are_not_kept_
         assert not has_errors(issues)
         near = nearest(motion, cell, pose, nozzle_points(cell)[48:], size, every=1).min()
         assert near == 0.0 if not obstacles_ else near > low
+        # and what looks at rapids alone, whatever planning tried, tells it of the cell in which the bar stands
+        there = cell_with(dome, pose, size=size, **values)
+        looked = rapid_look.looked_at(motion, ends, there, (), 0.0, 0.0, 50_000)
+        assert (len(looked.rows) == 0) == bool(obstacles_)
+        without = dataclasses.replace(there, obstacles=())
+        assert not len(rapid_look.looked_at(motion, ends, without, (), 0.0, 0.0, 50_000).rows)
 
 
 def test_a_floor_is_a_box_that_the_elbow_stays_above(dome):
