@@ -216,7 +216,7 @@ def test_solids_from_exact_shapes_are_told_what_to_do_with_shapes(thruster):
     bracket = add(doc, Part.makeBox(50, 5, 40).fuse(Part.makeBox(5, 50, 40)).removeSplitter(), "Bracket")
     for arguments, code, told, untold in (
         ((small, hub), "NOT_ON_HUB", "does not stand on the hub", "unit"),
-        ((touching, hub), "NON_MANIFOLD", "touches itself along an edge", "mesh"),
+        ((touching, hub), "NOT_ON_HUB", "it passes Hub", "mesh"),  # that it touches itself along an edge is mended
         ((bracket,), "NO_HUB", "on a flat base is deposited by kind: solid", "mesh"),
     ):
         with pytest.raises(InputError) as caught:
