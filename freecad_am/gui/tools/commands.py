@@ -13,7 +13,7 @@ from .tool import PREFIX, Tool
 GROUPS = (
     ("OpenPart", "NewJob"),
     ("Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Curves", "Cladding"),
-    ("Toolpath", "JointPath", "SpinMap"),
+    ("Toolpath", "JointPath", "SpinMap", "Placement"),
     ("Path", "Simulate"),
     ("Program", "Plots", "Inspect", "ExportPath"),
     ("NewMachine",),
@@ -66,6 +66,11 @@ TOOLS = {
         "spin_map", marked("Free Rotation Map…"),
         marked("Shows the path against the rotation about the tool; the curve can be drawn by hand"), openers.spin_map,
         needs.joint_path, True,
+    ),
+    "Placement": Tool(
+        "placement", marked("Placement…"),
+        marked("Tries where the part, its positioner or the deposition point can stand, and shows the robot's reach"),
+        openers.placement, needs.toolpath_and_cell, True,
     ),
     "Path": Tool(
         "path", marked("Path"), marked("Shows a toolpath or joint path layer by layer and point by point"), openers.path,

@@ -53,12 +53,12 @@ def _next_tools(kind: str) -> list[tuple[str, str]]:
     return {
         "feature": [("Toolpath", tr("Cut into layers…")), ("Inspect", tr("Compare with measured points…"))],
         "toolpath": [
-            ("JointPath", tr("Plan joint path…")), ("Plots", tr("Plots…")), ("Inspect", tr("Compare with measured points…")),
+            ("JointPath", tr("Plan joint path…")), ("Placement", tr("Placement…")), ("Plots", tr("Plots…")), ("Inspect", tr("Compare with measured points…")),
             ("ExportPath", tr("Export path…")),
         ],
         "joint path": [
-            ("SpinMap", tr("Map of the free rotation…")), ("Program", tr("Write program…")), ("Plots", tr("Plots…")),
-            ("ExportPath", tr("Export path…")),
+            ("SpinMap", tr("Map of the free rotation…")), ("Placement", tr("Placement…")), ("Program", tr("Write program…")),
+            ("Plots", tr("Plots…")), ("ExportPath", tr("Export path…")),
         ],
         "program": [("Plots", tr("Plots…"))],
     }.get(kind, [])

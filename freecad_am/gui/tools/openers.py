@@ -106,6 +106,13 @@ def spin_map() -> None:
     tool.spin_map()
 
 
+def placement() -> None:
+    """The dock of placements."""
+    from ..placement import tool
+
+    tool.placement()
+
+
 def path() -> None:
     """The dock of paths."""
     from ..path import dock

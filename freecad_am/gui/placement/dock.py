@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The dock of a placement: poses are tried beside the window and drawn as a map, the best is entered by a click."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtGui
+
+from ...core.issues import AmError
+from ...core.kinematics import cell as cells
+from ...core.parameters.place import PlaceParameters
+from ...core.placement.place import Placed
+from ...core.placement.reach import Reach, reach
+from ...objects import progress, user_machines
+from ...objects.placed import Placing, given, placing_of
+from ...objects.progress import Cancelled
+from .. import recorded
+from ..docks import places
+from ..docks.lookout import Lookout
+from ..preferences import watch
+from ..texts.translation import tr, translated_error
+from . import figures
+from .form import Form
+from .scene import Scene
+from .work import Work
+
+NAME = "RoboticAM_Placement"
+WIDE = 380  # pixels, at least
+REACH_STEP = 150.0  # mm
+
+
+class PlacementDock:
+    """Tries poses of one joint path or toolpath until it is closed, or until what it shows goes."""
+
+    def __init__(self, obj: Any, view: Any) -> None:
+        self.obj, self.gone, self.entering = obj, False, False
+        self.placing: Placing = placing_of(obj)
+        self.found: Placed | None = None
+        self.numbers: list[int] = []
+        self.volume: Reach | None = None
+        self.scene: Scene | None = Scene(view)
+        self.dock = places.dock(NAME, places.RIGHT)
+        self.scroll = QtGui.QScrollArea()
+        self.scroll.setWidgetResizable(True)
+        self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
+        self.scroll.setMinimumWidth(WIDE)
+        self._build({})
+        self.work = Work(self.scroll, self._judged, lambda text, wrong: self.form.tell(text, wrong))
+        self.reaching = Work(self.scroll, self._reached, lambda text, wrong: self.form.tell(text, wrong))
+        self.dock.hold(self._title(), self.scroll)
+        self.dock.closed = self.close
+        self._stand()
+        self.dock.come()
+        self.lookout = Lookout(lambda: _Shown(self.placing), self._changed_object, lambda why, _: self.end(why))
+        watch.listen(self._paint)
+        watch.listen_to_language(self._speak)
+
+    # ---- the fields
+
+    def _build(self, values: dict[str, Any]) -> None:
+        self.form = Form(values)
+        self.form.compute.clicked.connect(lambda *_: self._compute())
+        self.form.use.clicked.connect(lambda *_: self._use())
+        self.form.reach.clicked.connect(lambda *_: self._reach())
+        self.form.colour.activated.connect(lambda *_: self._paint())
+        self.form.table.itemSelectionChanged.connect(self._paint)
+        self.scroll.setWidget(self.form)  # what was there goes
+        self._name_buttons()
+
+    def _speak(self) -> None:
+        """The window has another language: what is entered and found stays."""
+        values, shown = {}, self.form.reach.isChecked()
+        with contextlib.suppress(AmError):
+            values = self.form.values()
+        self._build(values)
+        self.form.reach.setChecked(shown)
+        self.dock.setWindowTitle(self._title())
+        self._show()
+
+    def _title(self) -> str:
+        return tr("Placement of {}").format(self.obj.Label)
+
+    def _name_buttons(self) -> None:
+        runs = hasattr(self, "work") and self.work.runs
+        self.form.compute.setText(tr("Cancel") if runs else tr("Compute"))
+        self.form.use.setEnabled(not runs and bool(self.numbers))
+
+    # ---- what is computed
+
+    def _compute(self) -> None:
+        """Try the poses, or stop that."""
+        if self.work.runs:
+            self.work.cancel()
+            self.form.tell(tr("Cancelled."))
+            self._name_buttons()
+            return
+        try:
+            parameters: PlaceParameters = given(None, self.form.values())
+            self.placing = placing_of(self.obj)
+        except (AmError, ReferenceError) as error:
+            self.form.tell(translated_error(error), True)
+            return
+        placing = self.placing
+        self.work.start(lambda: placing.placed(parameters))
+        self._name_buttons()
+
+    def _judged(self, found: Placed | None) -> None:
+        if found is not None:
+            self.found = found
+            self.numbers = figures.rows(found, str(self.form.fields["best"].value))
+        self._show()
+        self._name_buttons()
+
+    def _reach(self) -> None:
+        """Show the reach of the robot, or no more."""
+        self.reaching.cancel()
+        if not self.form.reach.isChecked():
+            self.volume = None
+            self._paint()
+            return
+        settings, folders = self.placing.settings, user_machines.folders()
+
+        def work() -> Reach:
+            import numpy as np
+
+            return reach(cells.resolve(settings, np.eye(4), folders=folders), REACH_STEP, progress.report)
+
+        self.reaching.start(work)
+
+    def _reached(self, found: Reach | None) -> None:
+        self.volume = found
+        if found is not None:
+            self.form.tell(tr("The robot can be at {} places of a grid of {:.0f} mm.").format(len(found.places), found.step))
+        self._paint()
+
+    # ---- what is shown
+
+    def _show(self) -> None:
+        self.form.table.blockSignals(True)
+        self.form.fill(self.found, self.numbers)
+        self.form.table.blockSignals(False)
+        if self.found is not None:
+            self.form.tell(figures.summed(self.found), self.found.best is None)
+        self._paint()
+        self._name_buttons()
+
+    def chosen(self) -> int | None:
+        """The number of the pose that is chosen in the table."""
+        row = self.form.table.currentRow()
+        return self.numbers[row] if 0 <= row < len(self.numbers) else None
+
+    def _stand(self) -> None:
+        """Draw the machine as the cell stands now."""
+        if self.scene is not None:
+            self.scene.stand(self.placing.settings, self.placing.job().toolpath)
+            self._paint()
+
+    def _paint(self) -> None:
+        if self.scene is None:
+            return
+        try:
+            shown = None if self.found is None else figures.coloured(self.found, self.form.colour.currentData())
+            self.scene.show(self.found, shown, self.chosen())
+            self.scene.show_reach(self.volume)
+        except (RuntimeError, ReferenceError):
+            self.end(tr("its view was closed"))
+            return
+        self.form.tell_colours(shown)
+
+    # ---- making it the choice
+
+    def _use(self) -> None:
+        """Enter the pose that is chosen into the cell; what follows it is renewed."""
+        number = self.chosen()
+        if self.found is None or number is None:
+            return
+        entries = {key: repr(value) for key, value in self.found.entries(number).items()}
+        self.entering = True
+        try:
+            recorded.change(self.placing.cell, entries)
+            self.placing = placing_of(self.obj)
+        except (AmError, Cancelled, ReferenceError) as error:
+            self.form.tell(translated_error(error) or tr("Cancelled: the document is as it was."), True)
+            return
+        finally:
+            self.entering = False
+        self.form.tell(tr("The pose was entered into {}.").format(self.placing.cell.Label))
+        self._stand()
+
+    # ---- the end
+
+    def _changed_object(self, obj: Any, name: str) -> None:
+        """What was found is of inputs that are no more."""
+        if name != "Key" or self.entering or self.found is None:
+            return
+        self.found, self.numbers = None, []
+        self._show()
+        self.form.tell(tr("{} has changed; compute again.").format(obj.Label), True)
+
+    def close(self) -> None:
+        """End it, and leave the view as it was."""
+        if self.gone:
+            return
+        self.gone = True
+        self.lookout.stop()
+        for listener in (self._paint, self._speak):
+            watch.forget(listener)
+        self.work.cancel()
+        self.reaching.cancel()
+        scene, self.scene = self.scene, None
+        if scene is not None:
+            scene.remove()
+        self.dock.empty()
+        if self in _open:
+            _open.remove(self)
+
+    def end(self, why: str) -> None:
+        """End it by itself, and say why."""
+        if not self.gone:
+            self.close()
+            Gui.getMainWindow().statusBar().showMessage(tr("The placement was closed: {}").format(why), 8000)
+
+
+class _Shown:
+    """What a lookout looks at."""
+
+    def __init__(self, placing: Placing) -> None:
+        self.document, self.objects = placing.document, placing.names
+
+
+_open: list[PlacementDock] = []  # Python must keep it as long as it is open; there is one
+
+
+def show(obj: Any) -> PlacementDock | None:
+    """Open the dock for a joint path or toolpath in a 3D view of its document, in place of the one that is open. Raises
+    InputError where there is nothing to place."""
+    placing_of(obj)
+    document = Gui.getDocument(obj.Document.Name)
+    views = document.mdiViewsOfType("Gui::View3DInventor")
+    active = document.activeView()
+    view = active if hasattr(active, "getSceneGraph") else views[0] if views else None
+    if view is None:
+        App.Console.PrintWarning(tr("There is no 3D view to show places in; open one.") + "\n")
+        return None
+    while _open:
+        _open[0].close()
+    opened = PlacementDock(obj, view)
+    _open.append(opened)
+    return opened

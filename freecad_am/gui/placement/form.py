@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the dock of a placement holds: the box of poses, what is told of them, the best as a table, buttons."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+from ...core.parameters.place import PlaceParameters
+from ...core.placement.place import Placed
+from ...objects.placed import given
+from ...objects.rows import flat, rows
+from ..colours import WRONG
+from ..texts.translation import tr, translated
+from ..widgets import fields
+from ..widgets.fold import Fold
+from . import figures
+
+SECTION, HIGH = "place", 160  # pixels of the table at least
+
+
+class Form(QtGui.QWidget):
+    """The widgets at their places; whoever makes it connects them. values: what the fields show, as a macro has them."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        super().__init__()
+        column = QtGui.QVBoxLayout(self)
+        self.fields: dict[str, fields.Field] = {}
+        box, more = Fold(tr("Poses to try"), True), Fold(tr("More"), False)
+        current = flat(given(None, values))
+        for row in rows(PlaceParameters):
+            field = fields.make(row, current[row.key], None, "", SECTION)
+            self.fields[row.key] = field
+            (more if row.spec.advanced else box).add(field.heading, field.widget)
+        column.addWidget(box.widget)
+        column.addWidget(more.widget)
+        self.compute = _button("compute", tr("Compute"), tr("Try all poses beside the window; it can be cancelled"))
+        self.use = _button("use", tr("Use this"), tr("Enter the pose that is chosen in the table into the cell"))
+        self.reach = QtGui.QCheckBox(tr("Reach of the robot"))
+        self.reach.setObjectName("reach")
+        self.reach.setToolTip(tr("Show where the robot can hold what it carries: blue in few directions, yellow in all of them"))
+        self.colour = QtGui.QComboBox()
+        self.colour.setObjectName("colour")
+        self.colour.setToolTip(tr("What the colours of the places tell"))
+        for name, text in figures.NAMES.items():
+            self.colour.addItem(translated(text), name)
+        self.key, self.told = QtGui.QLabel(), QtGui.QLabel()
+        self.key.setObjectName("key")
+        self.told.setObjectName("told")
+        for label in (self.key, self.told):
+            label.setWordWrap(True)
+        self.table = QtGui.QTableWidget(0, len(figures.heads()))
+        self.table.setObjectName("poses")
+        self.table.setHorizontalHeaderLabels(figures.heads())
+        self.table.verticalHeader().hide()
+        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+        self.table.setSelectionBehavior(QtGui.QAbstractItemView.SelectRows)
+        self.table.setSelectionMode(QtGui.QAbstractItemView.SingleSelection)
+        self.table.setMinimumHeight(HIGH)
+        buttons = QtGui.QHBoxLayout()
+        buttons.addWidget(self.compute)
+        buttons.addWidget(self.use)
+        column.addLayout(buttons)
+        for widget in (self.told, self.colour, self.key, self.table, self.reach):
+            column.addWidget(widget)
+        column.addStretch(1)
+
+    def values(self) -> dict[str, Any]:
+        """What is entered, as a macro passes it. InputError for what cannot be read."""
+        return {key: field.value for key, field in self.fields.items()}
+
+    def tell(self, text: str, wrong: bool = False) -> None:
+        """Say what goes on, or what came of it."""
+        self.told.setText(text)
+        self.told.setStyleSheet(f"QLabel {{ color: {WRONG}; }}" if wrong else "")
+
+    def tell_colours(self, shown: figures.Coloured | None) -> None:
+        """What the colours mean."""
+        if shown is None or shown.least != shown.least:
+            self.key.setText("")
+            return
+        self.key.setText(tr("blue {:.4g} … yellow {:.4g}; grey: not feasible").format(shown.least, shown.most))
+
+    def fill(self, found: Placed | None, numbers: list[int]) -> None:
+        """The rows of the table."""
+        self.table.setRowCount(0 if found is None else len(numbers))
+        for row, number in enumerate(numbers if found is not None else ()):
+            assert found is not None
+            for column, text in enumerate(figures.texts(found, number)):
+                item = QtGui.QTableWidgetItem(text)
+                item.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
+                self.table.setItem(row, column, item)
+        self.table.resizeColumnsToContents()
+        if numbers and found is not None:
+            self.table.selectRow(0)
+
+
+def _button(name: str, text: str, help: str) -> Any:
+    button = QtGui.QPushButton(text)
+    button.setObjectName(name)
+    button.setToolTip(help)
+    return button
