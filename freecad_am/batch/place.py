@@ -35,13 +35,13 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
     paths.require_freecad()
     import FreeCAD
 
-    from . import run
+    from . import job_document, run
 
     target = folder or os.path.join(job.folder, "out", f"{job.name}-place")
     try:
         run.check(job)
         with one_thread(), outputs.Outputs(target, session) as files:
-            document = run.document_of(job)
+            document = job_document.made(job)
             try:
                 stages = run.as_far_as_toolpath(job, document, session)
                 if has_errors(stages.issues):

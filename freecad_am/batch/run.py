@@ -14,7 +14,7 @@ from typing import Any
 from freecad_am.core.issues import ERROR, InfeasibleError, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
 
-from . import for_report, outputs, paths
+from . import for_report, job_document, outputs, paths
 from .job import SECTIONS, Job
 from .job_features import in_words_of_job
 
@@ -83,12 +83,12 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
     try:
         cell = check(job)
         with one_thread(), outputs.Outputs(folder, session) as files:
-            document = document_of(job)
+            document = job_document.made(job)
             try:
                 stages = plan(job, document, session)
                 if fails := _curved_in_vain(job, stages):
                     FreeCAD.closeDocument(document.Name)
-                    document = document_of(job)
+                    document = job_document.made(job)
                     stages = plan(job, document, session, fails)
                 result = _write(stages.job, stages, cell, files, session, started, page)
             finally:
@@ -127,15 +127,6 @@ def check(job: Job) -> Any:
 
         program.refuse(resolved, job.process, job.program)
     return resolved
-
-
-def document_of(job: Job) -> Any:
-    """An empty document for a job."""
-    import FreeCAD
-
-    document = FreeCAD.newDocument("Job")
-    document.Label, document.UndoMode = job.name, 0
-    return document
 
 
 def _curved_in_vain(job: Job, stages: Stages) -> str:
@@ -239,7 +230,7 @@ def _write(
     for name, content in programs.items():
         files.write(f"{outputs.PROGRAMS}/{name}", content)
     with stages.timed("document", session):
-        _save(stages.document, files.path(job.name + outputs.DOCUMENT_ENDING))
+        job_document.save(stages.document, files.path(job.name + outputs.DOCUMENT_ENDING))
     asked = for_report.job(job, stages)
     report = made.made(asked, results, cell, lambda stage: stages.timed(stage, session), session.progress)
     report.content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
@@ -250,12 +241,3 @@ def _write(
     written = files.publish(outputs.earlier_outputs(files.folder))
     status = 0 if report.content["status"] == "ok" else 3
     return Result([os.path.join(files.folder, name) for name in written], report.content, status)
-
-
-def _save(document: Any, path: str) -> None:
-    try:
-        document.saveAs(path)
-    except (OSError, RuntimeError) as error:
-        raise InputError("UNWRITABLE", path, f"the document cannot be saved ({error}); free the disk") from None
-    if not os.path.isfile(path):
-        raise InputError("UNWRITABLE", path, "the document cannot be saved; free the disk")

@@ -36,6 +36,7 @@ _LABELS = {  # of parameters whose keys do not say it in words
     "given": "Given polynomials", "degree": "Degree of the polynomials", "parameter": "Polynomials give",
     "min_condition": "Least condition", "lock": "Axis that stands still", "lock_at": "It stands at",
     "max_residual": "Largest direction error", "own_branch": "Branch of this path", "compare": "Compare with",
+    "rx": "RX", "ry": "RY",
 }
 
 

@@ -1437,6 +1437,11 @@
         <translation>Angle entre l&apos;axe de la buse et son flanc.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Angle step</source>
+        <translation>Pas angulaire</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>Angle that is added to the joint&apos;s, deg</source>
         <translation>Angle ajouté à celui de l&apos;articulation, deg</translation>
@@ -1462,9 +1467,19 @@
         <translation>Dégagement du bras</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>Arm clearance, mm</source>
+        <translation>Distance du bras, mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
         <source>As planned</source>
         <translation>Comme planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>At most {:.0f} % of the points are served: {}.</source>
+        <translation>Au plus {:.0f} % des points sont desservis : {}.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -1592,6 +1607,11 @@
         <translation>Au-dessous de</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Best</source>
+        <translation>Meilleure</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/written.py"/>
         <source>Between its points the text keeps to the planned path</source>
         <translation>Entre ses points, le texte suit la trajectoire planifiée</translation>
@@ -1600,6 +1620,16 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Between layers</source>
         <translation>Entre les couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Between two values of RX, RY or RZ.</source>
+        <translation>Entre deux valeurs de RX, RY ou RZ.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Between two values of x, y or z.</source>
+        <translation>Entre deux valeurs de x, y ou z.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -1680,6 +1710,11 @@
         <location filename="../../freecad_am/gui/background/busy.py"/>
         <source>Cancel</source>
         <translation>Annuler</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>Cancelled.</source>
+        <translation>Annulé.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
@@ -1907,9 +1942,19 @@
         <translation>Compression</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>Compute</source>
+        <translation>Calculer</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Compute again</source>
         <translation>Recalculer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/work.py"/>
+        <source>Computing</source>
+        <translation>Calcul</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
@@ -2240,6 +2285,11 @@
         <location filename="../../freecad_am/gui/background/busy.py"/>
         <source>Ends the computation; the document stays as it was before</source>
         <translation>Arrête le calcul ; le document reste tel qu&apos;il était avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>Enter the pose that is chosen in the table into the cell</source>
+        <translation>Entrer dans la cellule la pose choisie dans le tableau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/figures.py"/>
@@ -2682,6 +2732,36 @@
         <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>How far its RX is changed to either side.</source>
+        <translation>De combien son RX est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>How far its RY is changed to either side.</source>
+        <translation>De combien son RY est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>How far its RZ is changed to either side.</source>
+        <translation>De combien son RZ est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>How far its x is changed to either side.</source>
+        <translation>De combien son x est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>How far its y is changed to either side.</source>
+        <translation>De combien son y est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>How far its z is changed to either side.</source>
+        <translation>De combien son z est changé de chaque côté.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the deposit stands out on all sides of the part, to be machined off.</source>
         <translation>De combien le dépôt dépasse de tous les côtés de la pièce, pour être usiné.</translation>
@@ -3077,6 +3157,11 @@
         <translation>Marge articulaire la plus faible : {:.1f} %, de {}, couche {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>Least margin, %</source>
+        <translation>Plus petite marge, %</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Least thickness</source>
         <translation>Plus petite épaisseur</translation>
@@ -3397,6 +3482,11 @@
         <translation>Modifié (Craig) : Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>More</source>
+        <translation>Plus</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Most</source>
         <translation>Maximum</translation>
@@ -3415,6 +3505,11 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Mount</source>
         <translation>Montage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Moves</source>
+        <translation>Déplace</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -3515,6 +3610,11 @@
         <location filename="../../freecad_am/gui/panels/preview.py"/>
         <source>No preview: see the field marked.</source>
         <translation>Pas d&apos;aperçu : voyez le champ marqué.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>None of the best is with all points.</source>
+        <translation>Aucune des meilleures ne l&apos;est avec tous les points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -3807,6 +3907,16 @@
         <translation>Choisir</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>Placement of {}</source>
+        <translation>Placement de {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Placement…</source>
+        <translation>Placement…</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/form.py"/>
         <source>Plan constant, point-by-point and layer-by-layer on this branch, to look at</source>
         <translation>Planifier constant, point par point et couche par couche sur cette branche, pour regarder</translation>
@@ -3897,7 +4007,7 @@
         <translation>Point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
         <source>Points</source>
         <translation>Points</translation>
     </message>
@@ -3920,6 +4030,16 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Points as joint values, or as positions of the tool.</source>
         <translation>Points en valeurs articulaires, ou en positions de l&apos;outil.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Points of the toolpath that each pose is judged by, about.</source>
+        <translation>Points de la trajectoire d&apos;outil par lesquels chaque pose est jugée, environ.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>Points served, %</source>
+        <translation>Points desservis, %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/figures.py"/>
@@ -3945,6 +4065,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>Poses before the first row and after the last, where the table has some</source>
         <translation>Poses avant la première ligne et après la dernière, si le tableau en a</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>Poses to try</source>
+        <translation>Poses à essayer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences/page.py"/>
@@ -4047,6 +4172,11 @@
         <translation>Proposé pour {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Proven</source>
+        <translation>Prouvées</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa.py"/>
         <source>Pulses per degree of the machine file are the controller&apos;s, and zero pulses the zero of its angles</source>
         <translation>Les impulsions par degré du fichier machine sont celles de la commande, et zéro impulsion le zéro de ses angles</translation>
@@ -4065,6 +4195,16 @@
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>RMS</source>
         <translation>RMS</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>RX</source>
+        <translation>RX</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>RY</source>
+        <translation>RY</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
@@ -4115,6 +4255,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Rapid speed</source>
         <translation>Vitesse rapide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>Reach of the robot</source>
+        <translation>Portée du robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
@@ -4392,6 +4537,11 @@
         <translation>Montrer ce travail seul</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>Show where the robot can hold what it carries: blue in few directions, yellow in all of them</source>
+        <translation>Montrer où le robot peut tenir ce qu&apos;il porte : bleu dans peu de directions, jaune dans toutes</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/figures.py"/>
         <source>Shown on the map</source>
         <translation>Montré sur la carte</translation>
@@ -4470,6 +4620,11 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>So many layers under tops and over bottoms are filled at 100 %.</source>
         <translation>Nombre de couches remplies à 100 % sous les faces supérieures et au-dessus des faces inférieures.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>So many of the best poses are planned with all points, until one is feasible.</source>
+        <translation>Autant des meilleures poses sont planifiées avec tous les points, jusqu&apos;à ce que l&apos;une soit réalisable.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -4770,6 +4925,11 @@
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>The bead whose polynomial is shown; a click on the map chooses one</source>
         <translation>Le cordon dont le polynôme est montré ; un clic sur la carte en choisit un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>The best one was planned with all points.</source>
+        <translation>La meilleure a été planifiée avec tous les points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -5082,9 +5242,24 @@
         <translation>Le repère outil du pupitre sur la bride (mm, deg) ; des zéros pour la bride elle-même</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>The placement was closed: {}</source>
+        <translation>Le placement a été fermé : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>The pose was entered into {}.</source>
+        <translation>La pose a été entrée dans {}.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/preview.py"/>
         <source>The preview is being computed.</source>
         <translation>L&apos;aperçu est en cours de calcul.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>The robot can be at {} places of a grid of {:.0f} mm.</source>
+        <translation>Le robot peut atteindre {} endroits d&apos;une grille de {:.0f} mm.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur.py"/>
@@ -5227,6 +5402,11 @@
         <translation>Cliquez ensuite dans l&apos;arbre ou la vue 3D. {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>There is no 3D view to show places in; open one.</source>
+        <translation>Il n&apos;y a pas de vue 3D où montrer des endroits ; ouvrez-en une.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/tool.py"/>
         <source>There is no 3D view to simulate in; open one.</source>
         <translation>Il n&apos;y a pas de vue 3D où simuler ; ouvrez-en une.</translation>
@@ -5255,6 +5435,11 @@
         <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
         <source>There is no post for this machine&apos;s controller yet: all is planned, checked and simulated, but no program is written. Export Path… writes its points as a table.</source>
         <translation>Il n&apos;y a pas encore de post-processeur pour la commande de cette machine : tout est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit. Exporter une trajectoire… écrit ses points en tableau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/tool.py"/>
+        <source>There is no toolpath with a cell to place; make one first.</source>
+        <translation>Il n&apos;y a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/inputs.py"/>
@@ -5325,6 +5510,11 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>Time of the whole job with lead times and waits between layers (s).</source>
         <translation>Temps de tout le travail avec avances, retards et attentes entre les couches (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>Time, s</source>
+        <translation>Temps, s</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/program.py"/>
@@ -5402,9 +5592,19 @@
         <translation>Vitesse d&apos;avance</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Tries where the part, its positioner or the deposition point can stand, and shows the robot&apos;s reach</source>
+        <translation>Essaie où la pièce, son positionneur ou le point de dépôt peut se trouver, et montre la portée du robot</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Trim</source>
         <translation>Écrêtage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>Try all poses beside the window; it can be cancelled</source>
+        <translation>Essayer toutes les poses à côté de la fenêtre ; cela peut être annulé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
@@ -5477,7 +5677,7 @@
         <translation>Prendre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
         <source>Use this</source>
         <translation>Utiliser</translation>
     </message>
@@ -5607,6 +5807,11 @@
         <translation>Ce qui est fait de la trajectoire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>What is moved: the deposition point (with the tool on the robot the fixed platform), the platform on the flange or the table, or the base of the positioner; auto: the one that places the part.</source>
+        <translation>Ce qui est déplacé : le point de dépôt (avec l&apos;outil sur le robot, le plateau fixe), le plateau sur la bride ou la table, ou la base du positionneur ; auto : ce qui place la pièce.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/program/preflight_list.py"/>
         <source>What is promised of this program, how it was checked and where it is worst; a click goes there</source>
         <translation>Ce qui est promis de ce programme, comment cela a été vérifié et où c’est le pire ; un clic y mène</translation>
@@ -5617,9 +5822,19 @@
         <translation>Ce sur quoi cela croît : cliquez dessus avec Ctrl dans l&apos;arbre ou la vue 3D</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>What makes a feasible pose the best one: the largest least margin, the shortest time, or the largest distance of the arm from everything.</source>
+        <translation>Ce qui fait d&apos;une pose réalisable la meilleure : la plus grande des plus petites marges, le temps le plus court, ou la plus grande distance du bras à tout le reste.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/form.py"/>
         <source>What the colours of the beads tell</source>
         <translation>Ce que disent les couleurs des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>What the colours of the places tell</source>
+        <translation>Ce que disent les couleurs des endroits</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
@@ -5810,6 +6025,21 @@
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Writes the figures and the deviation of every point into a folder</source>
         <translation>Écrit les chiffres et l&apos;écart de chaque point dans un dossier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>X</source>
+        <translation>X</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Y</source>
+        <translation>Y</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Z</source>
+        <translation>Z</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -6222,7 +6452,7 @@
         <translation>alignés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
         <source>all</source>
         <translation>toutes</translation>
     </message>
@@ -6707,6 +6937,11 @@
         <translation>bleu à jaune</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/form.py"/>
+        <source>blue {:.4g} … yellow {:.4g}; grey: not feasible</source>
+        <translation>bleu {:.4g} … jaune {:.4g} ; gris : pas réalisable</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>both</source>
         <translation>les deux</translation>
@@ -6805,6 +7040,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>choose a URDF file</source>
         <translation>choisissez un fichier URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>clearance</source>
+        <translation>distance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/pick_field.py"/>
@@ -6985,6 +7225,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>deposited</source>
         <translation>déposé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>deposition-point</source>
+        <translation>point de dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
@@ -8327,7 +8572,7 @@
         <translation>ses sommets n&apos;ont pas de x, y et z simples ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>its view was closed</source>
         <translation>sa vue a été fermée</translation>
     </message>
@@ -8957,6 +9202,11 @@
         <translation>aucun résultat ne correspond à ses entrées ({0}) ; recalculez-le d&apos;abord</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>no rotation about the tool serves the others</source>
+        <translation>aucune rotation autour de l&apos;outil ne dessert les autres</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>no section lies where it stands</source>
         <translation>aucune section là où il repose</translation>
@@ -9337,6 +9587,11 @@
         <translation>planification de toute la tâche à l&apos;une des meilleures poses, la {0}e</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>platform</source>
+        <translation>plateau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>point by point</source>
         <translation>point par point</translation>
@@ -9375,6 +9630,11 @@
         <location filename="../../freecad_am/core/placement/place.py"/>
         <source>pose {0} of {1}</source>
         <translation>pose {0} sur {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>positioner</source>
+        <translation>positionneur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_read.py"/>
@@ -13267,6 +13527,11 @@
         <translation>{} faces en {} nappes, {:.4g} cm² dans chacune des {} couches</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>{} has changed; compute again.</source>
+        <translation>{} a changé ; calculez de nouveau.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/tool.py"/>
         <source>{} has no joint path to map; make one first, or select another job.</source>
         <translation>{} n&apos;a pas de trajectoire articulaire pour une carte ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
@@ -13285,6 +13550,11 @@
         <location filename="../../freecad_am/gui/picking/picking.py"/>
         <source>{} has no shape; select a body, solid, face, link or sketch.</source>
         <translation>{} n&apos;a pas de forme ; sélectionnez un corps, un solide, une face, un lien ou une esquisse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/tool.py"/>
+        <source>{} has no toolpath with a cell to place; make one first, or select another job.</source>
+        <translation>{} n&apos;a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une, ou sélectionnez une autre tâche.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/inputs.py"/>
@@ -13390,6 +13660,11 @@
         <location filename="../../freecad_am/gui/spin_map/figures.py"/>
         <source>{} of them past a limit only because an axis runs out of turns along its bead</source>
         <translation>dont {} au-delà d&apos;une limite seulement parce qu&apos;un axe n&apos;a plus de tours le long de son cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>{} of {} poses are feasible, as far as {} of {} points tell.</source>
+        <translation>{} poses sur {} sont réalisables, d&apos;après {} points sur {}.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
@@ -13638,6 +13913,19 @@
         <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Shows a toolpath or joint path layer by layer and point by point</source>
         <translation>Montre une trajectoire d&apos;outil ou articulaire couche par couche et point par point</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Placement</name>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Placement…</source>
+        <translation>Placement…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
+        <source>Tries where the part, its positioner or the deposition point can stand, and shows the robot&apos;s reach</source>
+        <translation>Essaie où la pièce, son positionneur ou le point de dépôt peut se trouver, et montre la portée du robot</translation>
     </message>
 </context>
 <context>

@@ -31,6 +31,7 @@ from templates import Templates  # noqa: E402
 
 from freecad_am.core import issues  # noqa: E402
 from freecad_am.core.parameters import field  # noqa: E402
+from freecad_am.core.parameters.place import PlaceParameters  # noqa: E402
 from freecad_am.objects import preferences, properties, staleness  # noqa: E402
 from freecad_am.objects.cell import Cell  # noqa: E402
 from freecad_am.objects.developable_feature import DevelopableFeature  # noqa: E402
@@ -71,6 +72,8 @@ class Collected:
             self._of_properties(module, place)
         for stage in STAGES:
             self._of_stage(stage)
+        for row in rows(PlaceParameters):  # fields of a dock, of no stage
+            self._of_words(row, "freecad_am/core/parameters/place.py")
         for word in (*staleness.STATUSES, issues.ERROR, issues.WARNING, issues.NOTE):
             self.messages.setdefault(word, "freecad_am/objects/staleness.py")
         for text in ("layer {0}", "layer {0} bead {1}", "layer {0} bead {1} point {2}"):
@@ -121,15 +124,18 @@ class Collected:
                 self._of_row(row, f"{section.cls.__module__.replace('.', '/')}.py")
 
     def _of_row(self, row: Row, place: str) -> None:
+        self._of_words(row, place)
+        either = ["App::PropertyFloat", "App::PropertyTime"]  # by FreeCAD's version
+        for form in either if row.form == field.TIME else [properties.property_type(row, None)]:
+            self.properties.setdefault(properties.tooltip(row, form), place)
+
+    def _of_words(self, row: Row, place: str) -> None:
         nested = [group_of(row)] if len(row.path) > 1 else []
         for text in (row.label, row.spec.help, *row.spec.choices, *nested):
             self.messages.setdefault(text.replace("{", "{{").replace("}", "}}"), place)
         if field.range_text(row.spec):
             numbers = count()
             self.messages.setdefault(FIGURE.sub(lambda _: f"{{{next(numbers)}}}", field.range_text(row.spec)), place)
-        either = ["App::PropertyFloat", "App::PropertyTime"]  # by FreeCAD's version
-        for form in either if row.form == field.TIME else [properties.property_type(row, None)]:
-            self.properties.setdefault(properties.tooltip(row, form), place)
 
     def texts(self) -> ts_file.Texts:
         """All of them by context, in a settled order."""

@@ -70,7 +70,8 @@ def test_the_best_pose_is_entered_and_planned(person, hand, no_remedies, path):
     hand.click(person.field(panel, "use"))
     person.until(lambda: path.Status == "up to date", "the plan", LONG)
     assert tuple(api.result(path.Cell).deposition_point) == pytest.approx(found.pose(found.best))
-    assert any("am.change(" in line and "deposition_point" in line for line in person.console())
+    recorded = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
+    assert "am.change(App.ActiveDocument.getObject('Cell'), deposition_point=(" in recorded
     path.Document.undo()
     assert api.result(path.Cell).deposition_point == pytest.approx(HIGH)
     panel.close()

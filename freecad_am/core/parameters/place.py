@@ -31,12 +31,19 @@ class PlaceParameters:
     x: float = f.parameter(200.0, f.LENGTH, "How far its x is changed to either side.", low=0.0, high=20_000.0)
     y: float = f.parameter(200.0, f.LENGTH, "How far its y is changed to either side.", low=0.0, high=20_000.0)
     z: float = f.parameter(200.0, f.LENGTH, "How far its z is changed to either side.", low=0.0, high=20_000.0)
-    rx: float = f.parameter(0.0, f.ANGLE, "How far its RX is changed to either side.", low=0.0, high=math.pi)
-    ry: float = f.parameter(0.0, f.ANGLE, "How far its RY is changed to either side.", low=0.0, high=math.pi)
-    rz: float = f.parameter(0.0, f.ANGLE, "How far its RZ is changed to either side.", low=0.0, high=math.pi)
+    rx: float = f.parameter(
+        0.0, f.ANGLE, "How far its RX is changed to either side.", low=0.0, high=math.pi, advanced=True
+    )
+    ry: float = f.parameter(
+        0.0, f.ANGLE, "How far its RY is changed to either side.", low=0.0, high=math.pi, advanced=True
+    )
+    rz: float = f.parameter(
+        0.0, f.ANGLE, "How far its RZ is changed to either side.", low=0.0, high=math.pi, advanced=True
+    )
     step: float = f.parameter(100.0, f.LENGTH, "Between two values of x, y or z.", low=0.0, open_low=True)
     angle_step: float = f.parameter(
-        math.radians(45.0), f.ANGLE, "Between two values of RX, RY or RZ.", low=0.0, high=math.pi, open_low=True
+        math.radians(45.0), f.ANGLE, "Between two values of RX, RY or RZ.", low=0.0, high=math.pi, open_low=True,
+        advanced=True,
     )
     points: int = f.parameter(
         300, f.COUNT, "Points of the toolpath that each pose is judged by, about.", low=20, high=100_000, advanced=True

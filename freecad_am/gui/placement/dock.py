@@ -8,7 +8,7 @@ from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
-from PySide import QtGui
+from PySide import QtCore, QtGui
 
 from ...core.issues import AmError
 from ...core.kinematics import cell as cells
@@ -31,6 +31,7 @@ from .work import Work
 NAME = "RoboticAM_Placement"
 WIDE = 380  # pixels, at least
 REACH_STEP = 150.0  # mm
+FIT = 150  # ms
 
 
 class PlacementDock:
@@ -55,7 +56,8 @@ class PlacementDock:
         self.dock.closed = self.close
         self._stand()
         self.dock.come()
-        self.lookout = Lookout(lambda: _Shown(self.placing), self._changed_object, lambda why, _: self.end(why))
+        QtCore.QTimer.singleShot(FIT, self._fit)  # once the dock has its place and the view the rest
+        self.lookout = Lookout(lambda: _Shown(self.placing), self._changed_object, self.end)
         watch.listen(self._paint)
         watch.listen_to_language(self._speak)
 
@@ -113,6 +115,7 @@ class PlacementDock:
             self.found = found
             self.numbers = figures.rows(found, str(self.form.fields["best"].value))
         self._show()
+        self._fit()
         self._name_buttons()
 
     def _reach(self) -> None:
@@ -136,6 +139,7 @@ class PlacementDock:
         if found is not None:
             self.form.tell(tr("The robot can be at {} places of a grid of {:.0f} mm.").format(len(found.places), found.step))
         self._paint()
+        self._fit()
 
     # ---- what is shown
 
@@ -152,6 +156,11 @@ class PlacementDock:
         """The number of the pose that is chosen in the table."""
         row = self.form.table.currentRow()
         return self.numbers[row] if 0 <= row < len(self.numbers) else None
+
+    def _fit(self) -> None:
+        if self.scene is not None:
+            with contextlib.suppress(RuntimeError, ReferenceError):  # the view was closed
+                self.scene.fit()
 
     def _stand(self) -> None:
         """Draw the machine as the cell stands now."""
@@ -201,7 +210,7 @@ class PlacementDock:
         self._show()
         self.form.tell(tr("{} has changed; compute again.").format(obj.Label), True)
 
-    def close(self) -> None:
+    def close(self, document_goes: bool = False) -> None:
         """End it, and leave the view as it was."""
         if self.gone:
             return
@@ -213,15 +222,15 @@ class PlacementDock:
         self.reaching.cancel()
         scene, self.scene = self.scene, None
         if scene is not None:
-            scene.remove()
+            scene.remove(document_goes)
         self.dock.empty()
         if self in _open:
             _open.remove(self)
 
-    def end(self, why: str) -> None:
+    def end(self, why: str, document_goes: bool = False) -> None:
         """End it by itself, and say why."""
         if not self.gone:
-            self.close()
+            self.close(document_goes)
             Gui.getMainWindow().statusBar().showMessage(tr("The placement was closed: {}").format(why), 8000)
 
 

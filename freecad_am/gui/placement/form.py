@@ -37,9 +37,7 @@ class Form(QtGui.QWidget):
         column.addWidget(more.widget)
         self.compute = _button("compute", tr("Compute"), tr("Try all poses beside the window; it can be cancelled"))
         self.use = _button("use", tr("Use this"), tr("Enter the pose that is chosen in the table into the cell"))
-        self.reach = QtGui.QCheckBox(tr("Reach of the robot"))
-        self.reach.setObjectName("reach")
-        self.reach.setToolTip(tr("Show where the robot can hold what it carries: blue in few directions, yellow in all of them"))
+        self.reach = _reach()
         self.colour = QtGui.QComboBox()
         self.colour.setObjectName("colour")
         self.colour.setToolTip(tr("What the colours of the places tell"))
@@ -50,19 +48,12 @@ class Form(QtGui.QWidget):
         self.told.setObjectName("told")
         for label in (self.key, self.told):
             label.setWordWrap(True)
-        self.table = QtGui.QTableWidget(0, len(figures.heads()))
-        self.table.setObjectName("poses")
-        self.table.setHorizontalHeaderLabels(figures.heads())
-        self.table.verticalHeader().hide()
-        self.table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
-        self.table.setSelectionBehavior(QtGui.QAbstractItemView.SelectRows)
-        self.table.setSelectionMode(QtGui.QAbstractItemView.SingleSelection)
-        self.table.setMinimumHeight(HIGH)
+        self.table = _table()
         buttons = QtGui.QHBoxLayout()
         buttons.addWidget(self.compute)
         buttons.addWidget(self.use)
         column.addLayout(buttons)
-        for widget in (self.told, self.colour, self.key, self.table, self.reach):
+        for widget in (self.reach, self.told, self.colour, self.key, self.table):
             column.addWidget(widget)
         column.addStretch(1)
 
@@ -101,3 +92,25 @@ def _button(name: str, text: str, help: str) -> Any:
     button.setObjectName(name)
     button.setToolTip(help)
     return button
+
+
+def _reach() -> Any:
+    box = QtGui.QCheckBox(tr("Reach of the robot"))
+    box.setObjectName("reach")
+    box.setSizePolicy(QtGui.QSizePolicy.Fixed, QtGui.QSizePolicy.Fixed)  # Qt takes clicks on its text alone
+    box.setToolTip(
+        tr("Show where the robot can hold what it carries: blue in few directions, yellow in all of them")
+    )
+    return box
+
+
+def _table() -> Any:
+    table = QtGui.QTableWidget(0, len(figures.heads()))
+    table.setObjectName("poses")
+    table.setHorizontalHeaderLabels(figures.heads())
+    table.verticalHeader().hide()
+    table.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
+    table.setSelectionBehavior(QtGui.QAbstractItemView.SelectRows)
+    table.setSelectionMode(QtGui.QAbstractItemView.SingleSelection)
+    table.setMinimumHeight(HIGH)
+    return table

@@ -38,7 +38,9 @@ class Scene:
         self.root = coin.SoSeparator()
         for node in (self.machine.switch, self.cubes.node, self.cloud.node):
             self.root.addChild(node)
-        view.getSceneGraph().addChild(self.root)
+        self.camera, self.camera_text = view.getCameraNode().copy(), view.getCamera()
+        self.graph = view.getSceneGraph()
+        self.graph.addChild(self.root)
 
     def stand(self, settings: CellParameters, toolpath: Toolpath) -> None:
         """Draw the machine of a cell about the part; places are seen from it."""
@@ -81,10 +83,23 @@ class Scene:
         places = found.places @ self.to_view[:3, :3].T + self.to_view[:3, 3]
         self.cloud.set(places, ramp(found.share))
 
-    def remove(self) -> None:
-        """Leave the view as it was; it may be gone."""
+    def fit(self) -> None:
+        """Bring all of it into sight."""
+        self.view.fitAll()
+
+    def remove(self, document_goes: bool = False) -> None:
+        """Leave the view as it was, camera included; it may be gone, as in a document that goes."""
         with contextlib.suppress(RuntimeError, ReferenceError):
-            self.view.getSceneGraph().removeChild(self.root)
+            if self.graph.findChild(self.root) >= 0:
+                self.graph.removeChild(self.root)
+        if document_goes:
+            return
+        with contextlib.suppress(RuntimeError, ReferenceError):
+            camera = self.view.getCameraNode()
+            if camera.getTypeId() == self.camera.getTypeId():
+                camera.copyFieldValues(self.camera)
+            else:  # from perspective to orthographic meanwhile, or the other way
+                self.view.setCamera(self.camera_text)
 
 
 def _size(places: Array) -> float:

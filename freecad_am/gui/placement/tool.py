@@ -24,7 +24,8 @@ def placement() -> None:
     if not selected and job_named():
         _say(tr("{} has no toolpath with a cell to place; make one first, or select another job.").format(job_named()))
         return
-    made = [obj for kind in reversed(KINDS) for obj in App.ActiveDocument.Objects if _path(obj) is obj and _kind(obj) == kind]
+    paths = [obj for obj in App.ActiveDocument.Objects if _path(obj) is obj]
+    made = sorted(paths, key=lambda obj: -KINDS.index(_kind(obj)))
     if not selected and not made:
         _say(tr("There is no toolpath with a cell to place; make one first."))
         return

@@ -53,7 +53,8 @@ def _next_tools(kind: str) -> list[tuple[str, str]]:
     return {
         "feature": [("Toolpath", tr("Cut into layers…")), ("Inspect", tr("Compare with measured points…"))],
         "toolpath": [
-            ("JointPath", tr("Plan joint path…")), ("Placement", tr("Placement…")), ("Plots", tr("Plots…")), ("Inspect", tr("Compare with measured points…")),
+            ("JointPath", tr("Plan joint path…")), ("Placement", tr("Placement…")), ("Plots", tr("Plots…")),
+            ("Inspect", tr("Compare with measured points…")),
             ("ExportPath", tr("Export path…")),
         ],
         "joint path": [
