@@ -82,11 +82,12 @@ def _share(cell: Cell, rows: LimitRows, places: Array, hold: Array) -> Array:
     poses[..., :3, 3] += places[:, None, None]
     own, count = cell.robot.chain.axes, cell.machine.chain.axes
     served = np.zeros(poses.shape[:3], dtype=bool)
+    with np.errstate(invalid="ignore"):  # axes without end
+        middle = 0.5 * (cell.limits.lower + cell.limits.upper)[:own]
     for branch in range(8) if cell.branch is None else (cell.branch,):
         left = np.nonzero(~served.any(axis=2))
         joints = arm.inverse_branch(poses[left].reshape(-1, 4, 4), branch)
         joints = np.pad(joints, ((0, 0), (0, count - own)))  # axes beside it stand at zero
-        middle = 0.5 * (cell.limits.lower + cell.limits.upper)[:own]
         turns = np.where(np.isfinite(middle), np.round((np.nan_to_num(middle) - joints[:, :own]) / TURN), 0.0)
         joints[:, :own] += TURN * turns
         served[left] = (rows.margin(joints) >= 0.0).reshape(-1, TURNS)
