@@ -27,12 +27,15 @@ FEWER = 3
 BRACKET = Path(__file__).resolve().parent.parent / "resources" / "examples" / "bracket.step"
 # of the bracket; mm; times its bare parallel curves, most of it for the middles that these leave open
 SECTIONS, SPACING, SEVERAL = 100, 4.0, 80.0
+# a plate with holes, mm; lines in it, times its bare border and lines cut off there, which leave 428 gaps beside the holes:
+# closing them is most of it
+PLATE, HOLES, LINES = (400.0, 300.0), 20, 1300.0
 BLOCK, STEPS, FIELD = (100.0, 80.0, 25.0), (1.0, 0.5848), 5.0  # mm; 200,000 and a million nodes; s
 
 
 def run() -> list[Row]:
     """Offsets, and fields, the latter against the time asked for and against themselves."""
-    return [*_offsets(), _filled(), *_fields()]
+    return [*_offsets(), _filled(), _lines(), *_fields()]
 
 
 def _offsets() -> list[Row]:
@@ -82,6 +85,30 @@ def _filled() -> Row:
     bare = process_time() - start
     name = f"{SECTIONS} sections of a bracket filled with contours, against their bare parallel curves"
     return Row(name, ours, bare, "s", 1.0 / SEVERAL)
+
+
+def _lines() -> Row:
+    """Lines within a contour, against the library's own border, one bead in, and parallel lines cut off there."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 120, endpoint=False)
+    circle = 12.0 * np.stack([np.cos(angle), -np.sin(angle)], axis=1)
+    places = [(50.0 + 75.0 * (k % 5), 40.0 + 73.0 * (k // 5)) for k in range(HOLES)]
+    loops = [np.array([(0.0, 0.0), (PLATE[0], 0.0), PLATE, (0.0, PLATE[1])]), *(circle + place for place in places)]
+    region, = regions(loops)
+    beads = Beads(SPACING, 0.2 * SPACING, 2.0, chord_error=CHORD_ERROR)
+    library = shapely()
+    ours, bare = [], []
+    for _ in range(FEWER):
+        start = process_time()
+        assert sum(curve.kind == "line" for curve in fill(region, beads, "lines")) > PLATE[1] / SPACING - 5.0
+        ours.append(process_time() - start)
+        start = process_time()
+        inner = library.geometry.Polygon(loops[0], loops[1:]).buffer(-1.5 * SPACING, **{library.arcs: 8})
+        rows = np.arange(2.0 * SPACING, PLATE[1] - 1.5 * SPACING, SPACING)
+        cut = library.geometry.MultiLineString([((0.0, y), (PLATE[0], y)) for y in rows]).intersection(inner)
+        assert not cut.is_empty
+        bare.append(process_time() - start)
+    name = f"lines in a section of {PLATE[0]:g} by {PLATE[1]:g} mm with {HOLES} holes, against its bare border and lines"
+    return Row(name, median(ours), median(bare), "s", 1.0 / LINES)
 
 
 def _fields() -> list[Row]:

@@ -238,6 +238,57 @@ def test_islands_are_finished_one_after_the_other():
         assert rings == sorted(rings, reverse=True)
 
 
+def test_connected_contours_have_one_start_per_island_and_layer():
+    """Islands counted by hand: a post, a frame round a window, and a block that ends lower; each all in one bead."""
+    post, block = box((0, 0, 0), (26, 30, 24), "post"), box((110, 0, 0), (150, 40, 12), "block")
+    frame = tube([(14.0, 0.0), (32.0, 0.0), (32.0, 24.0), (14.0, 24.0)], 60)
+    frame = Body("frame", frame.vertices + [70.0, 15.0, 0.0], frame.triangles)
+    made = planned(post, frame, block, fill="connected", bead_spacing=4.0)
+    assert len(made.layers) == 6
+    for number, layer in enumerate(made.layers):
+        starts = np.array([bead.points[0] for bead in layer.beads])
+        assert sorted(np.searchsorted([40.0, 105.0], starts[:, 0]).tolist()) == ([0, 1, 2] if number < 3 else [0, 1])
+        assert all(np.allclose(bead.points[0], bead.points[-1]) for bead in layer.beads)
+    for bead in made.layers[0].beads:  # the whole island is in it: no place farther from it than beads beside each other
+        mine = [(0.0, 0.0, 26.0, 30.0), (38.0, -17.0, 102.0, 47.0), (110.0, 0.0, 150.0, 40.0)]
+        x0, y0, x1, y1 = mine[int(np.searchsorted([40.0, 105.0], bead.points[0, 0]))]
+        places = np.stack(np.meshgrid(np.arange(x0 + 0.5, x1, 0.5), np.arange(y0 + 0.5, y1, 0.5)), axis=-1).reshape(-1, 2)
+        if x0 == 38.0:
+            radius = np.hypot(*(places - [70.0, 15.0]).T)
+            places = places[(radius > 14.0) & (radius < 32.0)]
+        away = cKDTree(dense(bead, 0.1)[:, :2]).query(places)[0]
+        assert (away <= 2.05).mean() > 0.97 and away.max() < 4.0
+
+
+def _share(bead):
+    """Where on its way round a rectangle a contour starts, counted from its lower left corner."""
+    flat = bead.points[:, :2]
+    way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(flat, axis=0).T))]
+    return float(-way[np.argmin(flat.sum(axis=1))] / way[-1] % 1.0)
+
+
+def test_starts_that_are_spread_keep_away_from_neighbours_and_from_the_layers_below():
+    made = planned(box((0, 0, 0), (60, 44, 40)), fill="contours", starts="spread")
+    rings = [[bead for bead in layer.beads if np.allclose(bead.points[0], bead.points[-1])] for layer in made.layers]
+    shares = np.array([[_share(bead) for bead in layer] for layer in rings])
+    assert shares.shape == (10, 5)
+    for axis, away in ((0, 1), (0, 2), (0, 3), (1, 1)):  # up to three layers below, and the contour beside
+        apart = np.abs(np.roll(shares, -away, axis=axis) - shares).take(range(shares.shape[axis] - away), axis=axis)
+        assert np.minimum(apart, 1.0 - apart).min() > 0.13
+    aligned = planned(box((0, 0, 0), (60, 44, 40)), fill="contours")
+    assert len({tuple(np.round(layer.beads[-1].points[0][:2], 6)) for layer in aligned.layers}) == 1
+
+
+def test_lines_of_every_second_layer_start_at_their_other_end():
+    made = planned(box((0, 0, 0), (60, 44, 16)), fill="lines", starts="spread", fill_angle_step=0.0)
+    lines = [[bead.points[:, :2] for bead in layer.beads if len(bead.points) == 2] for layer in made.layers]
+    ends = [np.round(layer, 6) for layer in lines]
+    assert len(ends) == 4 and len(ends[0]) > 8
+    for below, above in zip(ends, ends[1:]):
+        turned = {(*line[0], *line[1]) for line in above}
+        assert {(*line[1], *line[0]) for line in below} == turned
+
+
 def test_no_layer_takes_less_than_asked_for_and_islands_cool_alike():
     """Rods of unequal height, so that upper layers are shorter; times along the beads and straight between them."""
     process = ProcessParameters()

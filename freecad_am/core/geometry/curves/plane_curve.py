@@ -46,6 +46,8 @@ def winding(rings: Sequence[Array], points: Array) -> NDArray[np.intp]:
     for ring in rings:
         low, high = ring.min(axis=0), ring.max(axis=0)
         near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+        if not len(near):  # most holes of a region, of a few places
+            continue
         near = near[np.argsort(points[near, 1], kind="stable")]
         following = np.roll(ring, -1, axis=0)
         # the points that an edge is beside are neighbours in the order of y
@@ -82,6 +84,22 @@ def nearest(curve: Array, points: Array, closed: bool) -> Nearest:
     part = np.concatenate(shares) if shares else np.zeros(0)
     place = start[edge] + part[:, None] * way[edge]
     return Nearest(place, edge, part, np.hypot(*(points - place).T))
+
+
+def nearest_of(rings: Sequence[Array], boxes: tuple[Array, Array], points: Array) -> tuple[Array, Array]:
+    """The places (n, 2) on rings nearest to points (n, 2), and how far they are (n,), mm. boxes: lowest and highest
+    coordinates (r, 2) of each ring."""
+    low, high = boxes
+    beyond = np.maximum(np.maximum(low - points[:, None], points[:, None] - high), 0.0)
+    least = np.hypot(beyond[..., 0], beyond[..., 1])
+    one = int(least.sum(axis=0).argmin())
+    first = nearest(rings[one], points, closed=True).distance
+    near = (least <= first[:, None] * (1.0 + 1e-9)).any(axis=0)  # no place of others is nearer than their box
+    near[one] = True
+    found = [nearest(ring, points, closed=True) for ring, is_near in zip(rings, near.tolist()) if is_near]
+    away = np.stack([one.distance for one in found])
+    best, row = np.argmin(away, axis=0), np.arange(len(points))
+    return np.stack([one.points for one in found])[best, row], away[best, row]
 
 
 def dense(ring: Array, step: float) -> Array:

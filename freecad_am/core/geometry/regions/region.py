@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...issues import NOTE, InputError, Issue
-from ..curves.plane_curve import Array, doubled_area, nearest, winding
+from ..curves.plane_curve import Array, doubled_area, nearest_of, winding
 from ..curves.polyline import turn_segments
 
 Mask = NDArray[np.bool_]
@@ -83,16 +83,16 @@ class Region:
 
     def contains(self, points: Array) -> Mask:
         """Whether points (..., 2) lie inside; on the border either may be said."""
-        flat = np.reshape(points, (-1, 2))
-        return np.reshape(winding(self._rings, flat) > 0, np.shape(points)[:-1])
+        return np.reshape(winding(self._rings, np.reshape(points, (-1, 2))) > 0, np.shape(points)[:-1])
+
+    @cached_property
+    def _boxes(self) -> tuple[Array, Array]:
+        """Lowest and highest coordinates (n, 2) of the borders."""
+        return np.array([ring.min(axis=0) for ring in self._rings]), np.array([ring.max(axis=0) for ring in self._rings])
 
     def nearest(self, points: Array) -> tuple[Array, Array]:
         """The places (n, 2) on the border nearest to points (n, 2), and how far they are (n,), mm."""
-        found = [nearest(ring, points, closed=True) for ring in self._rings]
-        away = np.stack([one.distance for one in found])
-        best = np.argmin(away, axis=0)
-        row = np.arange(len(points))
-        return np.stack([one.points for one in found])[best, row], away[best, row]
+        return nearest_of(self._rings, self._boxes, points)
 
     @cached_property
     def width(self) -> float:
