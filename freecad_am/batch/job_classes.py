@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 from freecad_am.core.issues import InputError
@@ -23,9 +24,26 @@ def told(section: dict[str, Any]) -> dict[str, Any]:
         )
     fields.known_keys(given, bead_classes.CLASSES, bead_classes.WHERE)
     found = {
-        name: fields.build(bead_classes.BeadClass, {} if own is None else own, f"{bead_classes.WHERE}.{name}")
+        name: fields.build(bead_classes.BeadClass, _flat({} if own is None else own, name), f"{bead_classes.WHERE}.{name}")
         for name, own in given.items()
     }
     for name, one in found.items():
         bead_classes.made(name, one.told())
     return {**section, "classes": bead_classes.text_of(found)}
+
+
+def _flat(own: Any, name: str) -> Any:
+    """What a class says, with `start: {length: ...}` as start_length and so on."""
+    if not isinstance(own, dict):
+        return own
+    flat: dict[str, Any] = {}
+    for key, value in own.items():
+        if key in (bead_classes.START, bead_classes.END):
+            where = f"{bead_classes.WHERE}.{name}.{key}"
+            known = [one.name for one in dataclasses.fields(bead_classes.PhaseParameters)]
+            section = fields.mapping(value, where)
+            fields.known_keys(section, known, where)
+            flat |= {f"{key}_{inner}": entry for inner, entry in section.items()}
+        else:
+            flat[key] = value
+    return flat

@@ -23,6 +23,7 @@ Roles = NDArray[np.int64]
 # what the move that ends at a row is for: with deposit; away from the bead before; over to the next; onto its start
 DEPOSIT, RETRACT, TRAVEL, APPROACH = range(4)
 UNKNOWN = -1  # class of a bead
+MIDDLE, AT_START, AT_END = PHASES = range(3)  # of the segment of a bead that ends at a row
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class Motion:
     before there was one, it is that of one retract and one approach row between beads, and of none where there are too few.
     bead_class: (n,) place in `parameters.bead_classes.CLASSES` of the class of the bead that the row is of, or leads to;
     UNKNOWN where left out.
+    phase: (n,) of PHASES.
     """
 
     deposit: NDArray[np.bool_]
@@ -53,11 +55,14 @@ class Motion:
     wire: Array = None  # type: ignore[assignment]
     role: Roles = None  # type: ignore[assignment]
     bead_class: Roles = None  # type: ignore[assignment]
+    phase: Roles = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         n = len(self.deposit)
         if self.bead_class is None:
             object.__setattr__(self, "bead_class", np.full(n, UNKNOWN))
+        if self.phase is None:
+            object.__setattr__(self, "phase", np.full(n, MIDDLE))
         if self.role is None:
             object.__setattr__(self, "role", _roles(self.deposit))
         if self.wire is None:

@@ -97,9 +97,10 @@ class DepositOff:
 
 @dataclass(frozen=True)
 class Schedule:
-    """Set the number of a schedule on the output `Program.schedule_output`."""
+    """Set the number of a schedule on the output `Program.schedule_output`; inside: within a bead, without a stop."""
 
     number: int
+    inside: bool = False
 
 
 @dataclass(frozen=True)

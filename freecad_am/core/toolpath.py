@@ -53,6 +53,7 @@ class Bead:
     'centre' (in the middle of contours or thin regions), 'closing' (where other beads left a gap); '' where a strategy has
     no fillings. ring: how many contours are outside of it. returns: it is the first one of a layer on a solid that has one
     already. external: (n, k) rad of axes beside a robot, once planned. bead_class: of `bead_classes.CLASSES`, or ''.
+    ends: mm of its start and its end that differ, mm/s there, 0: as elsewhere. phase: (n,) PHASES of segments, once planned.
     """
 
     points: Array
@@ -71,6 +72,8 @@ class Bead:
     returns: bool = False
     external: Array | None = None
     bead_class: str = ""
+    ends: tuple[float, ...] = ()
+    phase: Array | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -78,9 +81,7 @@ class Bead:
             raise ValueError("a bead has at least two points")
         for name in ("points", "build", "tool"):
             object.__setattr__(self, name, _frozen(getattr(self, name), (n, 3), name))
-        for name in ("parameter", "speed"):
-            object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
-        for name in PREDICTED:
+        for name in ("parameter", "speed", *PREDICTED, "phase"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
         if self.tangents is not None:

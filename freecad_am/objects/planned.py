@@ -87,7 +87,7 @@ def layers_of(of: Given) -> CoreToolpath:
         raise InputError(
             "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of solids alone; use none"
         )
-    made = _PLANNERS[family.kind].layers(of)
+    made = classes.with_ends(_PLANNERS[family.kind].layers(of), process)
     twice = made.twice if family.filled else laid_twice(made)
     return dataclasses.replace(made, max_from_vertical=of.build.max_from_vertical, twice=twice)
 

@@ -116,7 +116,7 @@ def _refuse(program: Program) -> None:
     common.refuse_words(program, _TAKEN)
     common.refuse_wire_output(program, LAST_PIN)
     refuse_cooling(program, LAST_PIN)
-    refuse_schedules(program, LAST_PIN, LAST_SCHEDULE)
+    refuse_schedules(program, LAST_PIN, LAST_SCHEDULE, inside=True)
     scheduled, fed = (any(isinstance(block, Schedule) for block in program.blocks),
                       any(run.wire is not None for run in program.moves))
     if scheduled and fed and program.schedule_output == program.nc.wire_output:
@@ -212,8 +212,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, DepositOff):
         leave = [EXACT_STOP, *(_axes_again(program) if cartesian else [])]
         return [*(["G4 P0"] if program.dry_run else [*_dwell(block.lead), _output(program, False)]), *leave]
-    if isinstance(block, Schedule):  # at rest: at once
-        return [f"M68 E{program.schedule_output - 1} Q{block.number}"]
+    if isinstance(block, Schedule):  # at rest: at once; within a bead queued, where the next move begins
+        return [f"M6{7 if block.inside else 8} E{program.schedule_output - 1} Q{block.number}"]
     if isinstance(block, LayerStart):
         return [_remark(f"layer {block.layer}")]
     if isinstance(block, Wait):

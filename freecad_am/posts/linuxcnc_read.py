@@ -28,7 +28,7 @@ _DWELL = re.compile(rf"G4 P({_NUMBER})$")
 _ZERO = re.compile(r"G10 L2 P9( [XYZABCR]0)+$")
 _OUTPUT = re.compile(r"M(6[2-5]) P(\d+)$|M(\d+)$")
 _WIRE = re.compile(rf"M6([78]) E(\d+) Q({_NUMBER})$")
-_SCHEDULE = re.compile(r"M68 E(\d+) Q(\d+)$")
+_SCHEDULE = re.compile(r"M6([78]) E(\d+) Q(\d+)$")
 _OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 _FEEDS, _UNITS = {"G93", "G94"}, {"G21", "G90"}
 _PLAIN = {"G17", "G40", "G49", "G80"}
@@ -41,6 +41,7 @@ class _State:
 
     files: dict[str, list[tuple[str, str]]]
     track: Track = field(default_factory=Track)
+    schedules: set[str] = field(default_factory=set)
     units: set[str] = field(default_factory=set)
     feed: str = "G94"
     linear: bool = False
@@ -109,9 +110,8 @@ def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tup
             _call(where, sub[1], state, (*callers, name))
         elif _ZERO.match(text):
             state.zeroed = {word[0] for word in text.split()[3:]}
-        elif state.track.exact and (told := _SCHEDULE.match(text)):  # the wire is told where corners are rounded already
-            state.track.rests()
-            state.track.happens("schedule", float(told[1]) + 1.0, float(told[2]))
+        elif (told := _SCHEDULE.match(text)) and _tells_schedule(told, state):
+            state.track.happens("schedule", float(told[2]) + 1.0, float(told[3]))
         elif wire := _WIRE.match(text):
             if wire[1] == "8" and state.track.on:
                 raise unreadable(where, "the analogue output stops the machine within a bead")
@@ -126,6 +126,16 @@ def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tup
             _switch(where, text, output, state)
         elif not _HARMLESS.match(text):
             _line(where, text, state)
+
+
+def _tells_schedule(told: re.Match[str], state: _State) -> bool:
+    """Whether an analogue output is that of schedules: it is set at rest before corners are rounded, as the wire's is not;
+    within beads it is known by then."""
+    if told[1] == "8" and state.track.exact:
+        state.schedules.add(told[2])
+        state.track.rests()
+        return True
+    return told[1] == "7" and state.track.on and told[2] in state.schedules
 
 
 def _settled(text: str, state: _State) -> bool:

@@ -45,9 +45,16 @@ def refuse_cooling(program: Program, last: int, why: str = "") -> None:
         )
 
 
-def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 0) -> None:
+def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 0, inside: bool = False) -> None:
     """Raises InputError SCHEDULE for a schedule beyond `most`, or beyond `most_of_arc` where arc instructions name it, or
-    one set on an output that is none of 1 to `last`."""
+    one set on an output that is none of 1 to `last`. inside: another one can be
+    told within a bead."""
+    if not inside and any(isinstance(block, Schedule) and block.inside for block in program.blocks):
+        raise InputError(
+            "SCHEDULE", "process.start.schedule",
+            "beads change their schedule, and this controller sets outputs between moves ahead of the motion, so far as"
+            " is known; give start and end other speeds alone, or use another controller",
+        )
     told = [block.number for block in program.blocks if isinstance(block, Schedule)]
     if told and not 1 <= program.schedule_output <= last:
         raise InputError(

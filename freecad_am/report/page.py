@@ -18,7 +18,7 @@ from . import hub_figures, places, scan_figures, view, wall_figures
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
 from .style import STYLE
-from .tables import axis_names, clock, figure_text, grid_of, in_units, pairs_of, table_of
+from .tables import axis_names, classes_of, clock, figure_text, grid_of, in_units, pairs_of, table_of
 from .turned import columns, element
 
 _WHOLE = (
@@ -149,21 +149,7 @@ def _joint_table(content: Content) -> str:
 def _process(content: Content, pictures: Pictures) -> str:
     plots = pictures.process(content.features)
     shown = f"<h2>Layers and path</h2>{grid_of(plots)}" if plots else ""
-    return shown + _classes(content.report["classes"])
-
-
-def _classes(rows: list[dict[str, Any]]) -> str:
-    """What there is of each class of beads."""
-    if not rows:
-        return ""
-    told = [("", ["beads", "length, mm", "deposit", "travel speed, mm/s", "schedule"])]
-    for row in rows:
-        low, high = (figure_text(row["travel_speed_mm_s"][end]) for end in ("min", "max"))
-        speed = low if low == high else f"{low} to {high}"
-        length = f"{row['length_mm']:,.0f}"
-        numbers = [str(row["beads"]), length, clock(row["deposit_s"]), speed, figure_text(row["schedule"])]
-        told.append((row["class"].replace("_", " "), numbers))
-    return f"<h2>Classes of beads</h2>{table_of(told)}"
+    return shown + classes_of(content.report["classes"])
 
 
 def _on_hub(content: Content, pictures: Pictures) -> str:

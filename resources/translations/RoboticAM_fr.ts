@@ -349,6 +349,11 @@
         <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How much of the bead it is.</source>
+        <translation>Quelle longueur du cordon c&apos;est.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How narrow and how wide beads may be, of their usual width and spacing, so that contours come out even over the thickness of a region, and beads in thin places are as wide as these. (%)</source>
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces. (%)</translation>
@@ -700,6 +705,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Schedule that is told there, without a stop.</source>
+        <translation>Programme de soudage qui y est transmis, sans arrêt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, csw, or the path of a calibration table.</source>
         <translation>Règle la vitesse d&apos;avance des solides sur cylindres et cônes de sorte que la largeur de cordon soit tenue : none, csw, ou le chemin d&apos;un tableau d&apos;étalonnage.</translation>
     </message>
@@ -797,6 +807,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Speed of the torch along the deposit while depositing.</source>
         <translation>Vitesse de la torche le long du dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed of the torch there. (mm/s)</source>
+        <translation>Vitesse de la torche à cet endroit. (mm/s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2817,6 +2832,11 @@
         <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How much of the bead it is.</source>
+        <translation>Quelle longueur du cordon c&apos;est.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How narrow and how wide beads may be, of their usual width and spacing, so that contours come out even over the thickness of a region, and beads in thin places are as wide as these.</source>
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
@@ -4418,6 +4438,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Schedule that is told there, without a stop.</source>
+        <translation>Programme de soudage qui y est transmis, sans arrêt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Seam</source>
         <translation>Couture</translation>
     </message>
@@ -4728,6 +4753,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed of the torch there.</source>
+        <translation>Vitesse de la torche à cet endroit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so that beads keep their section.</source>
         <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
     </message>
@@ -4785,6 +4815,11 @@
         <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>Stands on</source>
         <translation>Repose sur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Start</source>
+        <translation>Début</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/form.py"/>
@@ -6597,6 +6632,11 @@
         <translation>un autre programme de soudage que prévu est transmis</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/program_beads.py"/>
+        <source>another schedule within a bead is told by an output alone: calls stop the machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and end out</source>
+        <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/placement/moved.py"/>
         <source>another set-up</source>
         <translation>une autre installation</translation>
@@ -6870,6 +6910,11 @@
         <location filename="../../freecad_am/core/process/predicted.py"/>
         <source>beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>beads change their schedule, and this controller sets outputs between moves ahead of the motion, so far as is known; give start and end other speeds alone, or use another controller</source>
+        <translation>les cordons changent de programme de soudage, et ce contrôleur met les sorties entre les mouvements en avance sur le mouvement, autant qu&apos;on sache ; ne donnez à start et end que d&apos;autres vitesses, ou prenez un autre contrôleur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
@@ -10015,6 +10060,16 @@
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>stale</source>
         <translation>périmé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/phases.py"/>
+        <source>start and end take {0} mm of this bead of {1} mm; make process.start and process.end shorter, or those of its class</source>
+        <translation>le début et la fin prennent {0} mm de ce cordon de {1} mm ; raccourcissez process.start et process.end, ou ceux de sa classe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/classes.py"/>
+        <source>start and end take {0} mm, and a bead of this class in layer {1} is {2} mm long; make them shorter for the class, or lay no beads as short as that</source>
+        <translation>le début et la fin prennent {0} mm, et un cordon de cette classe dans la couche {1} est long de {2} mm ; raccourcissez-les pour la classe, ou ne déposez pas de cordons aussi courts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>

@@ -44,7 +44,7 @@ def planned(workshop, more):
         Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
     (workshop.folder / "bar.yaml").write_text(JOB.replace("CLASSES\n", more))
     done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.stderr
+    assert done.status == 0, done.err
     out = workshop.folder / "out"
     with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
@@ -135,3 +135,86 @@ def test_what_is_wrong_is_named(tmp_path, process, code, where, words):
     with pytest.raises(InputError) as caught:
         jobs.read_job(str(tmp_path / "job.yaml"))
     assert caught.value.code == code and where in caught.value.where and words in caught.value.message
+
+
+PHASES = """\
+  start: {length: 5 mm, travel_speed: 3 mm/s}
+  end: {length: 2.5 mm, travel_speed: 12 mm/s}
+  classes: {contour: {travel_speed: 8 mm/s, start: {length: 0}, end: {length: 4 mm, travel_speed: 2 mm/s}}}
+"""
+TABLE = """\
+cell: {machine: table-xyzac, setup: rotary-table, platform: 60 mm, platform_diameter: 200 mm}
+program: {post: linuxcnc, schedule: {output: 3}}
+"""
+
+
+def beads_of(rows):
+    """Each bead's rows with the way along it, by the rows alone."""
+    deposit = [row for row in rows if row["kind"] == "deposit"]
+    starts = [k for k, row in enumerate(deposit) if row["point"] == "0"]
+    for first, end in zip(starts, [*starts[1:], len(deposit)]):
+        mine = deposit[first:end]
+        way = np.linalg.norm(np.diff(numbers(mine, "x_mm", "y_mm", "z_mm"), axis=0), axis=1)
+        yield mine, np.r_[0.0, np.cumsum(way)]
+
+
+def test_starts_and_ends_of_beads_have_speeds_of_their_own(workshop):
+    plain, _, _ = planned(workshop, "  classes: {contour: {travel_speed: 8 mm/s}}\n")
+    rows, report, text = planned(workshop, PHASES)
+    assert report["status"] == "ok"
+    for (mine, along), (before, whole) in zip(beads_of(rows), beads_of(plain), strict=True):
+        contour = mine[0]["class"] == "contour"
+        first, last, speed = (0.0, 4.0, 8.0) if contour else (5.0, 2.5, 6.0)
+        assert abs(along[-1] - whole[-1]) < 0.01 and len(mine) <= len(before) + 2
+        for border in (first, along[-1] - last):
+            assert np.abs(along - border).min() < 2e-3
+        middle = 0.5 * (along[1:] + along[:-1])
+        wanted = np.where(middle < first, 3.0, np.where(middle > along[-1] - last, 2.0 if contour else 12.0, speed))
+        assert np.abs(numbers(mine[1:], "speed_mm_s")[:, 0] - wanted).max() < 1e-6
+    moves = re.findall(r"J P\[\d+\] (\d+)msec (FINE|CNT)", text)
+    assert moves  # nothing stops within a bead: as many stops as without phases
+    assert text.count("FINE") == planned(workshop, "")[2].count("FINE")
+
+
+def test_schedules_change_within_a_bead_without_a_stop(workshop):
+    more = PHASES + "  schedule: 9\n"
+    for speed, schedule in ((3, 4), (2, 5)):
+        more = more.replace(f"speed: {speed} mm/s}}", f"speed: {speed} mm/s, schedule: {schedule}}}")
+    job = JOB.replace("CLASSES\n", more)
+    job = job[: job.index("cell:")] + job[job.index("process:") : job.index("program:")] + TABLE
+    Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
+    (workshop.folder / "bar.yaml").write_text(job)
+    done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    lines = (workshop.folder / "out" / "program" / "bar.ngc").read_text().splitlines()
+    beads = list(beads_of(rows))
+    on, off = ([k for k, line in enumerate(lines) if line.startswith(word)] for word in ("M64 P0", "M65 P0"))
+    assert len(on) == len(off) == len(beads)
+    for (mine, along), first, end in zip(beads, on, off, strict=True):
+        contour = mine[0]["class"] == "contour"
+        inside = lines[first + 1 : end]
+        assert not any(line.startswith(("M68", "G4", "G61", "M6 ")) for line in inside)
+        told = [line for line in inside if line.startswith("M67")]
+        ahead = [line for line in lines[:first] if line.startswith("M68")][-1]
+        assert (ahead, told) == (("M68 E2 Q9", ["M67 E2 Q5"]) if contour else ("M68 E2 Q4", ["M67 E2 Q9"]))
+        moves = [line for line in inside[: inside.index(told[0])] if re.search(r"\bX", line)]
+        border = along[-1] - 4.0 if contour else 5.0
+        assert abs(along[len(moves)] - border) < 2e-3  # the next move begins there
+
+
+@pytest.mark.parametrize(("more", "status", "words"), [
+    ("  schedule: 2\n  start: {length: 5 mm, schedule: 3}\n", 2, "error[SCHEDULE]"),
+    ("  end: {length: 30 mm, travel_speed: 3 mm/s}\n", 2, "error[PHASE_LENGTH]"),
+    ("  start: {length: 5 mm, travel_speed: 0}\n", 2, "process.start.travel_speed"),
+    ("  classes: {fill: {start: {long: 5 mm}}}\n", 2, "process.classes.fill.start.long"),
+    ("  classes: {fill: {end: 5 mm}}\n", 2, "process.classes.fill.end"),
+    ("  bead_model: csw\n  start: {length: 5 mm, travel_speed: 5 mm/s}\n", 2, "process.start.travel_speed"),
+])
+def test_phases_that_cannot_be(workshop, more, status, words):
+    Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
+    (workshop.folder / "bar.yaml").write_text(JOB.replace("CLASSES\n", more))
+    done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
+    assert done.status == status and words in done.err, done.err
+    assert not list((workshop.folder / "out").glob("program/*")) if (workshop.folder / "out").exists() else True

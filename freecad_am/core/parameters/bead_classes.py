@@ -7,6 +7,7 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any, ClassVar
 
 from ..issues import InputError
 from . import field as f
@@ -19,6 +20,48 @@ LARGEST_SCHEDULE = 65535  # 16 bits
 _FORM = "write such as: contour: travel_speed 8, schedule 3; fill: lead 5"
 _INNER = {f.ANGLE: math.radians}
 _OUTER = {f.ANGLE: math.degrees}
+START, END = "start", "end"
+
+
+@dataclass(frozen=True)
+class PhaseParameters:
+    """What differs at an end of every bead, over a length of it."""
+
+    length: float = f.parameter(0.0, f.LENGTH, "How much of the bead it is.", low=0.0)
+    travel_speed: float | None = f.parameter(
+        None, f.SPEED, "Speed of the torch there.", low=0.0, open_low=True, optional=True
+    )
+    schedule: int | None = f.parameter(
+        None, f.COUNT, "Schedule that is told there, without a stop.", low=1, high=LARGEST_SCHEDULE, optional=True,
+    )
+
+    where: ClassVar[str] = WHERE
+
+    def __post_init__(self) -> None:
+        f.check(self, self.where)
+
+    @property
+    def there(self) -> bool:
+        """Whether anything differs."""
+        return self.length > 0.0 and (self.travel_speed is not None or self.schedule is not None)
+
+
+class BeadStart(PhaseParameters):
+    """What differs where beads begin."""
+
+    where = "process.start"
+
+
+class BeadEnd(PhaseParameters):
+    """What differs where beads end."""
+
+    where = "process.end"
+
+
+def _phase(name: str) -> Any:
+    """The key of a class for one of a phase."""
+    spec = next(f.spec_of(one) for one in dataclasses.fields(PhaseParameters) if one.name == name)
+    return dataclasses.field(default=None, metadata={"spec": dataclasses.replace(spec, optional=True, advanced=True)})
 
 
 @dataclass(frozen=True)
@@ -44,6 +87,12 @@ class BeadClass:
     lead_off: float | None = f.parameter(
         None, f.TIME, "Deposit switched off this long after a bead of the class ends.", low=0.0, optional=True
     )
+    start_length: float | None = _phase("length")
+    start_travel_speed: float | None = _phase("travel_speed")
+    start_schedule: int | None = _phase("schedule")
+    end_length: float | None = _phase("length")
+    end_travel_speed: float | None = _phase("travel_speed")
+    end_schedule: int | None = _phase("schedule")
 
     def told(self) -> dict[str, float]:
         """What it has of its own, by name, in inner units."""

@@ -10,7 +10,7 @@ from typing import Any
 
 from . import bead_classes
 from . import field as f
-from .bead_classes import BeadClass
+from .bead_classes import BeadClass, BeadEnd, BeadStart
 
 # what each of several features may have of its own, with _ for nested keys; the rest holds for the whole program
 OF_FEATURE = (
@@ -145,6 +145,9 @@ class ProcessParameters:
         "such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.",
     )
 
+    start: BeadStart = f.group(BeadStart, "What differs where beads begin.")
+    end: BeadEnd = f.group(BeadEnd, "What differs where beads end.")
+
     def __post_init__(self) -> None:
         f.check(self, "process")
         bead_classes.classes(self.classes)  # whether it is understood
@@ -157,10 +160,16 @@ class ProcessParameters:
         """The process as beads of a class are laid by."""
         own = self.of_class(name).told()
         mine: dict[str, Any] = {key: value for key, value in own.items() if key in IN_PROCESS}
+        for phase in (bead_classes.START, bead_classes.END):
+            ends = {key.removeprefix(f"{phase}_"): value for key, value in own.items() if key.startswith(f"{phase}_")}
+            if ends:
+                mine[phase] = dataclasses.replace(getattr(self, phase), **ends)  # type: ignore[arg-type]
         return dataclasses.replace(self, **mine) if mine else self
 
     @property
     def scheduled(self) -> bool:
         """Whether any bead has a schedule."""
         classes = bead_classes.classes(self.classes).values()
-        return self.schedule is not None or any(one.schedule is not None for one in classes)
+        keys = ("schedule", "start_schedule", "end_schedule")
+        ends = (self.schedule, self.start.schedule, self.end.schedule)
+        return any(one is not None for one in ends) or any(key in one.told() for one in classes for key in keys)

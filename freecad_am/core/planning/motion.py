@@ -46,6 +46,7 @@ class _Rows:
     joints: Array
     duration: Array
     wire: Array
+    phase: Array
 
 
 def assemble(
@@ -91,7 +92,7 @@ def _rapid(path: BeadPath, way: Way, onto: Leg | None, cell: Cell) -> _Rows:
     build = tool.copy()
     build[-1] = path.bead.build[0]
     none = np.full(len(joints), np.nan)
-    return _Rows(way.role, *_place(path), position, build, tool, none, none, joints, none, none)
+    return _Rows(way.role, *_place(path), position, build, tool, none, none, joints, none, none, 0.0 * none)
 
 
 def _retract(path: BeadPath, way: Way, away: Leg | None) -> _Rows:
@@ -99,7 +100,7 @@ def _retract(path: BeadPath, way: Way, away: Leg | None) -> _Rows:
     count = len(way.joints)
     tool, build = (np.repeat(column[-1:], count, axis=0) for column in (path.bead.tool, path.bead.build))
     none = np.full(count, np.nan)
-    return _Rows(way.role, *_place(path), away.position, build, tool, none, none, way.joints, none, none)
+    return _Rows(way.role, *_place(path), away.position, build, tool, none, none, way.joints, none, none, 0.0 * none)
 
 
 def _deposit(path: BeadPath) -> _Rows:
@@ -110,7 +111,7 @@ def _deposit(path: BeadPath) -> _Rows:
     wire = np.full(len(bead), np.nan) if bead.wire_share is None else bead.wire_share * bead.speed
     return _Rows(
         np.full(len(bead), DEPOSIT), *_place(path), bead.points, bead.build, bead.tool, bead.speed, width,
-        path.joints, duration, wire,
+        path.joints, duration, wire, np.zeros(len(bead)) if bead.phase is None else bead.phase,
     )
 
 
@@ -139,4 +140,5 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
         point=np.concatenate([np.arange(count) for count in counts]),
         position=position, build=columns["build"], tool=columns["tool"], speed=speed, width=columns["width"],
         joints=joints, duration=duration, wire=columns["wire"], role=columns["role"],
+        phase=np.nan_to_num(columns["phase"]).astype(np.int64),
     )

@@ -22,6 +22,7 @@ from . import (
     external_rule,
     given,
     layer_by_layer,
+    phases,
     point_by_point,
     search,
     table,
@@ -148,6 +149,8 @@ def _failed(paths: Sequence[BeadPath], issues: Sequence[Issue], places: Sequence
 def _on_table(toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress) -> JointPath:
     """The same on a machine with rotary axes, which leaves nothing to optimise."""
     paths, issues = table.plan(cell, toolpath, parameters, progress)
+    paths, found = _phased(cell, paths)
+    issues += found
     if not has_errors(issues):
         paths, found = _slowed(cell, paths, toolpath)
         issues += found
@@ -238,7 +241,8 @@ def _finished(
     longer = [run_on(task, path, toolpath.overlap) for path in paths]
     straight = [kept_straight(task, path, toolpath.chord_error) for path in longer]
     paths, notes = turns.counted_on(task, [path for path, _ in straight])
-    issues = notes + [issue for _, found in straight for issue in found]
+    paths, told = _phased(task.cell, paths)
+    issues = [*notes, *told, *(issue for _, found in straight for issue in found)]
     for path in paths:
         issues += findings(task, path)
     if task.kept is not None:
@@ -247,6 +251,12 @@ def _finished(
         paths, found = _slowed(task.cell, paths, toolpath)
         issues = issues + found
     return paths, issues
+
+
+def _phased(cell: Cell, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths with the phases at the ends of their beads, and what is wrong with these."""
+    done = [phases.phased(cell, path) for path in paths]
+    return [path for path, _ in done], [issue for _, found in done for issue in found]
 
 
 def _slowed(cell: Cell, paths: Sequence[BeadPath], toolpath: Toolpath) -> tuple[list[BeadPath], list[Issue]]:

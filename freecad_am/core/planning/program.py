@@ -43,7 +43,7 @@ from ..program import (
 from ..toolpath import Toolpath
 from .controllers import FLANGE_TOLD, UNITS, check_controller, check_external, check_pulses, check_wrist
 from .joint_path import BeadPath
-from .program_beads import deposited
+from .program_beads import deposited, parted
 from .program_remarks import frames_of, remarks_of, six_of
 
 # what the rows of a motion are for, by its numbers
@@ -178,8 +178,9 @@ def _blocks(
     for number, rows in enumerate(groups):
         first = int(rows[0])
         if motion.deposit[first]:
-            moves = _moves(motion, cell, rows[1:], DEPOSIT, parameters)
-            blocks += deposited(moves, _class_of(motion, first), process, parameters)
+            parts = parted(motion.phase[rows[1:]], process.for_class(_class_of(motion, first)))
+            runs = [(_moves(motion, cell, rows[1:][part], DEPOSIT, parameters), number) for part, number in parts]
+            blocks += deposited(runs, _class_of(motion, first), process, parameters)
             continue
         here = int(motion.layer[first])
         last = number == len(groups) - 1

@@ -7,9 +7,10 @@ from dataclasses import replace
 from typing import Any
 
 from ..issues import InputError
-from ..parameters.bead_classes import CLASSES, CLOSING, CONTOUR, FILL, FIRST_LAYER, WALL
+from ..parameters.bead_classes import CLASSES, CLOSING, CONTOUR, END, FILL, FIRST_LAYER, START, WALL, PhaseParameters
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
+from ..toolpath import Toolpath
 
 LEANS = ("lead", "tilt")
 _OF_KIND = {"contour": CONTOUR, "connected": CONTOUR, "closing": CLOSING}  # of a bead of a filling
@@ -34,9 +35,39 @@ def leaning(build: BuildDirectionParameters, process: ProcessParameters, name: s
 
 def refuse_speeds(process: ProcessParameters) -> None:
     """InputError NOT_FOR_FAMILY where classes have travel speeds and a bead model sets these."""
-    named = [name for name in CLASSES if process.of_class(name).travel_speed is not None]
+    own = ("travel_speed", "start_travel_speed", "end_travel_speed")
+    named = [f"process.classes.{name}" for name in CLASSES if any(process.of_class(name).told().get(key) for key in own)]
+    named += [f"process.{end}" for end in (START, END) if getattr(process, end).travel_speed is not None]
     if named and process.bead_model != "none":
         raise InputError(
-            "NOT_FOR_FAMILY", f"process.classes.{named[0]}.travel_speed", "the bead model sets the travel speed of all "
+            "NOT_FOR_FAMILY", f"{named[0]}.travel_speed", "the bead model sets the travel speed of all "
             "beads; leave it out, or use bead_model: none",
         )
+
+
+def with_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+    """The toolpath with the lengths and speeds of the phases at the ends of its beads. InputError PHASE_LENGTH where they
+    are longer than a bead."""
+    of_class = {name: _ends(process.for_class(name)) for name in (*CLASSES, "")}
+    if not any(of_class.values()):
+        return toolpath
+    layers = list(toolpath.layers)
+    for number, layer in enumerate(toolpath.layers):
+        for bead in layer.beads:
+            ends = of_class[bead.bead_class]
+            if ends and ends[0] + ends[2] > bead.length:
+                raise InputError(
+                    "PHASE_LENGTH", f"process.classes.{bead.bead_class}",
+                    f"start and end take {ends[0] + ends[2]:.4g} mm, and a bead of this class in layer {number} is "
+                    f"{bead.length:.4g} mm long; make them shorter for the class, or lay no beads as short as that",
+                )
+        layers[number] = replace(layer, beads=tuple(replace(bead, ends=of_class[bead.bead_class]) for bead in layer.beads))
+    return replace(toolpath, layers=tuple(layers))
+
+
+def _ends(process: ProcessParameters) -> tuple[float, ...]:
+    """`Bead.ends`; nothing where no end differs."""
+    if not process.start.there and not process.end.there:
+        return ()
+    phases = [phase if phase.there else PhaseParameters() for phase in (process.start, process.end)]
+    return tuple(value for phase in phases for value in (phase.length, phase.travel_speed or 0.0))
