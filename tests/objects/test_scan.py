@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A toolpath fitted to a scan in a document: by macro, kept when it is saved, renewed when the scan changes."""
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.issues import InputError
+from tests.core.inspection.test_scan import bent, points_on
+
+
+def heights(toolpath):
+    return np.vstack([bead.points for bead in api.result(toolpath).layers[0].beads])
+
+
+def test_a_fitted_toolpath_is_kept_and_follows_its_scan(doc, tmp_path):
+    plate, block = doc.addObject("Part::Box", "Plate"), doc.addObject("Part::Box", "Block")
+    plate.Length, plate.Width, plate.Height, plate.Placement.Base = 200, 120, 10, App.Vector(-100, -60, -10)
+    block.Length, block.Width, block.Height, block.Placement.Base = 60, 20, 12, App.Vector(-30, -10, 0)
+    doc.recompute()
+    path = tmp_path / "scan.xyz"
+    np.savetxt(path, points_on(bent, count=6000))
+    scan = api.make_scan(doc, plate, str(path))
+    feature = api.make_solid_feature(doc, block, substrate=plate, layer_height=4, bead_spacing=10)
+    toolpath = api.make_toolpath(doc, feature, scan=scan, scan_band=10)
+    x, y, z = heights(toolpath).T
+    assert np.abs(z - bent(x, y)).max() < 0.06
+    assert api.result(toolpath).fitted.layers == int(np.ceil(np.abs(api.result(toolpath).fitted.off).max() / 0.4))
+    copy = str(tmp_path / "copy.FCStd")
+    doc.saveCopy(copy)
+    again = App.openDocument(copy)
+    kept = again.getObject(toolpath.Name)
+    assert heights(kept) == pytest.approx(heights(toolpath), abs=0.0)
+    assert kept.Scan.Name == scan.Name and kept.Status == "up to date"
+    App.closeDocument(again.Name)
+    np.savetxt(path, points_on(lambda x, y: bent(x, y) + 0.5, count=6000))
+    api.recompute(toolpath)
+    x, y, z = heights(toolpath).T
+    assert np.abs(z - 0.5 - bent(x, y)).max() < 0.06
+    with pytest.raises(InputError, match="compares with") as error:
+        api.make_toolpath(doc, feature, scan=api.inspect(doc, feature, str(path), fit="none"))
+    assert error.value.code == "BAD_INPUT"
