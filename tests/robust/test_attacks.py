@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Folders, names and texts made to mislead: nothing outside the folder of outputs is touched, no message is forged."""
 
+import base64
+import hashlib
 import html.parser
 import json
 import os
@@ -266,7 +268,14 @@ def test_the_page_shows_markup_in_names_as_text(workshop):
 
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
     Reader().feed(page)
-    assert not [tag for tag, _ in found if tag in ("script", "iframe", "object", "embed", "base", "link", "form")]
+    assert not [tag for tag, _ in found if tag in ("iframe", "object", "embed", "base", "link", "form")]
+    # the page's own: the figures and columns of the path, and what draws it, which alone a browser runs
+    assert [attributes for tag, attributes in found if tag == "script"] == [
+        {"type": "application/json", "id": "path-facts"}, {"type": "text/plain", "id": "path-columns"}, {},
+    ]
+    (policy,) = (one["content"] for _, one in found if one.get("http-equiv") == "Content-Security-Policy")
+    digest = base64.b64encode(hashlib.sha256(page.rpartition("<script>")[2].partition("</script>")[0].encode()).digest())
+    assert f"script-src 'sha256-{digest.decode()}'" in policy and "alert(" not in page.partition("<script")[2]
     assert not [name for _, attributes in found for name in attributes if name.startswith("on")]
     assert not [tag for tag, attributes in found if attributes.get("src") == "x"]
     assert "&lt;script&gt;" in page

@@ -25,16 +25,16 @@ _MOST_TRIANGLES = 30_000  # of the bodies around the path
 _SHADES = 32
 
 _CONTROLS = """<div class="row"><label>colour <select name="colour"></select></label><span class="least"></span>
-<span class="ramp"></span><span class="most"></span><label><input type="checkbox" name="rapids">rapids</label>
-<label><input type="checkbox" name="directions">build directions</label>
+<span class="ramp"></span><span class="most"></span><label><input type="checkbox" name="rapids"/>rapids</label>
+<label><input type="checkbox" name="directions"/>build directions</label>
 <button name="above">Above</button><button name="front">Front</button><button name="side">Side</button>
 <button name="reset">Reset view</button></div>
 <canvas tabindex="0" role="img" aria-label="the path, to turn and to step through"></canvas>
-<div class="row"><label class="wide">layers <input type="range" name="from" min="0" value="0" aria-label="first layer">
-<input type="range" name="to" min="0" aria-label="last layer"><span class="layers"></span></label></div>
+<div class="row"><label class="wide">layers <input type="range" name="from" min="0" value="0" aria-label="first layer"/>
+<input type="range" name="to" min="0" aria-label="last layer"/><span class="layers"></span></label></div>
 <div class="row"><button name="play">Play</button><button name="back" aria-label="a point back">&lsaquo;</button>
 <button name="on" aria-label="a point on">&rsaquo;</button><label class="wide">up to
-<input type="range" name="row" aria-label="point"></label><button name="whole">Whole path</button></div>
+<input type="range" name="row" aria-label="point"/></label><button name="whole">Whole path</button></div>
 <div class="told" role="status"></div>
 <div class="row hint">Drag to turn, with Shift to move; click a bead to read it; after a click the wheel and + and - enlarge,
 , and . step.</div>"""
