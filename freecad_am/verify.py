@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .core.issues import ERROR, Issue
-from .core.kinematics.cell import ROTARY_TABLE, Cell
+from .core.kinematics.cell import Cell
 from .core.motion import Motion
 from .core.program import Program
 from .core.read_moves import ReadMoves
@@ -65,7 +65,7 @@ def verify(
     issues += time_issues(cell, planned, read)
     if read.position is None:
         return _verify_joints(cell, planned, program, read, chord_error, issues)
-    if cell.setup == ROTARY_TABLE:
+    if not cell.arrangement.redundant:
         return _verify_tips(cell, planned, program, read, issues)
     return _verify_poses(cell, planned, program, read, chord_error, issues)
 

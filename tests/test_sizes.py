@@ -7,7 +7,6 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
 FILE, FUNCTION = 300, 40  # lines
 LONG_FILES = {
-    "core/kinematics/cell.py": 304,
     "core/kinematics/inverse/offset_wrist_search.py": 378,
     "core/toolpath.py": 370,
 }
@@ -21,7 +20,6 @@ LONG_FUNCTIONS = {
     "core/geometry/mesh/refined.py refined": 46,
     "core/geometry/regions/chained.py chained": 49,
     "core/geometry/walls/contact.py _rounded": 47,
-    "core/kinematics/cell.py resolve": 49,
     "core/kinematics/inverse/parallel_axes.py _solve_piece": 52,
     "core/kinematics/machine.py _parse": 48,
     "core/kinematics/opw_recognition.py _arm": 50,

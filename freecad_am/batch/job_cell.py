@@ -9,7 +9,7 @@ import os
 from typing import Any
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import calibration, proposed_cell, urdf_reference
+from freecad_am.core.kinematics import arrangement, calibration, proposed_cell, urdf_reference
 from freecad_am.core.parameters import external, obstacles
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.cell import CellParameters
@@ -19,7 +19,6 @@ from . import fields, quantity, tree
 from .part_source import absolute
 
 PAPERS = "paper"  # limits
-PLANNED_SETUPS = ("tool-on-robot+positioner",)
 
 
 def read(section: Any, path: str) -> CellParameters | None:
@@ -55,10 +54,7 @@ def _of_section(section: Any, path: str) -> CellParameters:
         numbers = [quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]]
         section["world_up"] = " ".join(f"{number:.15g}" for number in numbers)
     cell = fields.build(CellParameters, section, "cell")
-    if cell.setup in PLANNED_SETUPS:
-        raise InputError(
-            "NOT_YET", "cell.setup", f"{cell.setup!r} is not supported yet; use part-on-robot, tool-on-robot or rotary-table"
-        )
+    arrangement.planned_of(cell.setup)
     return cell if section.get("deposition_point") is not None else _proposed(cell, section.get("branch") is not None)
 
 

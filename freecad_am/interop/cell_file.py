@@ -10,6 +10,7 @@ import os
 from typing import Any
 
 from ..core.kinematics import calibration, urdf_reference
+from ..core.kinematics.arrangement import of_setup
 from ..core.parameters import external, obstacles
 from ..core.parameters import field as f
 from ..core.parameters.cell import CellParameters
@@ -25,7 +26,7 @@ def text(cell: CellParameters, folder: str) -> str:
     usual = CellParameters()
     for field in dataclasses.fields(cell):
         value = getattr(cell, field.name)
-        kept = field.name in PROPOSED and cell.setup != "rotary-table"
+        kept = field.name in PROPOSED and of_setup(cell.setup).redundant
         if field.name in SHOWN_APART or (value == getattr(usual, field.name) and not kept):
             continue
         lines.append(f"{field.name}: {_shown(value, f.spec_of(field).kind)}")

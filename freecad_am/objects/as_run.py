@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import Issue
-from ..core.kinematics.cell import PART_ON_ROBOT, Cell
+from ..core.kinematics.cell import Cell
 from ..core.motion import Motion
 from ..core.parameters.program import ProgramParameters
 from ..core.planning import moving_tool, steps
@@ -41,7 +41,7 @@ def as_run(
     if settings is None:
         return AsRun(motion, condition, threshold, issues)
     straight = settings.motion == "cartesian" and settings.post not in catalogue.STRAIGHT_IN_PART
-    if straight and cell.setup == PART_ON_ROBOT:
+    if straight and cell.arrangement.holds_part:
         origin = moving_tool.origins(motion, cell, chord_error)
         beads = [path.bead for path in planned.joint_path.beads]
         motion = moving_tool.kept_straight(motion, cell, chord_error, beads)

@@ -33,7 +33,7 @@ def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str
     files of obstacles, and OBSTACLE where one is at the first point of the job already."""
     cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
     bodies = bodies_of(settings)
-    if not bodies or cell.machine.is_table:
+    if not bodies or not cell.arrangement.links_known:
         return cell
     cell = dataclasses.replace(cell, obstacles=bodies)
     _refuse_at_start(cell, toolpath)

@@ -159,7 +159,7 @@ def _tell_remedies(cell: cells.Cell, toolpath: Toolpath, issues: Sequence[Issue]
 
 def _not_kept(cell: cells.Cell) -> list[Issue]:
     """A note where there are obstacles that planning was not asked to keep links clear of."""
-    if not cell.obstacles or cell.arm_clearance is not None or cell.machine.is_table:
+    if not cell.obstacles or cell.arm_clearance is not None or not cell.arrangement.links_known:
         return []
     names = ", ".join(one.name for one in cell.obstacles)
     return [Issue(NOTE, "OBSTACLES_NOT_KEPT", f"{names}: looked at for the nozzle on rapids, and in simulation and "

@@ -23,7 +23,8 @@ from .link_meshes import meshes_of
 
 def rods_of(cell: Cell) -> arm_kept.Rods:
     """The rods of each link of the robot; none of machines with rotary axes, of whose links no file tells enough."""
-    return () if cell.machine.is_table else link_rods.of_robot(cell.robot.chain, meshes_of(cell.machine))
+    known = cell.arrangement.links_known
+    return link_rods.of_robot(cell.robot.chain, meshes_of(cell.machine)) if known else ()
 
 
 def arm_of(
@@ -32,7 +33,7 @@ def arm_of(
 ) -> ArmTouches | None:
     """What the links of a robot touch, or come nearer to than `clearance` mm, looked at in so many places at most; None for
     machines with rotary axes, of whose links no file tells enough."""
-    if cell.machine.is_table:
+    if not cell.arrangement.links_known:
         return None
     rods = link_rods.of_robot(cell.robot.chain, shapes)
     deposited = laid(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)

@@ -10,7 +10,6 @@ from typing import Any
 from .. import verify as verification
 from ..core.issues import InfeasibleError, InputError, has_errors
 from ..core.kinematics import cell as cells
-from ..core.kinematics.cell import PART_ON_ROBOT
 from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
@@ -136,7 +135,7 @@ def posted(job: Job) -> Posted:
     progress.report(0.1, "building moves and events")
     motion = planned.motion
     straight = parameters.motion == "cartesian" and parameters.post not in catalogue.STRAIGHT_IN_PART
-    if straight and cell.setup == PART_ON_ROBOT:
+    if straight and cell.arrangement.holds_part:
         beads = [path.bead for path in planned.joint_path.beads]
         motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
     motion, _ = steps.told(motion, parameters.post, toolpath.chord_error, parameters.blend)

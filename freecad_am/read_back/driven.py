@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.kinematics.cell import ROTARY_TABLE, Cell
+from ..core.kinematics.cell import Cell
 from ..core.motion import Motion
 from ..core.program import Program
 from ..core.read_moves import Event, ReadMoves
@@ -70,7 +70,7 @@ def _driven(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array]
         assert read.joints is not None
         shown = _in_turns(read.joints, endless)
         return text_path.joint_path(cell, shown, text_path.digits(cell, read))[0], machine.from_controller(shown)
-    if cell.setup == ROTARY_TABLE:
+    if not cell.arrangement.redundant:
         path = text_path.text_tips(cell, program, read)
         serial = followed.by_table(cell, read, path)
     else:

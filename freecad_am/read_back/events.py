@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..core.issues import ERROR, Issue
-from ..core.kinematics.cell import ROTARY_TABLE
 from ..core.program import (
     Block,
     Call,
@@ -75,7 +74,7 @@ def _alike(program: Program, found: Event, due: Event) -> bool:
         return False
     if ARC in (*found.value, *due.value):
         return found.value == due.value
-    if due.kind in ("on", "off") and program.nc.deposit_on and program.setup == ROTARY_TABLE:
+    if due.kind in ("on", "off") and program.nc.deposit_on and program.axis_names:
         return found.value[1] == (program.nc.deposit_on if due.kind == "on" else program.nc.deposit_off).upper()
     if due.kind in ("on", "off"):
         return found.value[0] == due.value[0]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.geometry import frames
-from ..core.kinematics.cell import ROTARY_TABLE, Cell
+from ..core.kinematics.cell import Cell
 from ..core.kinematics.chain import JointFrames
 from ..core.program import Program
 from ..core.read_moves import ReadMoves
@@ -44,7 +44,7 @@ class Joints:
 def told_by_position(cell: Cell, joints: Array) -> Mask:
     """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: a robot's own
     ones, and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
-    slides = cell.machine.chain.sliding & (cell.setup == ROTARY_TABLE)
+    slides = cell.machine.chain.sliding & (not cell.arrangement.redundant)
     own = np.arange(joints.shape[1]) < cell.robot.chain.axes  # a position says nothing of the axes beside the robot
     return np.asarray(slides | np.isnan(joints[:, own]).all(axis=1, keepdims=True) & own, dtype=np.bool_)
 
@@ -52,7 +52,7 @@ def told_by_position(cell: Cell, joints: Array) -> Mask:
 def shorter_way(cell: Cell, program: Program, read: ReadMoves) -> Mask:
     """(axes,) the axes that the controller takes the shorter way: those of robots that turn without end. Rotary axes of
     machine tools count their turns, unless the text says otherwise."""
-    if cell.setup != ROTARY_TABLE:
+    if cell.arrangement.redundant:
         return np.array(program.endless)
     return np.array(program.endless) & (False if read.shorter_way is None else read.shorter_way)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..core.issues import ERROR, Issue
 from ..core.kinematics import opw
-from ..core.kinematics.cell import ROTARY_TABLE, Cell
+from ..core.kinematics.cell import Cell
 from ..core.program import LINEAR_MOVE, Program
 from ..core.read_moves import Configuration, ReadMoves
 from .planned import COMPUTED_AXIS, Planned, pieces
@@ -57,7 +57,7 @@ def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, read: Rea
     if read.rounding is None:
         return np.asarray(read.stops != planned.stops)
     # the last corner of a bead is named, and not passed; a rounding of nothing is a stop
-    table = program.setup == ROTARY_TABLE
+    table = bool(program.axis_names)
     rounding = np.full(len(read.stops), program.nc.tolerance) if table else _share_of_shortest(planned, program.blend)
     told = np.where(np.isnan(read.rounding), 0.0, read.rounding)
     # a stop that names no rounding says all there is to say where a stop was planned
@@ -95,7 +95,7 @@ def _share_of_shortest(planned: Planned, blend: float) -> Array:
 def _frame_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves, linear: Mask) -> list[Issue]:
     wrong = np.zeros(len(linear), dtype=bool)
     if read.user_frame is not None:
-        counted = linear if cell.setup == ROTARY_TABLE else np.ones(len(linear), dtype=bool)
+        counted = linear if program.axis_names else np.ones(len(linear), dtype=bool)
         wrong |= counted & (read.user_frame != program.user_frame)
     if read.tool_frame is not None:
         wrong |= read.tool_frame != program.tool_frame

@@ -27,7 +27,7 @@ from ..collision.tolerances import ABOUT_FACES
 from ..geometry import frames
 from ..geometry.rods import Rod, about, row
 from ..geometry.surroundings import Body, disc
-from .cell import PART_ON_ROBOT, Cell
+from .cell import Cell
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -125,7 +125,7 @@ class ArmContact:
 
     @property
     def _carries_part(self) -> bool:
-        return self.cell.setup == PART_ON_ROBOT
+        return self.cell.torch_stands
 
     def _links(self, carried: bool) -> range:
         """The links that are looked at against what is carried, or what stands still."""

@@ -24,13 +24,13 @@ from ..parameters.cell import CellParameters, NozzleParameters
 from ..parameters.external import externals
 from . import machine as machines
 from . import opw
+from .arrangement import Arrangement, of_setup, planned_of
 from .external import ExternalAxes, coupled
 from .limits import Limits
 from .machine import Machine
+from .pose_frames import PoseFrames
 
 Array = NDArray[np.float64]
-
-PART_ON_ROBOT, TOOL_ON_ROBOT, ROTARY_TABLE = "part-on-robot", "tool-on-robot", "rotary-table"
 
 UP = (0.0, 0.0, 1.0)
 
@@ -96,10 +96,14 @@ class Cell:
         return found
 
     @property
+    def arrangement(self) -> Arrangement:
+        """What hangs on the flange, and what follows from it."""
+        return of_setup(self.setup)
+
+    @property
     def part_moves(self) -> bool:
         """Whether the part moves in the world."""
-        turns = self.external is not None and bool(self.external.turning)
-        return self.setup != TOOL_ON_ROBOT or turns
+        return self.arrangement.carries_part or (self.external is not None and bool(self.external.turning))
 
     def in_part(self) -> tuple[Body, ...]:
         """The obstacles in part coordinates; none where the part moves in the world."""
@@ -119,7 +123,7 @@ class Cell:
         points = position @ to_platform[:3, :3].T + to_platform[:3, 3]
         axes = tool @ to_platform[:3, :3].T
         upright = frames.smallest_rotation(axes, UP)
-        if self.setup == PART_ON_ROBOT:
+        if self.arrangement.carries_part:
             moved = frames.pose(upright, -np.einsum("nij,nj->ni", upright, points))
             return PoseFrames(self.station[None], 1.0, moved @ frames.inverse(self.carried))
         stands = self.station @ frames.pose(np.swapaxes(upright, 1, 2), points)
@@ -143,7 +147,7 @@ class Cell:
 
         flange: (n, 4, 4) in base_link.
         """
-        if self.setup != TOOL_ON_ROBOT:
+        if self.torch_stands:
             platform = flange @ self.carried
             seen = frames.inverse(platform) @ self.station
         else:
@@ -154,7 +158,7 @@ class Cell:
     def tip_at(self, joints: Array) -> Array:
         """The same tip alone, (..., 3) mm in part coordinates, for joint values (..., axes): in a third of the time."""
         chain = self.machine.chain
-        if self.setup != TOOL_ON_ROBOT:
+        if self.torch_stands:
             tip, into = chain.seen(joints, self.station[:3, 3]), self.mount @ frames.inverse(self.carried)
         else:
             tip, into = chain.placed(joints, self.carried[:3, 3]), self.mount @ frames.inverse(self.station)
@@ -164,7 +168,7 @@ class Cell:
     @property
     def torch_stands(self) -> bool:
         """Whether the machine moves the part alone, under a torch that stands still."""
-        return self.setup != TOOL_ON_ROBOT
+        return self.arrangement.carries_part
 
     def deposition_point(self, flange: Array) -> Array:
         """(n, 3) mm, the point of deposit in base_link for the flange poses (n, 4, 4)."""
@@ -175,7 +179,7 @@ class Cell:
 
     def spin_axis(self, flange: Array) -> Array:
         """(n, 3) angular velocity of the flange in base_link per unit of phi, about the deposition point."""
-        if self.setup == PART_ON_ROBOT:
+        if self.torch_stands:
             return np.broadcast_to(self.station[:3, 2], (len(flange), 3))
         axis: Array = (flange @ self.carried)[:, :3, 2]
         return axis
@@ -203,50 +207,6 @@ class Cell:
         return rz
 
 
-@dataclass(frozen=True)
-class PoseFrames:
-    """Flange poses as left . Rz(sign phi) . right; left and right are (n, 4, 4) or (1, 4, 4)."""
-
-    left: Array
-    sign: float
-    right: Array
-
-    def of(self, chosen: slice | NDArray[np.int64]) -> PoseFrames:
-        """The frames of chosen points."""
-        left = self.left if len(self.left) == 1 else self.left[chosen]
-        right = self.right if len(self.right) == 1 else self.right[chosen]
-        return PoseFrames(left, self.sign, right)
-
-    def at(self, phi: Array) -> Array:
-        """(..., n, 4, 4) flange poses for rotations phi (..., n)."""
-        cos, sin = np.cos(phi), self.sign * np.sin(phi)
-        spun = np.empty((*phi.shape, 4, 4))
-        # entry by entry: along axes of four it takes twice as long
-        if len(self.left) == 1:
-            for column in range(4):
-                first, second = np.ascontiguousarray(self.right[:, :2, column].T)
-                spun[..., 0, column] = cos * first - sin * second
-                spun[..., 1, column] = sin * first + cos * second
-            spun[..., 2:, :] = self.right[:, 2:]
-            return _moved_by(self.left[0], spun)
-        for row in range(4):
-            first, second = np.ascontiguousarray(self.left[:, row, :2].T)
-            spun[..., row, 0] = cos * first + sin * second
-            spun[..., row, 1] = cos * second - sin * first
-        spun[..., :, 2:] = self.left[:, :, 2:]
-        turned: Array = (spun.reshape(-1, 4) @ self.right[0]).reshape(spun.shape)
-        return turned
-
-
-def _moved_by(frame: Array, poses: Array) -> Array:
-    """frame @ poses; most cells stand upright, so the rotation is often none at all."""
-    if np.array_equal(frame[:3, :3], np.eye(3)):
-        poses[..., :3, 3] += frame[:3, 3]
-        return poses
-    moved: Array = frame @ poses
-    return moved
-
-
 def mounted(parameters: CellParameters, feature_frame: Array, family: str) -> Array:
     """(4, 4) what sits on the platform, in part coordinates: the feature's own frame (4, 4), or that of the part file."""
     mount = parameters.mount if parameters.mount != "auto" else ("feature" if family == "revolution" else "part")
@@ -264,28 +224,18 @@ def resolve(
     Raises InputError UNKNOWN_MACHINE, BAD_MACHINE, UNKNOWN_LIMITS, NOT_YET (set-ups to come), WRONG_SETUP (a robot as a
     table or the other way), NO_CLOSED_FORM.
     """
-    if parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT, ROTARY_TABLE):
-        raise InputError(
-            "NOT_YET", "cell.setup", f"{parameters.setup} cannot be planned yet; use {PART_ON_ROBOT}, {TOOL_ON_ROBOT} or "
-            f"{ROTARY_TABLE}",
-        )
+    arrangement = planned_of(parameters.setup)
     machine = machines.load(parameters.machine, tuple(folders))
-    if machine.is_table != (parameters.setup == ROTARY_TABLE):
-        kind, wanted = ("has sliding axes", ROTARY_TABLE) if machine.is_table else ("is a robot", f"{PART_ON_ROBOT} or "
-                                                                                    f"{TOOL_ON_ROBOT}")
-        raise InputError("WRONG_SETUP", "cell.setup", f"{machine.title} {kind}; use {wanted}, or choose another machine")
-    if machine.arm is None and not machine.is_table:
-        raise InputError("NO_CLOSED_FORM", "cell.machine", f"{machine.title}: {machine.no_arm}")
+    _refuse_otherwise(machine, arrangement)
     platform = parameters.platform
     platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
-    carried = parameters.nozzle.tool if parameters.setup == TOOL_ON_ROBOT else platform_pose
     limits, external = machine.limits(parameters.limits), None
-    # the torch of a machine with rotary axes is where its chain begins
-    station = np.eye(4) if machine.is_table else frames.bryant(parameters.deposition_point)
+    # the torch of a machine that leaves nothing free is where its chain begins
+    station = frames.bryant(parameters.deposition_point) if arrangement.redundant else np.eye(4)
     beside = externals(parameters.external)
-    if beside and parameters.setup != TOOL_ON_ROBOT:
+    if beside and arrangement.carries_part:
         raise InputError("WRONG_SETUP", "cell.external", f"{parameters.setup}: axes beside the robot need "
-                         f"the tool on the robot; use setup: {TOOL_ON_ROBOT}, or leave external out")
+                         "the tool on the robot; use setup: tool-on-robot, or leave external out")
     if beside:
         machine, limits, external = coupled(machine, limits, beside, parameters.upward(), folders)
         station = station if not external.turning else frames.bryant(platform_pose)
@@ -294,7 +244,7 @@ def resolve(
         limits=limits,
         setup=parameters.setup,
         station=machine.base @ station,
-        carried=frames.bryant(carried),
+        carried=frames.bryant(platform_pose if arrangement.carries_part else parameters.nozzle.tool),
         mount=mounted(parameters, feature_frame, family),
         branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),
         nozzle=parameters.nozzle,
@@ -302,3 +252,13 @@ def resolve(
         external=external,
         arm_clearance=parameters.arm_clearance,
     )
+
+
+def _refuse_otherwise(machine: Machine, arrangement: Arrangement) -> None:
+    """InputError WRONG_SETUP for what the machine does not do, NO_CLOSED_FORM for an arm whose inverse is not known."""
+    if arrangement not in machine.arrangements:
+        kind = "is a robot" if machine.redundant else "has sliding axes"
+        wanted = " or ".join(one.setup for one in machine.arrangements if one.planned)
+        raise InputError("WRONG_SETUP", "cell.setup", f"{machine.title} {kind}; use {wanted}, or choose another machine")
+    if machine.arm is None and machine.redundant:
+        raise InputError("NO_CLOSED_FORM", "cell.machine", f"{machine.title}: {machine.no_arm}")

@@ -76,7 +76,7 @@ def coupled(
     """
     found = [(one, load(one.machine, folders)) for one in named]
     _check(found)
-    if robot.is_table:
+    if not robot.redundant:
         raise InputError("WRONG_SETUP", WHERE, f"{robot.title} is no robot and takes no external axes; leave them out")
     axes, count = robot.chain.axes, sum(machine.chain.axes for _, machine in found)
     ends = np.cumsum([0, *(machine.chain.axes for _, machine in found)])

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..geometry.frames import Array
 from ..issues import InputError
 from . import calibration, check_poses, urdf_machine
+from .arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement
 from .chain import Chain
 from .five_axis import is_five_axis
 from .inverse.calibrated import CalibratedArm
@@ -86,15 +87,22 @@ class Machine:
         return self.arm if isinstance(self.arm, OpwArm) else None
 
     @property
-    def is_table(self) -> bool:
-        """Whether it is a machine with rotary tables or heads, three of whose axes slide and two turn, not a robot."""
-        return is_five_axis(self.chain.sliding[: len(self.axes) - self.external])
+    def arrangements(self) -> tuple[Arrangement, ...]:
+        """What it can do in a cell, the usual one first."""
+        return OF_FIVE_AXES if is_five_axis(self.chain.sliding[: len(self.axes) - self.external]) else OF_ROBOTS
+
+    @property
+    def redundant(self) -> bool:
+        """Whether a rotation about the tool is left to choose, as robots leave it."""
+        return self.arrangements[0].redundant
 
     @property
     def columns(self) -> tuple[str, ...]:
         """What tables call the axes: q1 to q6 for every robot, so that whoever reads them needs to know no machine."""
+        if self.arrangements[0].named_axes:
+            return self.axes
         own = len(self.axes) - self.external
-        return self.axes if self.is_table else (*(f"q{index + 1}" for index in range(own)), *self.axes[own:])
+        return (*(f"q{index + 1}" for index in range(own)), *self.axes[own:])
 
     @property
     def units(self) -> tuple[str, ...]:

@@ -103,7 +103,7 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
     coupled = [span for span, row in zip(
         np.degrees(np.column_stack((limits.coupled_lower, limits.coupled_upper))).tolist(), limits.coefficients, strict=True
     ) if shown.coupling == pendant.HORIZONTAL and np.allclose(row, machine.controller_matrix[2])]
-    names = machine.axes if machine.is_table else tuple(f"joint_{number}" for number in range(1, count + 1))
+    names = machine.axes if machine.arrangements[0].named_axes else tuple(f"joint_{1 + number}" for number in range(count))
     return Draft(
         id=f"{machine.id}-copy", title=machine.title, chain=machine.chain, joints=names, lower=limits.lower[:count],
         upper=limits.upper[:count], max_speed=machine.max_speed, max_acceleration=machine.max_acceleration,

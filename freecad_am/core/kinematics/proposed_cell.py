@@ -27,7 +27,8 @@ from ..parameters.external import externals
 from . import link_rods, opw
 from . import machine as machines
 from .arm_contact import ArmContact
-from .cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell, resolve
+from .arrangement import OF_ROBOTS, of_setup
+from .cell import Cell, resolve
 from .limits import margins
 
 Array = NDArray[np.float64]
@@ -45,13 +46,14 @@ ABOVE = np.linspace(-0.5, 0.7, 9)
 
 
 def cell_of(
-    machine: str, folders: Sequence[str] = (), setup: str = PART_ON_ROBOT, tool: Pose | None = None
+    machine: str, folders: Sequence[str] = (), setup: str = OF_ROBOTS[0].setup, tool: Pose | None = None
 ) -> CellParameters:
     """The parameters of a cell with a machine, '' for the default one. A robot has the set-up that is asked for; tool: pose
     of the tip on its flange, where it is known. InputError for an unknown one."""
     chosen = CellParameters(machine=machine or CellParameters().machine)
-    if machines.load(chosen.machine, tuple(folders)).is_table:
-        return replace(chosen, setup=ROTARY_TABLE)
+    usual = machines.load(chosen.machine, tuple(folders)).arrangements[0]
+    if not usual.redundant:
+        return replace(chosen, setup=usual.setup)
     nozzle = chosen.nozzle if tool is None else replace(chosen.nozzle, tool=tool)
     return proposed(replace(chosen, setup=setup, nozzle=nozzle), folders)
 
@@ -67,11 +69,12 @@ def proposed(parameters: CellParameters, folders: Sequence[str] = (), own_branch
 def searched(parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False) -> CellParameters:
     """What is `proposed`, looked for."""
     machine = machines.load(parameters.machine, tuple(folders))
-    if externals(parameters.external) or machine.arm is None or parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
+    arrangement = of_setup(parameters.setup)
+    if externals(parameters.external) or machine.arm is None or not (arrangement.redundant and arrangement.planned):
         return parameters
     cell = resolve(parameters, np.eye(4), folders=folders)
     branches = range(len(opw.BRANCHES)) if cell.branch is None or not own_branch else [cell.branch]
-    if cell.setup == PART_ON_ROBOT:
+    if arrangement.carries_part:
         leanings = [_directions(TILTS, 1)]
     else:
         leanings = [_directions(LEANING[:steepest], ROUND) for steepest in range(len(LEANING), 0, -1)]
@@ -123,7 +126,7 @@ def _places(cell: Cell, axes: Array, branches: Sequence[int]) -> Iterator[_Place
     assert arm is not None
     shoulder, height = arm.shoulder
     heights = height + ABOVE * arm.reach
-    if cell.setup == TOOL_ON_ROBOT:  # no platform in the floor
+    if not cell.torch_stands:  # no platform in the floor
         heights = np.unique(np.maximum(heights, 0.0))
     for number, (ahead, above) in enumerate(itertools.product(AHEAD, heights)):
         x, z = np.round([shoulder + ahead * arm.reach, above])
@@ -164,7 +167,7 @@ def _room(cell: Cell, joints: Array) -> Array:
     and where the robot does not reach."""
     arm, limits = cell.machine.arm, cell.limits
     assert arm is not None
-    if cell.setup == PART_ON_ROBOT:
+    if cell.torch_stands:
         left = margins(joints[..., :5], limits.lower[:5], limits.upper[:5]).min(axis=-1)
     else:
         left = limits.smallest_share(joints.reshape(-1, 6)).reshape(joints.shape[:-1])

@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 
 from ..issues import InputError
-from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT
+from ..kinematics.arrangement import of_setup
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import MORE, PART, externals
 from ..parameters.place import AUTO, PLATFORM, POINT, POSITIONER
@@ -16,13 +16,14 @@ from ..parameters.place import AUTO, PLATFORM, POINT, POSITIONER
 
 def movable(settings: CellParameters) -> tuple[str, ...]:
     """What there is to move in a cell: of POINT, PLATFORM, POSITIONER those it has, the usual one first."""
-    if settings.setup == PART_ON_ROBOT:
+    arrangement = of_setup(settings.setup)
+    if arrangement.holds_part:
         return (POINT, PLATFORM)
-    if settings.setup == ROTARY_TABLE:
+    if not arrangement.redundant:
         return (PLATFORM,)
     if any(one.carries == PART for one in externals(settings.external)):
         return (POSITIONER, PLATFORM)
-    return (POINT,) if settings.setup == TOOL_ON_ROBOT else ()
+    return (POINT,) if arrangement.planned else ()
 
 
 def chosen(settings: CellParameters, moves: str) -> str:

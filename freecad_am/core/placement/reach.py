@@ -37,7 +37,7 @@ def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None
     not looked at, nor axes beside the robot. progress may raise to cancel. Nothing of machines with rotary axes.
     """
     arm = cell.robot.arm
-    if arm is None or cell.machine.is_table:
+    if arm is None:
         return Reach(np.zeros((0, 3)), np.zeros(0), step)
     ahead, height = arm.shoulder
     held = float(np.linalg.norm(cell.robot.chain.flange[:3, 3])) + float(np.linalg.norm(cell.carried[:3, 3]))

@@ -66,7 +66,7 @@ def contact_of(
     beads: Sequence[Bead], cell: Cell, rods: Rods, bodies: Sequence[Body], width: float, height: float
 ) -> ArmContact | None:
     """The links against bodies and all beads; width, height: mm, of those that do not tell theirs."""
-    if cell.arm_clearance is None or not rods or cell.machine.is_table:
+    if cell.arm_clearance is None or not rods:
         return None
     laid = Beads.of(beads, width, height).solid(LINK_GRAIN)
     return ArmContact(cell, rods, bodies, laid, cell.arm_clearance)

@@ -10,7 +10,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinematics.cell import Cell, PoseFrames
+from ..kinematics.cell import Cell
+from ..kinematics.pose_frames import PoseFrames
 from ..toolpath import Bead
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from .. import motion as motions
 from ..geometry import frames
 from ..issues import InputError
 from ..kinematics import opw
-from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, Cell
+from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES
 from ..parameters.process import BetweenLayersParameters, ProcessParameters
@@ -91,9 +91,9 @@ def without_moves(cell: Cell, parameters: ProgramParameters, name: str) -> Progr
         pulses_per_degree=cell.machine.pulses_per_degree, speed_unit=cell.machine.speed_unit,
         station=six_of(frames.inverse(cell.machine.base) @ frames_of(cell, parameters)[0]),
         carried=six_of(frames_of(cell, parameters)[1]),
-        axis_names=tuple(_letter(name) for name in cell.machine.axes) if cell.machine.is_table else (),
+        axis_names=tuple(_letter(name) for name in cell.machine.axes) if cell.arrangement.named_axes else (),
         axis_kinds=tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding)
-        if cell.machine.is_table else (),
+        if cell.arrangement.named_axes else (),
         nc=NcOptions(
             parameters.nc.feed == "path", parameters.nc.compress, parameters.nc.smooth, parameters.nc.tolerance,
             parameters.nc.deposit_on or "", parameters.nc.deposit_off or "", parameters.nc.switch_kinematics,
@@ -135,7 +135,7 @@ def _letter(axis: str) -> str:
 
 def on_table(cell: Cell, parameters: ProgramParameters) -> Six | None:
     """Where the program's origin is on the table as a program tells it; None where it is known only with the toolpath."""
-    if not cell.machine.is_table or not isinstance(parameters.origin, str):
+    if cell.arrangement.redundant or not isinstance(parameters.origin, str):
         return None
     return six_of(frames_of(cell, parameters)[1])
 
@@ -237,21 +237,18 @@ def _moves(
         duration[0] = FIRST_TIME
     position = rotation = direction = flange = None
     configuration = None
-    if parameters.post in FLANGE_TOLD and cell.setup == PART_ON_ROBOT:
+    if parameters.post in FLANGE_TOLD and cell.arrangement.holds_part:
         flange = frames.inverse(cell.machine.base) @ cell.machine.chain.forward(motion.joints[rows])
-    if parameters.motion == "cartesian" and cell.setup == ROTARY_TABLE:
-        station, carried = frames_of(cell, parameters)
-        seen = frames.inverse(cell.machine.chain.forward(motion.joints[rows]) @ carried) @ station
-        position, direction = seen[:, :3, 3], seen[:, :3, 2]
-    elif parameters.motion == "cartesian":
+    if parameters.motion == "cartesian":
         station, carried = frames_of(cell, parameters)
         tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
-        seen = frames.inverse(tip) @ station if cell.setup == PART_ON_ROBOT else frames.inverse(station) @ tip
-        position, rotation = seen[:, :3, 3], seen[:, :3, :3]
-        arm = cell.machine.arm
-        assert arm is not None
-        own = motion.joints[rows, : cell.robot.chain.axes]
-        configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(own))
+        seen = frames.inverse(tip) @ station if cell.torch_stands else frames.inverse(station) @ tip
+        position, arm = seen[:, :3, 3], cell.machine.arm
+        if arm is None:
+            direction = seen[:, :3, 2]
+        else:
+            rotation, own = seen[:, :3, :3], motion.joints[rows, : cell.robot.chain.axes]
+            configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(own))
     wire = motion.wire[rows]
     told = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
     return Moves(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import frames
-from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell
+from ..kinematics.cell import Cell
 from ..parameters.program import ProgramParameters
 from ..program import (
     DEPOSIT,
@@ -25,7 +25,7 @@ def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
     if isinstance(parameters.origin, str):
         return cell.station, cell.carried
     origin = frames.inverse(cell.mount) @ frames.bryant(parameters.origin)
-    if cell.setup != TOOL_ON_ROBOT:
+    if cell.torch_stands:
         return cell.station, cell.carried @ origin
     return cell.station @ origin, cell.carried
 
@@ -39,10 +39,10 @@ def six_of(pose: Array) -> Six:
 def remarks_of(cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]) -> tuple[str, ...]:
     moved = not isinstance(parameters.origin, str)
     station, carried = frames_of(cell, parameters)
-    if cell.setup == ROTARY_TABLE:
+    if not cell.arrangement.redundant:
         where, frame = "Work offset" if parameters.motion == "cartesian" else "Platform on the table", carried
     else:
-        where = "Deposition point" if cell.setup == PART_ON_ROBOT else "User frame" if moved else "Platform"
+        where = "Deposition point" if cell.torch_stands else "User frame" if moved else "Platform"
         where += " on the face" if cell.external is not None and cell.external.turning else ""
         frame = frames.inverse(cell.machine.base) @ station
     return (

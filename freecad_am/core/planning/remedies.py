@@ -20,7 +20,7 @@ from ..geometry.surroundings import Body
 from ..issues import ERROR, NOTE, AmError, Issue, has_errors
 from ..kinematics import cell as cells
 from ..kinematics import opw, proposed_cell
-from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE
+from ..kinematics.arrangement import of_setup
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
 from ..parameters.joints import OF_CELL, JointParameters
@@ -139,24 +139,24 @@ def _some(toolpath: Toolpath, failed: Sequence[int]) -> Toolpath:
 
 
 def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[Tried]:
-    codes = {issue.code for issue in issues if issue.level == ERROR}
+    codes, arrangement = {issue.code for issue in issues if issue.level == ERROR}, of_setup(job.settings.setup)
     usual = CellParameters()
     left_out = job.settings.deposition_point == usual.deposition_point and job.settings.machine != usual.machine
-    if left_out and job.settings.setup != ROTARY_TABLE:
+    if left_out and arrangement.redundant:
         yield from _points(job)
     if "SPEED" in codes and job.process.bead_model == "none":
         yield from _slower(job, path)
     if all(code.startswith("RAPID") for code in codes):
         yield from _lifts(job)
-    if job.settings.setup != ROTARY_TABLE:
+    if arrangement.redundant:
         yield from _branches(job)
         yield from _rotations(job)
     if job.fixed is not None:
         fixed = dataclasses.replace(job, toolpath=job.fixed.make, told=job.fixed.told)
         yield fixed
-        if job.settings.setup != ROTARY_TABLE and job.settings.branch != "auto":
+        if arrangement.redundant and job.settings.branch != "auto":
             yield _with_cell(fixed, f"{fixed.told} and `cell.branch: auto`", branch="auto")
-    if not left_out and job.settings.setup != ROTARY_TABLE:
+    if not left_out and arrangement.redundant:
         yield from _points(job)
 
 
@@ -227,7 +227,7 @@ def _points(job: Tried) -> Iterator[Tried]:
         words = best.branch if isinstance(best.branch, str) else f"[{', '.join(best.branch)}]"
         yield _with_cell(job, f"{_shown(best.deposition_point)} and `cell.branch: {words}`",
                          deposition_point=best.deposition_point, branch=best.branch)
-    for point in _before(job) if job.settings.setup != PART_ON_ROBOT else _beside(job.settings.deposition_point):
+    for point in _before(job) if not of_setup(job.settings.setup).carries_part else _beside(job.settings.deposition_point):
         yield _with_cell(job, f"{_shown(point)} and `cell.branch: auto`", deposition_point=point, branch="auto")
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..geometry import frames
-from ..kinematics.cell import TOOL_ON_ROBOT, Cell
+from ..kinematics.cell import Cell
 from .table_links import standing_link
 
 Array = NDArray[np.float64]
@@ -38,7 +38,7 @@ def placing(cell: Cell, joints: ArrayLike) -> Placing:
     links = cell.links(np.asarray(joints, float))
     flange = links[-1] @ chain.flange
     carried = flange @ cell.carried
-    on_robot = cell.setup == TOOL_ON_ROBOT
+    on_robot = not cell.torch_stands
     platform = cell.station if on_robot else carried
     nozzle = carried @ frames.pose(frames.about_x(np.pi), np.zeros(3)) if on_robot else cell.station
     to_world = frames.inverse(links[standing_link(chain)])
@@ -55,7 +55,7 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     axes of a machine with rotary axes are at 0.
     """
     place, chain = np.asarray(point, float), cell.machine.chain
-    if cell.machine.is_table:
+    if not cell.arrangement.redundant:
         slides = np.flatnonzero(chain.sliding)
         zero = np.zeros(chain.axes)
         away = cell.deposition_point(chain.forward(zero)[None])[0] - _seen(cell, zero, place)

@@ -12,7 +12,8 @@ from pivy import coin
 
 from ...core.geometry import frames
 from ...core.kinematics import cell as cells
-from ...core.kinematics.cell import ROTARY_TABLE, TOOL_ON_ROBOT, Cell
+from ...core.kinematics.arrangement import of_setup
+from ...core.kinematics.cell import Cell
 from ...core.kinematics.limits import Limits
 from ...core.kinematics.link_rods import Mesh
 from ...core.kinematics.link_solids import capsule
@@ -168,7 +169,7 @@ def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
     chain = rest.machine.chain
     return (
         rest.machine.id, chain.links(np.zeros(chain.axes)).tobytes(),
-        (value.platform_diameter, value.nozzle.length) if rest.machine.is_table else (),
+        () if of_setup(value.setup).links_known else (value.platform_diameter, value.nozzle.length),
         *(None if mesh is None else hash(mesh[0].tobytes()) for mesh in rest.meshes),
     )
 
@@ -214,12 +215,12 @@ def nozzle_node(value: CellParameters) -> Any:
 
 def holder_node(value: CellParameters) -> Any:
     """What holds the nozzle, seen from its tip: from its end to the flange of a robot that carries it, else a short body."""
-    length = value.nozzle.length
+    arrangement, length = of_setup(value.setup), value.nozzle.length
     end, flange = np.array([0.0, 0.0, length]), np.array([0.0, 0.0, _BODY * length])
-    if value.setup == TOOL_ON_ROBOT:
+    if not arrangement.carries_part:
         tip = frames.bryant(value.nozzle.tool) @ frames.pose(frames.about_x(np.pi), np.zeros(3))
         flange = frames.inverse(tip)[:3, 3]
     radius = 0.5 * value.nozzle.diameter + length * np.tan(value.nozzle.half_angle)
-    if value.setup == ROTARY_TABLE or np.linalg.norm(flange - end) < 1.0:  # tables have their head
+    if not arrangement.links_known or np.linalg.norm(flange - end) < 1.0:  # drawn with the machine's head
         return coin.SoSeparator()
     return of_solid(capsule(end, flange, radius, radius))

@@ -44,7 +44,7 @@ def _rgb(colour: Look) -> Sequence[float]:
 def plain_links(machine: Machine, platform: float, torch: float) -> Links:
     """The solids of each link (axes + 1), base first. platform: diameter of the platform on a table, torch: length of the
     nozzle, mm; machines with rotary axes are drawn to fit them."""
-    if machine.is_table:
+    if not machine.arrangements[0].links_known:
         return table_links.solids(machine.chain, max(table_links.RADIUS, 0.5 * _SMALLEST * platform), torch)
     return robot_links.solids(machine.chain)
 

@@ -13,7 +13,7 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import AmError, InputError
 from ...core.kinematics import machine as machines
-from ...core.kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT
+from ...core.kinematics.arrangement import of_setup
 from ...core.kinematics.machine import Machine
 from ...core.kinematics.proposed_cell import cell_of
 from ...core.parameters.cell import CellParameters
@@ -90,14 +90,15 @@ class CellPanel(PreviewPanel):
             return
         if self.unknown and self.unknown == self.notes[MACHINE].text():
             self.tell(MACHINE, "")
-        self._set_setup(machine.is_table)
-        self._fit(machine.is_table)
+        self._set_setup([one.setup for one in machine.arrangements])
+        self._fit(machine)
         self._offer_limits(list(machine.limit_sets))
         self._ask_proposal(name, machine)
 
-    def _fit(self, is_table: bool) -> None:
+    def _fit(self, machine: Machine) -> None:
         """Leave out what has no meaning for the machine, or with what the robot carries."""
-        without = _OF_ROBOTS if is_table else (TOOL,) if self._widget(SETUP).currentData() == PART_ON_ROBOT else ()
+        held = of_setup(self._widget(SETUP).currentData()).carries_part
+        without = _OF_ROBOTS if not machine.redundant else (TOOL,) if held else ()
         self.leave_out(without, also_entered=True)
 
     def _tell_of_machine(self, text: str) -> None:
@@ -105,11 +106,10 @@ class CellPanel(PreviewPanel):
         self.unknown = text
         self.tell(MACHINE, text)
 
-    def _set_setup(self, is_table: bool) -> None:
+    def _set_setup(self, possible: list[str]) -> None:
         setup = self._widget(SETUP)
-        if not self.enabled[SETUP] or is_table == (setup.currentData() == ROTARY_TABLE):
-            return
-        setup.setCurrentIndex(setup.findData(ROTARY_TABLE if is_table else PART_ON_ROBOT))
+        if self.enabled[SETUP] and setup.currentData() not in possible:
+            setup.setCurrentIndex(setup.findData(possible[0]))
 
     def _offer_limits(self, names: list[str]) -> None:
         """Let those limits be chosen that the machine has; what is entered stays."""
@@ -129,7 +129,7 @@ class CellPanel(PreviewPanel):
         for place in self.noted:
             self.tell(place, "")
         self.noted.clear()
-        if machine.is_table or setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
+        if not machine.redundant or not (of_setup(setup).redundant and of_setup(setup).planned):
             return
         folders, known, wanted, tool = user_machines.folders(), dict(self.of_machine), self.before, self._tool()
 
@@ -285,7 +285,7 @@ def _told(value: Any) -> str:
 
 def _stands(rest: Rest) -> str:
     """How the machine stands at rest."""
-    if rest.machine.is_table:
+    if not rest.machine.redundant:
         return tr("{} at rest, its turning axes at 0").format(rest.machine.title)
     if not rest.reached:
         told = tr("{} does not reach the part with the nozzle upright: all its axes are drawn at 0")

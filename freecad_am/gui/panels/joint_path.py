@@ -73,7 +73,7 @@ class JointPathPanel(PreviewPanel):
             cell = self._cell().value()
             if cell is None:
                 return
-            if machines.load(cell.Machine, user_machines.folders()).is_table:
+            if not machines.load(cell.Machine, user_machines.folders()).redundant:
                 self.leave_out({_place(name) for name in OF_ROBOTS} | _ENDS)
                 return
             method = self.places[METHOD][0].value

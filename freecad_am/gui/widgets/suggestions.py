@@ -8,7 +8,6 @@ from typing import Any
 
 from ...core.issues import InputError
 from ...core.kinematics import machine
-from ...core.kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE
 from ...core.parameters.program import ProgramParameters
 from ...core.planning.controllers import written_by
 from ...core.process import bead_table
@@ -48,7 +47,7 @@ def no_post(name: str) -> str:
         told = machine.load(name, user_machines.folders())
     except InputError:
         return ""
-    posts, setup = written_by(told), ROTARY_TABLE if told.is_table else PART_ON_ROBOT
+    posts, setup = written_by(told), told.arrangements[0].setup
     if posts is None or catalogue.fitting(posts, ProgramParameters().motion, setup):
         return ""
     if posts:

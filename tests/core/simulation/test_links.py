@@ -11,13 +11,13 @@ from freecad_am.core.simulation import table_links
 from tests.core.kinematics.arms import EXAMPLES
 
 NAMES = EXAMPLES
-ROBOTS = [name for name in NAMES if not machine.load(name).is_table]
+ROBOTS = [name for name in NAMES if machine.load(name).redundant]
 TABLES = [name for name in NAMES if name not in ROBOTS]
 
 
 def links_of(name):
     loaded = machine.load(name)
-    made = table_links.solids(loaded.chain) if loaded.is_table else robot_links.solids(loaded.chain)
+    made = (robot_links if loaded.redundant else table_links).solids(loaded.chain)
     return loaded, made
 
 

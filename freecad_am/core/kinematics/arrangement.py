@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a machine does in a cell: one record for each set-up says what follows; nobody asks which it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..issues import InputError
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """What hangs on the flange, and what is known and free then.
+
+    setup: the value of `cell.setup`.
+    carries_part: the flange carries the part, under a nozzle that stands; else the nozzle.
+    redundant: a rotation about the tool and a configuration of the arm are left to choose; else poses leave nothing free.
+    holds_part: the part turns in the hand of a robot, so that what runs straight in the world is no line on the part.
+    links_known: files tell what the links look like, so that what they touch can be found; else they are drawn to fit.
+    named_axes: the controller writes axes by names of their own (X, A), not by number.
+    planned: jobs with it can be planned.
+    """
+
+    setup: str
+    carries_part: bool
+    redundant: bool
+    holds_part: bool
+    links_known: bool
+    named_axes: bool
+    planned: bool = True
+
+
+_HOLDING_PART = Arrangement(
+    "part-on-robot", carries_part=True, redundant=True, holds_part=True, links_known=True, named_axes=False,
+)
+_HOLDING_TOOL = Arrangement(
+    "tool-on-robot", carries_part=False, redundant=True, holds_part=False, links_known=True, named_axes=False,
+)
+_WITH_POSITIONER = Arrangement(
+    "tool-on-robot+positioner", carries_part=False, redundant=True, holds_part=False, links_known=True, named_axes=False,
+    planned=False,
+)
+# its chain is seen from the torch, so that the part hangs on its flange wherever its axes are
+_FIVE_AXIS = Arrangement(
+    "rotary-table", carries_part=True, redundant=False, holds_part=False, links_known=False, named_axes=True,
+)
+OF_ROBOTS = (_HOLDING_PART, _HOLDING_TOOL, _WITH_POSITIONER)  # the usual one first
+OF_FIVE_AXES = (_FIVE_AXIS,)
+_ALL = {one.setup: one for one in (*OF_ROBOTS, *OF_FIVE_AXES)}
+
+
+def of_setup(setup: str) -> Arrangement:
+    """The record of a value of `cell.setup`; KeyError for any other."""
+    return _ALL[setup]
+
+
+def planned_of(setup: str) -> Arrangement:
+    """The same; InputError NOT_YET for what jobs cannot have yet."""
+    found = _ALL.get(setup)
+    if found is None or not found.planned:
+        *first, last = (one.setup for one in _ALL.values() if one.planned)
+        raise InputError("NOT_YET", "cell.setup", f"{setup} cannot be planned yet; use {', '.join(first)} or {last}")
+    return found
