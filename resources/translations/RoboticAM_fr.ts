@@ -7602,11 +7602,6 @@
         <translation>gyroïde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>has sliding axes</source>
-        <translation>a des axes de translation</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>height</source>
         <translation>hauteur</translation>
@@ -7695,11 +7690,6 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>inverse condition number of the Jacobian at the points of the deposit, against the least one allowed</source>
         <translation>inverse du conditionnement de la jacobienne aux points du dépôt, comparé au minimum permis</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>is a robot</source>
-        <translation>est un robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -11917,9 +11907,9 @@
         <translation>{0} ne peut pas être porté ; utilisez {1} ou {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>{0} cannot be planned yet; use {1}, {2} or {3}</source>
-        <translation>{0} ne peut pas encore être planifié ; utilisez {1}, {2} ou {3}</translation>
+        <location filename="../../freecad_am/core/kinematics/arrangement.py"/>
+        <source>{0} cannot be planned yet; use {1} or {2}</source>
+        <translation>{0} ne peut pas encore être planifié ; utilisez {1} ou {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -12092,6 +12082,11 @@
         <translation>{0} a d&apos;autres axes que la trajectoire articulaire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>{0} has sliding axes; use {1}, or choose another machine</source>
+        <translation>{0} a des axes de translation ; utilisez {1}, ou choisissez une autre machine</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
         <source>{0} has {1} numbers, a pose has six; {2}</source>
         <translation>{0} a {1} nombres, une pose en a six ; {2}</translation>
@@ -12155,6 +12150,11 @@
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>{0} is a program of this very job; call another one, or rename the job</source>
         <translation>{0} est un programme de ce travail même ; appelez-en un autre, ou renommez le travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>{0} is a robot; use {1}, or choose another machine</source>
+        <translation>{0} est un robot ; utilisez {1}, ou choisissez une autre machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
@@ -13177,11 +13177,6 @@
         <translation>{0} {1} {2} n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>{0} {1}; use {2}, or choose another machine</source>
-        <translation>{0} {1} ; utilisez {2}, ou choisissez une autre machine</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0}, and less than 1% of its surface hangs over by more than 45 deg</source>
         <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg</translation>
@@ -13283,8 +13278,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>{0}: axes beside the robot need the tool on the robot; use setup: {1}, or leave external out</source>
-        <translation>{0} : des axes à côté du robot demandent l&apos;outil sur le robot ; utilisez setup : {1}, ou omettez external</translation>
+        <source>{0}: axes beside the robot need the tool on the robot; use setup: tool-on-robot, or leave external out</source>
+        <translation>{0} : des axes à côté du robot demandent l&apos;outil sur le robot ; utilisez setup: tool-on-robot, ou omettez external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
