@@ -3,6 +3,8 @@
 
 import ast
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -36,6 +38,26 @@ def test_version_is_that_of_the_project_and_of_the_changelog(package):
     project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     assert re.search(r'^version = "(.+)"', project, re.MULTILINE)[1] == version
     assert f"## [{version}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_the_first_section_of_the_changelog_fits_a_screen():
+    """What is new in short, and all of Migrating; the details are in docs/history.md."""
+    section = re.split(r"^## ", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.MULTILINE)[1]
+    lines = section.splitlines()
+    assert len(lines) <= 50 and max(map(len, lines)) <= 420
+    assert "### Migrating" in lines and any("](docs/history.md)" in line for line in lines)
+
+
+@pytest.mark.parametrize("hidden", ["PyKDL", "shapely", "matplotlib"])
+def test_demo_installs_what_jobs_beyond_it_need(hidden):
+    """The launcher installs its packages unless this Python is ready, which it is not without one of them."""
+    boot = ROOT / "freecad_am" / "batch" / "boot.py"
+    run = f"import sys, runpy; sys.modules[{hidden!r}] = None; sys.argv = ['boot.py', 'ready']; "
+    run += f"runpy.run_path({str(boot)!r}, run_name='__main__')"
+    assert subprocess.run([sys.executable, "-c", run], capture_output=True, check=False).returncode == 1
+    launcher = (ROOT / "freecad-am").read_text(encoding="utf-8")
+    installed = re.search("planning_packages='(.*)'", launcher)[1].split()
+    assert f"python3-{hidden.lower()}" in installed and "ready || provide $planning_packages" in launcher
 
 
 def test_no_address_is_promised_that_is_not_there(package):

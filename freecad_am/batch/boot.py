@@ -14,6 +14,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 NOBODY = 2
+WELCOME = ("PyKDL", "shapely", "matplotlib")  # that jobs beyond the demo need: of programs, solids, plots
 SCRIPTS = {"test": os.path.join("tests", "run.py"), "bench": os.path.join("bench", "run.py")}
 
 
@@ -58,7 +59,7 @@ def run(words):
     if words[:1] == ["ready"]:
         import importlib.util
 
-        return 0 if importlib.util.find_spec("PyKDL") else 1
+        return 0 if all(map(importlib.util.find_spec, WELCOME)) else 1
     if words[:1] and words[0] in SCRIPTS:
         sys.argv[:] = [os.path.join(ROOT, SCRIPTS[words[0]]), *words[1:]]
         runpy.run_path(sys.argv[0], run_name="__main__")
