@@ -63,7 +63,7 @@ def dome():
 def job_of(toolpath):
     return Job(
         toolpath, lambda settings: cells.resolve(settings, toolpath.frame, toolpath.family),
-        lambda cell: () if cell.machine.is_table else tuple(map(tuple, link_rods.of_robot(cell.robot.chain))),
+        lambda cell: tuple(map(tuple, link_rods.of_robot(cell.robot.chain))) if cell.machine.redundant else (),
         PROCESS, JointParameters(),
     )
 
