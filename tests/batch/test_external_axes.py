@@ -49,7 +49,7 @@ def test_rows_and_report_say_where_the_positioner_is(workshop, written):
     assert done.status == 0, done.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert list(rows[0])[-3:] == ["q6_deg", "e1_deg", "e2_deg"]
+    assert list(rows[0])[-4:] == ["q6_deg", "e1_deg", "e2_deg", "class"]
     leaning = max(from_vertical(row) for row in rows if row["kind"] == "deposit")
     assert leaning <= MOST + 1e-4
     assert all(abs(float(row["e1_deg"])) <= 134.9946 and abs(float(row["e2_deg"])) <= 199.9966 for row in rows)
@@ -133,7 +133,7 @@ def test_the_rotor_moves_less_with_its_axes_optimised(workshop, root):
     assert max(map(from_vertical, rows)) <= 30.0 + 1e-4
     machine = json.loads((root / "freecad_am" / "machines" / "kuka-kr8-r2100-2-arc-hw.json").read_text(encoding="utf-8"))
     stroke = [np.diff(ends)[0] for ends in machine["limits"]["maker"]["axes"]] + [2 * 134.9946, 2 * 199.9966]
-    angles = np.array([[float(row[name]) for name in list(row)[-8:]] for row in rows])
+    angles = np.array([[float(row[name]) for name in list(row)[-9:-1]] for row in rows])
     same = np.array([(one["layer"], one["bead"]) == (row["layer"], row["bead"]) for one, row in zip(rows, rows[1:])])
     moved = float(np.radians(np.diff(angles, axis=0)[same] ** 2 / np.array(stroke)).sum())
     assert moved == pytest.approx(told["objective_value"], rel=0.05)  # points added in between make less of it

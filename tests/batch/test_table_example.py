@@ -102,8 +102,8 @@ def test_what_is_told_of_axes_is_in_their_units(planned):
     report, rows, _, out = planned(lambda text: text.replace("layer_height: 2 mm", "layer_height: 5 mm"), page=True)
     assert report["machine"]["axes"] == ["mx", "my", "mz", "a", "c"]
     assert report["machine"]["units"] == ["mm", "mm", "mm", "deg", "deg"]
-    assert list(rows[0])[-5:] == ["mx_mm", "my_mm", "mz_mm", "a_deg", "c_deg"]
-    axes = column([row for row in rows if row["kind"] == "deposit"], *list(rows[0])[-5:])
+    assert list(rows[0])[-6:] == ["mx_mm", "my_mm", "mz_mm", "a_deg", "c_deg", "class"]
+    axes = column([row for row in rows if row["kind"] == "deposit"], *list(rows[0])[-6:-1])
     joints = report["joints"]
     np.testing.assert_allclose(joints["min_deg"], axes.min(axis=0), atol=1e-6)
     np.testing.assert_allclose(joints["max_deg"], axes.max(axis=0), atol=1e-6)
