@@ -8,24 +8,20 @@ arm is stretched or folded are the zeros of a trigonometric polynomial of degree
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.frames import Array
+from .offset_wrist_plane import TINY, Curves, Index
 
 Mask = NDArray[np.bool_]
-
-if TYPE_CHECKING:
-    from .offset_wrist_search import Curves, Index
 
 TURN = 2.0 * math.pi
 NEWTON = 3
 LONGEST_STEP_RAD = 1e-3
 ENDS = 1e-12  # of the squared length: what an angle may leave of being stretched or folded to be an end
 SHORTEST_RAD = 1e-12
-TINY = 1e-150
 
 
 def spans(curves: Curves, side: float) -> tuple[Index, Array, Array, Mask, Mask, Index]:

@@ -18,7 +18,8 @@ from ...geometry import frames
 from ...geometry.frames import Array
 from ..chain import Chain
 from . import offset_wrist_search as search
-from .offset_wrist_search import Curves, Zeros
+from .offset_wrist_plane import Curves, geometry
+from .offset_wrist_search import Zeros
 
 Mask = NDArray[np.bool_]
 
@@ -172,7 +173,7 @@ class OffsetWristArm:
         """Joint angles (k, 6) of zeros, in [-pi, pi]."""
         at_rest = self.chain.frames(np.zeros(6))
         z = at_rest.directions
-        spot = search.geometry(curves, zeros.pose, zeros.angle, zeros.side, zeros.bent)
+        spot = geometry(curves, zeros.pose, zeros.angle, zeros.side, zeros.bent)
         one = np.arctan2(spot.sine, spot.cosine)
         three = np.arctan2(spot.fore_ahead, spot.fore_above)
         two = np.arctan2(spot.ahead - self.fore * spot.fore_ahead, spot.above - self.fore * spot.fore_above)
@@ -183,7 +184,7 @@ class OffsetWristArm:
         normal = z[1] * self.signs[1]
         before = frames.rotation_about((0.0, 0.0, 1.0), one - self.turns[0]) @ frames.rotation_about(
             normal, three - self.turns[2])
-        q[:, 3] = _turned(before, z[3], z[4], spot.five)
+        q[:, 3] = _turned(before, z[3], z[4], np.stack(spot.five, axis=-1))
         before = before @ frames.rotation_about(z[3], q[:, 3])
         six = poses[zeros.pose, :3, :3] @ (at_rest.flange[:3, :3].T @ z[5])
         q[:, 4] = _turned(before, z[4], z[5], six)

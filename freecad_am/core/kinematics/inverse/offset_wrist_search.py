@@ -10,7 +10,6 @@ zeros are looked for between samples of different sign and where samples nearly 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,8 +17,7 @@ from numpy.typing import NDArray
 
 from ...geometry.frames import Array
 from . import offset_shoulder_loops
-
-Index = NDArray[np.intp]
+from .offset_wrist_plane import TINY, Curves, Index, Spot, geometry, plane_of, spot_of
 
 SAMPLES = 36
 BESIDE = 0.37  # of a step: no sample where the arm is stretched or folded, at which a zero of it would have either sign
@@ -29,38 +27,7 @@ SWING = 0.96  # cosine of the most that arm or axis 4 may turn in a step
 ROUNDS, PEAKS = 60, 12  # of the search for a zero, and for an extreme
 TOUCHES = 1e-11  # of the cosine between axes 4 and 5: an extreme so near is a zero
 EDGE = 1e-12  # of the cosine of axis 6: by how much rounding may take a stretched arm out of reach
-TINY = 1e-150
 SAME_RAD = 1e-7  # nearer zeros are one: where two meet, rounding parts them by its root
-
-
-@dataclass(frozen=True)
-class Curves:
-    """Of n poses: `point` (3, 3, n) and `five` (3, 3, n) are constant, cosine and sine parts of the point where axes 4 and 5
-    meet, from axis 1 at the shoulder's height, and of the direction of axis 5, by components. `lean` is cosine and sine of
-    the turn from the forearm to axis 4, `square` the cosine between axes 4 and 5; axis 2 is `ahead` of axis 1. mm."""
-
-    point: Array
-    five: Array
-    upper: float
-    fore: float
-    lean: tuple[float, float]
-    square: float
-    ahead: float = 0.0
-
-
-class Spot(NamedTuple):
-    """The arm for given angles of axis 6 (k,): sine and cosine of the plane, the point ahead and above in it, and the
-    direction from elbow to point; axis 5 (k, 3); `value`: the function whose zeros are solutions; `along` (2, k): axis 4."""
-
-    sine: Array
-    cosine: Array
-    ahead: Array
-    above: Array
-    fore_ahead: Array
-    fore_above: Array
-    five: Array
-    value: Array
-    along: tuple[Array, Array]
 
 
 class Zeros(NamedTuple):
@@ -129,28 +96,6 @@ def _once(found: Zeros) -> Index:
 def values(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) -> Array:
     """The function (k,) at angles of axis 6 with an elbow 1 or -1."""
     return geometry(curves, pose, angle, side, _bent(curves, pose, angle, side, elbow)).value
-
-
-def geometry(curves: Curves, pose: Index, angle: Array, side: Array, bent: Array) -> Spot:
-    """The arm at angles of axis 6 (k,), on a side, with sine and cosine (2, k) of the elbow's bend."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    x, y, above = (part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.point.transpose(1, 0, 2))
-    five = [part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.five.transpose(1, 0, 2)]
-    x = x + TINY
-    ahead = side * np.sqrt(x * x + y * y)
-    cosine, sine = x / ahead, y / ahead
-    ahead = ahead - curves.ahead
-    # the forearm from the point: turned from the way to the shoulder by sine and cosine of the triangle
-    squared = ahead * ahead + above * above + TINY
-    common = (curves.fore + curves.upper * bent[1]) / squared
-    turn = curves.upper * bent[0] / squared
-    fore_ahead = common * ahead + turn * above
-    fore_above = common * above - turn * ahead
-    along = (
-        fore_ahead * curves.lean[0] + fore_above * curves.lean[1], fore_above * curves.lean[0] - fore_ahead * curves.lean[1],
-    )
-    value = along[0] * (cosine * five[0] + sine * five[1]) + along[1] * five[2] - curves.square
-    return Spot(sine, cosine, ahead, above, fore_ahead, fore_above, np.stack(five, axis=-1), value, along)
 
 
 def _bent(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) -> Array:
@@ -263,20 +208,32 @@ def _at(curves: Curves, at: Loops, t: Array) -> Spot:
     return geometry(curves, at.pose, angle, at.side, bent)
 
 
+def _sampled(curves: Curves, loops: Loops, which: Index, t: Array, alike: bool) -> Spot:
+    """The arm (m, s) at t (m, s) along loops `which` (m,); `alike`: all rows of t are. Less exact than `_at` close to
+    where the arm is stretched or folded, where no sample is, and in half the time."""
+    one = t[:1] if alike else t
+    course, rising = np.cos(one), np.where(np.sin(one) >= 0.0, 1.0, -1.0)
+    pose, side, elbow, middle, half = (
+        column[which][:, None] for column in (loops.pose, loops.side, loops.elbow, loops.middle, loops.half))
+    whole = elbow != 0.0
+    plane = plane_of(curves, pose, np.where(whole, middle + t, middle - half * course), side)
+    squared = plane.ahead * plane.ahead + plane.above * plane.above
+    bend = (squared - (curves.upper**2 + curves.fore**2)) / (2.0 * curves.upper * curves.fore)
+    bent = np.where(whole, elbow, rising) * np.sqrt(np.maximum(1.0 - bend * bend, 0.0))
+    return spot_of(curves, plane, (bent, bend))
+
+
 def _steps(curves: Curves, loops: Loops, which: Index, t: Array, level: int) -> tuple[Index, Array, Array]:
     """Loops (k,) and ends (k,), (k,) of steps with a zero in them, from samples t (m, s) along loops `which` (m,), of which
-    the first and the last are there for extremes beside them alone."""
-    count = t.shape[1]
-    flat = loops.of(np.repeat(which, count))
-    spot = _at(curves, flat, t.ravel())
-    value = spot.value.reshape(t.shape)
+    the first and the last are there for extremes beside them alone. At level 0 all rows of t are alike."""
+    spot = _sampled(curves, loops, which, t, level == 0)
+    value = spot.value
     above = value >= 0.0
     change = above[:, 1:] != above[:, :-1]
     found = _touching(curves, loops, which, t, value)
     if level < LEVELS:
-        arm = (spot.cosine * np.roll(spot.cosine, -1) + spot.sine * np.roll(spot.sine, -1)).reshape(t.shape)[:, :-1]
-        four = (spot.along[0] * np.roll(spot.along[0], -1) + spot.along[1] * np.roll(spot.along[1], -1)).reshape(t.shape)
-        fast = (arm < SWING) | (four[:, :-1] < SWING)
+        fast = _turned(spot.cosine, spot.sine) < SWING
+        fast |= _turned(*spot.along) < SWING
         # steps beside fast ones are not even either, and where the function is flat it may pass zero more than once
         fast[:, 1:] |= fast[:, :-1]
         fast[:, :-1] |= fast[:, 1:]
@@ -295,6 +252,12 @@ def _steps(curves: Curves, loops: Loops, which: Index, t: Array, level: int) -> 
     row, at = np.nonzero(change)
     found.append((which[row], t[row, at], t[row, at + 1]))
     return tuple(np.concatenate(columns) for columns in zip(*found))  # type: ignore[return-value]
+
+
+def _turned(cosine: Array, sine: Array) -> Array:
+    """The cosine (m, s - 1) of the turn between neighbours of directions (m, s)."""
+    result: Array = cosine[:, :-1] * cosine[:, 1:] + sine[:, :-1] * sine[:, 1:]
+    return result
 
 
 def _touching(
@@ -344,7 +307,8 @@ def _refined(curves: Curves, at: Loops, low: Array, high: Array) -> Array:
     c, fc = a.copy(), fa.copy()
     share = np.full(len(a), 0.5)
     best = np.where(np.abs(fa) < np.abs(fb), a, b)
-    active = np.flatnonzero((a != b) & (fa != 0.0) & (fb != 0.0))
+    # samples are less exact: what is of one sign at both ends after all is zero to their digits at one of them
+    active = np.flatnonzero((a != b) & (fa != 0.0) & (fb != 0.0) & ((fa >= 0.0) != (fb >= 0.0)))
     for _ in range(ROUNDS):
         if not len(active):
             break
