@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.columns import dots, lengths
 from ..toolpath import Toolpath
-from .pieces import Pieces, cut
+from .pieces import Pieces, cut, joined
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -29,7 +29,7 @@ BEYOND = 0.75  # of a piece's length from its middle along it; what is farther i
 
 def laid_twice(toolpath: Toolpath) -> float:
     """mm3 of beads that lie where others of their layer do, or the same bead does."""
-    pieces = cut(toolpath, PIECE)
+    pieces = joined(cut(toolpath, PIECE), PIECE)
     ends = np.searchsorted(pieces.layer, np.arange(len(toolpath.layers) + 1))
     closed = np.array([bead.closed for _, _, bead in toolpath])
     around = np.where(closed, np.bincount(pieces.bead, pieces.length, minlength=len(closed)), np.inf)
@@ -51,10 +51,12 @@ def _shared(pieces: Pieces, layer: slice, around: Array, level: float) -> float:
     way = middle[other] - middle[one]
     up = dots(way, build)
     level_way = way - up[:, None] * build
-    over = 0.5 * (width[one] + width[other]) - lengths(level_way)
-    past = np.abs(dots(way, pieces.travel[layer][other])) > BEYOND * pieces.length[layer][other]
+    along = pieces.travel[layer][other]
+    ahead = dots(level_way, along)
+    over = 0.5 * (width[one] + width[other]) - lengths(level_way - ahead[:, None] * along)
+    past = np.abs(ahead) > BEYOND * pieces.length[layer][other]
     some = (over > 0.0) & (np.abs(up) < level) & ~past
-    across = np.abs(dots(travel, pieces.travel[layer][other])) < ACROSS  # it is on both sides, and there once
+    across = np.abs(dots(travel, along)) < ACROSS  # it is on both sides, and there once
     side = (dots(np.cross(build, travel), level_way) > 0.0) & ~across
     most = np.zeros((2, len(middle)))
     for k in (0, 1):

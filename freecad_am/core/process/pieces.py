@@ -68,3 +68,28 @@ def cut(toolpath: Toolpath, share: float) -> Pieces:
         np.array([layer for layer, _, _ in beads])[bead], bead, first - (np.cumsum(size) - size)[bead],
         np.array([one.closing for _, _, one in beads])[bead],
     )
+
+
+def joined(pieces: Pieces, share: float) -> Pieces:
+    """Those of beads with points close together, which else are as many as there are points, joined to pieces of about a
+    share of the bead's width."""
+    if not len(pieces):
+        return pieces
+    step = np.floor(pieces.along / (share * pieces.width)).astype(np.intp)
+    new = (np.diff(pieces.bead, prepend=-1) != 0) | (np.diff(step, prepend=-1) != 0)
+    first = np.flatnonzero(new)
+    if len(first) == len(pieces):
+        return pieces
+    length = np.add.reduceat(pieces.length, first)
+
+    def mean(column: Array) -> Array:
+        weighted = column * (pieces.length if column.ndim == 1 else pieces.length[:, None])
+        found: Array = np.add.reduceat(weighted, first, axis=0) / (length if column.ndim == 1 else length[:, None])
+        return found
+
+    build, travel = mean(pieces.build), mean(pieces.travel)
+    known = np.maximum(lengths(travel), 1e-12)  # a piece that turns round within itself leads nowhere
+    return Pieces(
+        mean(pieces.middle), build / lengths(build)[:, None], travel / known[:, None], length, mean(pieces.width),
+        mean(pieces.along), pieces.layer[first], pieces.bead[first], pieces.point[first], pieces.closing[first],
+    )

@@ -33,7 +33,7 @@ def test_beads_apart_or_end_to_end_or_above_each_other_share_nothing():
 
 @pytest.mark.parametrize("apart", [0.0, 1.0, 3.0, 7.0])
 def test_beads_side_by_side_share_what_their_widths_are_more(apart):
-    assert area(rod(0, 60), rod(0, 60, apart)) == pytest.approx(60.0 * (WIDTH - apart), rel=0.01)
+    assert area(rod(0, 60), rod(0, 60, apart)) == pytest.approx(60.0 * (WIDTH - apart), rel=1e-9)
     assert area(rod(0, 60), rod(20, 40, -apart)) == pytest.approx(20.0 * (WIDTH - apart), rel=0.04)
 
 
@@ -55,4 +55,5 @@ def test_a_bead_that_comes_back_beside_itself_shares_that():
     there_and_back = bead([[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 5, 0], [50, 5, 0]])
     # 30 mm beside the first 5 mm apart, less what lies in bends
     assert area(there_and_back) == pytest.approx(30.0 * (WIDTH - 5.0), rel=0.15)
-    assert area(bead(circle(30.0, 800, 2.0))) == pytest.approx(WIDTH * 2.0 * math.pi * 30.0, rel=0.03)  # round twice
+    assert area(bead(circle(30.0, 800, 2.0))) == pytest.approx(WIDTH * 2.0 * math.pi * 30.0, rel=0.002)  # round twice
+    assert area(bead(circle(30.0, 8000, 2.0))) == pytest.approx(WIDTH * 2.0 * math.pi * 30.0, rel=0.002)  # dense points
