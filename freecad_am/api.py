@@ -35,7 +35,6 @@ from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
 from .core.parameters.scan import ScanParameters
-from .core.planning.controllers import written_by
 from .macro.changes import change, recompute
 from .macro.export import (
     export,
@@ -59,6 +58,7 @@ from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
 from .objects import user_machines
 from .objects.cell import Cell
+from .objects.controllers import written_by
 from .objects.findings import issues_of
 from .objects.job_group import grouped
 from .objects.joint_path import JointPath

@@ -15,6 +15,7 @@ PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
 OURS = {
     "core/issues": set(),
     "core/program": set(),
+    "core/controller": set(),
     "core/read_moves": set(),
     "core/motion": set(),
     "core/one_thread": set(),
@@ -34,7 +35,7 @@ OURS = {
     "core/kinematics": {"core/issues", "core/parameters", "core/geometry", "core/collision"},
     "core/planning": {
         "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
-        "core/motion", "core/program",
+        "core/motion", "core/program", "core/controller",
     },
     "core/simulation": {
         "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
@@ -48,7 +49,7 @@ OURS = {
         "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/process", "core/kinematics", "core/motion",
         "core/simulation", "core/strategies",
     },
-    "posts": {"core/issues", "core/program", "core/read_moves"},
+    "posts": {"core/issues", "core/controller", "core/program", "core/read_moves"},
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},
     "read_back": {
         "core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "core/read_moves", "kdl",

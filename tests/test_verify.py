@@ -16,12 +16,12 @@ from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning.program import build
 from freecad_am.core.program import DepositOff, DepositOn, LayerStart, Moves, Program
 from freecad_am.core.read_moves import Event
 from freecad_am.posts import fanuc
 from freecad_am.read_back import points, text_path
 from freecad_am.read_back.events import _alike
+from tests.programs import build
 
 RADIUS, CHORD_ERROR, SPEED, RAPID_SPEED = 45.0, 0.01, 6.0, 100.0
 ON_ROBOT = CellParameters(limits="paper")

@@ -21,9 +21,9 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.posts import catalogue
+from tests.programs import build
 
 CHORD_ERROR = 0.02
 MACHINES = ("table-xyzac", "table-xyzbc", "head-table-xyzbc")

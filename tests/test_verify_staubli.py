@@ -19,12 +19,12 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.planning import moving_tool
-from freecad_am.core.planning import program as programs
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.strategies import revolution
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.posts import staubli
+from tests.programs import build
 
 CHORD_ERROR = 0.01
 
@@ -56,7 +56,7 @@ def written(planned, request):
     if request.param == "cartesian":
         motion = moving_tool.kept_straight(motion, cell, CHORD_ERROR, beads)
     parameters = ProgramParameters(post="staubli", motion=request.param, max_points=500)
-    program = programs.build(motion, cell, ProcessParameters(), parameters, "dome")
+    program = build(motion, cell, ProcessParameters(), parameters, "dome")
     return cell, motion, program, staubli.write(program)
 
 
@@ -75,7 +75,7 @@ def test_both_variants_pass_with_both_solvers(written):
 def test_without_the_added_points_the_moving_tool_leaves_the_bead(planned):
     cell, motion, _ = planned
     parameters = ProgramParameters(post="staubli", motion="cartesian")
-    program = programs.build(motion, cell, ProcessParameters(), parameters, "dome")
+    program = build(motion, cell, ProcessParameters(), parameters, "dome")
     result = verify(cell, motion, program, staubli.write(program))
     assert {issue.code for issue in result.issues} == {"VERIFY_BETWEEN"} and result.between_mm > 1.5 * CHORD_ERROR
 
@@ -134,7 +134,7 @@ def test_the_program_origin_changes_the_text_and_not_the_motion(planned):
     texts, flanges = [], []
     for origin in ("auto", ORIGIN):
         parameters = ProgramParameters(post="staubli", motion="cartesian", origin=origin)
-        program = programs.build(motion, cell, ProcessParameters(), parameters, "dome")
+        program = build(motion, cell, ProcessParameters(), parameters, "dome")
         files = staubli.write(program)
         result = verify(cell, motion, program, files)
         assert result.issues == () and 0.0 < result.at_points_mm <= result.bound_mm < 0.001
@@ -159,6 +159,6 @@ def test_an_origin_of_zero_gauge_comes_to_the_deposition_point(planned):
     there = cell.mount @ np.linalg.inv(flange @ cell.carried) @ cell.station
     origin = (*there[0, :3, 3], *Rotation.from_matrix(there[0, :3, :3]).as_euler("XYZ"))
     parameters = ProgramParameters(post="staubli", motion="cartesian", origin=origin)
-    program = programs.build(motion, cell, ProcessParameters(), parameters, "dome")
+    program = build(motion, cell, ProcessParameters(), parameters, "dome")
     run = next(block for block in program.moves if block.kind == "deposit")
     assert np.abs(run.position[4]).max() < 1e-9 and np.abs(run.rotation[4] - np.eye(3)).max() < 1e-9

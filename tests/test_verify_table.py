@@ -18,10 +18,10 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.read_moves import Event, ReadMoves
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.read_back import text_path
+from tests.programs import build
 
 CHORD_ERROR = 0.02
 MM, RAD, UNIT, RELATIVE = 5e-4, math.radians(5e-4), 5e-7, 5e-6

@@ -30,6 +30,7 @@ from freecad_am.core.preflight.promise import Promise, row_place
 from freecad_am.core.read_moves import ReadMoves
 from freecad_am.core.simulation import rapid_look, waypoints
 from freecad_am.core.simulation.margins import on_deposit
+from freecad_am.objects import controllers
 from freecad_am.posts import catalogue
 from freecad_am.read_back import driven
 from freecad_am.report import figures
@@ -75,7 +76,7 @@ def check(programs: Sequence[str], cell_file: str, post: str | None, folder: str
     cell = cells.resolve(known.cell, np.eye(4), folders=user_machines.folders())
     name, read = _read(files, _posts(cell, known, post))
     settings = known.program or ProgramParameters(post=name)
-    motion = driven.driven(cell, without_moves(cell, settings, "check"), read)
+    motion = driven.driven(cell, without_moves(cell, settings, catalogue.controller(name), "check"), read)
     promises = _promises(motion, cell, known)
     issues = [
         Issue(ERROR, code, f"{one.promise} - it does not: {one.figure}", *(one.place or (None, None, None)))
@@ -141,7 +142,8 @@ def _posts(cell: Cell, known: Known, post: str | None) -> tuple[str, ...]:
         return (post,)
     if known.program is not None and known.program.post != "none":
         return (known.program.post,)
-    return catalogue.NAMES if cell.machine.posts is None else cell.machine.posts
+    posts = controllers.readers(cell)
+    return catalogue.NAMES if posts is None else posts
 
 
 def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves]:

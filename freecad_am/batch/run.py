@@ -150,7 +150,7 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     if stages.cell is None or has_errors(stages.issues):
         return stages
     if job.program is not None:
-        from freecad_am.core.planning import controllers
+        from freecad_am.objects import controllers
 
         controllers.check_beads(api.result(stages.toolpath), job.program.post, job.program.max_points)
     with stages.timed("joint_path", session):

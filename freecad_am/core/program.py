@@ -43,7 +43,7 @@ class Moves:
     (shoulder, elbow, wrist) per point. On a rotary table, which has no rotation about the tool and no configuration:
     position of the tip, and direction (n, 3), unit vectors from the deposit towards the torch, seen from the program's
     origin, which turns with the part. flange: (n, 4, 4) its pose in the maker's base frame, mm, only for posts that need it
-    (`planning.controllers.FLANGE_TOLD`) where the part is on the robot. wire: (n,) mm/s of the wire on that move where the
+    (`Controller.flange`) where the part is on the robot. wire: (n,) mm/s of the wire on that move where the
     program has to tell it, else None.
     """
 

@@ -40,7 +40,8 @@ def as_run(
     condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
     if settings is None:
         return AsRun(motion, condition, threshold, issues)
-    straight = settings.motion == "cartesian" and settings.post not in catalogue.STRAIGHT_IN_PART
+    controller = catalogue.controller(settings.post)
+    straight = settings.motion == "cartesian" and not controller.straight_in_part
     if straight and cell.arrangement.holds_part:
         origin = moving_tool.origins(motion, cell, chord_error)
         beads = [path.bead for path in planned.joint_path.beads]
@@ -48,7 +49,7 @@ def as_run(
         condition, threshold = condition[origin], threshold[origin]
         issues = tuple(_renumbered(issue, planned.motion, motion, origin) for issue in issues)
     whole = motion
-    motion, kept = steps.told(motion, settings.post, chord_error, settings.blend)
+    motion, kept = steps.told(motion, controller, chord_error, settings.blend)
     if len(motion) < len(whole):
         condition, threshold = condition[kept], threshold[kept]
         issues = tuple(_renumbered(issue, whole, motion, kept) for issue in issues)

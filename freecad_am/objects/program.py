@@ -14,12 +14,12 @@ from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.planning import controllers, moving_tool, program_beads, steps
+from ..core.planning import moving_tool, program_beads, steps
 from ..core.planning import program as programs
 from ..core.program import Program as Text
 from ..core.toolpath import Toolpath
 from ..posts import catalogue, refusals
-from . import progress, user_machines
+from . import controllers, progress, user_machines
 from .joint_path import Planned
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
@@ -97,7 +97,7 @@ class Program(Stage):
         try:
             parameters = self.parameters(obj, ProgramParameters)
             refuse(cell, process, parameters)
-            if parameters.post in controllers.WHOLE_BEADS:
+            if catalogue.controller(parameters.post).whole_beads:
                 controllers.check_beads(toolpath.Proxy.value(toolpath), parameters.post, parameters.max_points)
         except InputError as error:
             self.say_failed(obj, error)
@@ -111,12 +111,9 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     if parameters.post == "none":
         return
     post = catalogue.load(parameters.post)
-    controllers.check_controller(cell.robot, parameters.post)
-    controllers.check_external(cell, parameters.post)
-    controllers.check_wrist(cell.machine, parameters.motion, parameters.post)
-    controllers.check_pulses(cell.machine, parameters.motion, parameters.post)
-    catalogue.refuse(
-        parameters.post, parameters.motion, cell.setup, programs.external_kinds(cell), programs.on_table(cell, parameters)
+    controllers.check(cell, parameters)
+    post.refuse_setup(
+        parameters.motion, cell.setup, programs.external_kinds(cell), programs.on_table(cell, parameters)
     )
     if process.wire.feed_mode != "constant" and post.NO_WIRE and not parameters.dry_run:
         raise refusals.wire_refused(post.NO_WIRE)
@@ -134,14 +131,14 @@ def posted(job: Job) -> Posted:
     refuse(cell, job.process, parameters)
     progress.report(0.1, "building moves and events")
     motion = planned.motion
-    straight = parameters.motion == "cartesian" and parameters.post not in catalogue.STRAIGHT_IN_PART
+    straight = parameters.motion == "cartesian" and not post.CONTROLLER.straight_in_part
     if straight and cell.arrangement.holds_part:
         beads = [path.bead for path in planned.joint_path.beads]
         motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
-    motion, _ = steps.told(motion, parameters.post, toolpath.chord_error, parameters.blend)
+    motion, _ = steps.told(motion, post.CONTROLLER, toolpath.chord_error, parameters.blend)
     waits = [layer.wait for layer in toolpath.layers]
     returns = programs.returning(toolpath, planned.joint_path.beads)
-    program = programs.build(motion, cell, job.process, parameters, job.name, waits, returns)
+    program = programs.build(motion, cell, job.process, parameters, post.CONTROLLER, job.name, waits, returns)
     progress.report(0.3, "writing")
     return Posted(cell, toolpath, _run(motion, parameters), program, post.write(program))
 

@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.controller import Controller
 from ..core.issues import InputError
 from ..core.program import (
     LINEAR_MOVE,
@@ -49,6 +50,7 @@ __all__ = ["read", "write"]
 
 LAST_ANALOGUE = 4096
 # why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(external=True, positioner="STN1", whole_beads=True, straight_in_part=True)
 NO_WIRE = "an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried"
 NO_SCHEDULE = {
     "arc": "ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one",
@@ -118,7 +120,9 @@ def program_name(name: str, where: str) -> str:
     return NAMING.checked(name, where)
 
 
-def refuse_setup(motion: str, setup: str) -> None:
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
     if setup not in SETUPS:
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post abb cannot write {setup} ({motion} motion)")

@@ -9,22 +9,21 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any, Protocol
 
+from ..core.controller import Controller
 from ..core.issues import InputError
 from ..core.program import Program
 from ..core.read_moves import ReadMoves
 
 NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb", "kuka")  # of the modules beside this one
-# whose linear moves with the part on the robot run straight as the part sees them: their beads need no points in between
-STRAIGHT_IN_PART = ("abb",)
-_COORDINATED_IN_JOINTS = ("fanuc", "yaskawa")  # that write external axes in joint moves alone
-_LEVEL_TABLE = ("linuxcnc",)  # whose rotary tables have to stand level in Cartesian programs
 
 
 class Post(Protocol):
-    """What a post module offers. NO_WIRE: why programs cannot tell the speed of the wire along a bead, '' where they can.
-    NO_SCHEDULE: why it cannot be told schedules, by the ways ('output', 'arc') in which it cannot. MOVE_LINE: how a line
-    begins that tells a move, or, in a loop, several. ON_CONTROLLER: what only the controller can show."""
+    """What a post module offers. CONTROLLER: what planning must know of the controller. NO_WIRE: why programs cannot tell
+    the speed of the wire along a bead, '' where they can. NO_SCHEDULE: why it cannot be told schedules, by the ways
+    ('output', 'arc') in which it cannot. MOVE_LINE: how a line begins that tells a move, or, in a loop, several.
+    ON_CONTROLLER: what only the controller can show."""
 
+    CONTROLLER: Controller
     NO_WIRE: str
     NO_SCHEDULE: Mapping[str, str]
     MOVE_LINE: re.Pattern[bytes]
@@ -36,8 +35,11 @@ class Post(Protocol):
     def write(self, program: Program) -> dict[str, bytes]:
         """The controller's files, name -> content; raises InputError for what the controller would refuse."""
 
-    def refuse_setup(self, motion: str, setup: str) -> None:
-        """Raises InputError, saying why, when this motion of this set-up cannot be said to the controller."""
+    def refuse_setup(
+        self, motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+    ) -> None:
+        """Raises InputError, saying why, when this motion of this set-up cannot be said to the controller, with external
+        axes of these kinds, as programs have them, or on a rotary table, whose `carried` frame is None on others."""
 
     def read(self, files: dict[str, bytes]) -> ReadMoves:
         """The moves found in the files, in the order of execution; raises InputError UNREADABLE_PROGRAM."""
@@ -53,15 +55,9 @@ def load(name: str) -> Post:
     return found
 
 
-def refuse(name: str, motion: str, setup: str, beside: tuple[str, ...], carried: tuple[float, ...] | None) -> None:
-    """InputError of a post for what it cannot say: this motion of this set-up, with external axes of the kinds `beside`, as
-    programs have them, or on a rotary table, its `carried` frame None on others."""
-    post: Any = load(name)
-    post.refuse_setup(motion, setup)
-    if beside and name in _COORDINATED_IN_JOINTS:
-        post.refuse_coordinated(motion, beside)
-    if carried is not None and motion == "cartesian" and name in _LEVEL_TABLE:
-        post.refuse_tilt(carried)
+def controller(name: str) -> Controller:
+    """What planning must know of the controller of a post; of `none` that it asks for nothing. InputError UNKNOWN_POST."""
+    return Controller() if name == "none" else load(name).CONTROLLER
 
 
 def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:

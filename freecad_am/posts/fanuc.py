@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.controller import Controller
 from ..core.issues import InputError
 from ..core.program import (
     FIRST_SHARE,
@@ -54,6 +55,7 @@ Array = NDArray[np.float64]
 
 LAST_ANALOGUE = 25  # analogue inputs
 # why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(external=True, positioner="2")
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
@@ -112,7 +114,9 @@ def program_name(name: str, where: str) -> str:
     return NAMING.checked(name, where)
 
 
-def refuse_setup(motion: str, setup: str) -> None:
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
     """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
@@ -122,14 +126,16 @@ def refuse_setup(motion: str, setup: str) -> None:
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post fanuc cannot write {setup}")
+    if external:
+        _refuse_coordinated(motion, external)
 
 
-def refuse_coordinated(motion: str, beside: tuple[str, ...]) -> None:
-    """Raises InputError COORDINATED_MOTION for what cannot be said with axes of these kinds beside the robot."""
+def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
+    """Raises InputError COORDINATED_MOTION for what cannot be said with external axes of these kinds."""
     if motion != "cartesian":
         return
     why = ("linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions"
-           " are then seen from was not confirmed") if ROTARY in beside else (
+           " are then seen from was not confirmed") if ROTARY in external else (
         "whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up,"
         " and was not confirmed")
     raise InputError("COORDINATED_MOTION", "program.motion", f"{why}; use `motion: joint`, whose times hold the speed")
@@ -140,7 +146,7 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "fanuc", AXES + len(program.external_kinds))
     refuse_external(program, len(program.external_kinds), f"[2-{text.GROUPS}]", f"its motion group, 2 to {text.GROUPS}")
     if program.external_kinds:
-        refuse_coordinated(program.motion, program.external_kinds)
+        _refuse_coordinated(program.motion, program.external_kinds)
     refuse_named_track(program, "E1 of the robot's own motion group")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ..core.controller import Controller
 from ..core.issues import InputError
 from ..core.program import (
     Block,
@@ -46,6 +47,7 @@ __all__ = ["read", "write"]
 
 NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found documented"
 # why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(external=True, positioner="2")
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
 NO_SCHEDULE = {"arc": "instructions of ArcTech name weld data that only the pendant makes"}
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
@@ -106,7 +108,9 @@ def program_name(name: str, where: str) -> str:
     return NAMING.checked(name, where)
 
 
-def refuse_setup(motion: str, setup: str) -> None:
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
     """Raises InputError UNSUPPORTED_SETUP, REMOTE_TCP or JOINT_DEPOSIT for what cannot be said to this controller."""
     if setup not in ("part-on-robot", "tool-on-robot"):
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post kuka cannot write {setup}")

@@ -16,6 +16,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.controller import Controller
 from ..core.issues import InputError
 from ..core.program import (
     LINEAR_MOVE,
@@ -45,6 +46,7 @@ Array = NDArray[np.float64]
 
 NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_")
 _NO_END = 10**9
+CONTROLLER = Controller()
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
@@ -105,9 +107,13 @@ def program_name(name: str, where: str) -> str:
     return NAMING.checked(name, where)
 
 
-def refuse_setup(motion: str, setup: str) -> None:
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
     common.refuse_setup("linuxcnc", motion, setup)
+    if carried is not None and motion == "cartesian":
+        _refuse_tilt(carried)
 
 
 def _refuse(program: Program) -> None:
@@ -153,10 +159,10 @@ def _refuse_cartesian(program: Program) -> None:
             f" {MACHINE_OFFSET}, is set to zero for moves of the axes)",
         )
     if program.carried is not None:
-        refuse_tilt(program.carried)
+        _refuse_tilt(program.carried)
 
 
-def refuse_tilt(carried: tuple[float, ...]) -> None:
+def _refuse_tilt(carried: tuple[float, ...]) -> None:
     """Raises InputError UNSUPPORTED_FRAME where the program's origin, X Y Z RX RY RZ (mm, rad), leans on the table."""
     if max(abs(angle) for angle in carried[3:5]) > 1e-9:
         x, y, z, rx, ry, rz = (*carried[:3], *(math.degrees(angle) for angle in carried[3:]))

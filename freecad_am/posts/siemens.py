@@ -16,6 +16,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.controller import Controller
 from ..core.issues import InputError
 from ..core.program import (
     LINEAR_MOVE,
@@ -44,6 +45,7 @@ __all__ = ["read", "write"]
 Array = NDArray[np.float64]
 
 _NO_END = 10**9
+CONTROLLER = Controller()
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
@@ -104,7 +106,9 @@ def program_name(name: str, where: str) -> str:
     return NAMING.checked(name, where)
 
 
-def refuse_setup(motion: str, setup: str) -> None:
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
     common.refuse_setup("siemens", motion, setup)
 

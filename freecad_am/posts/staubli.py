@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.controller import Controller
 from ..core.issues import InputError
 from ..core.program import (
     JOINT_MOVE,
@@ -48,6 +49,7 @@ Array = NDArray[np.float64]
 
 NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
 # why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(whole_beads=True)
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
 NO_SCHEDULE = {
     "output": "that VAL 3 sets several outputs to one number was not found documented",
@@ -116,7 +118,9 @@ def program_name(name: str, where: str) -> str:
     return NAMING.checked(name, where)
 
 
-def refuse_setup(motion: str, setup: str) -> None:
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
     if setup not in SETUPS:
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post staubli cannot write {setup} ({motion} motion)")

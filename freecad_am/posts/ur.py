@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.controller import Controller
 from ..core.issues import InputError
 from ..core.program import (
     LINEAR_MOVE,
@@ -52,6 +53,7 @@ Array = NDArray[np.float64]
 
 AXES = 6
 # why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3)
 NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
 NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
 LAST_REGISTER, LAST_SCHEDULE = 47, 65535
@@ -113,7 +115,9 @@ def program_name(name: str, where: str) -> str:
     return NAMING.checked(name, where)
 
 
-def refuse_setup(motion: str, setup: str) -> None:
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
     """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(

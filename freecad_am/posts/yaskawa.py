@@ -16,6 +16,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.controller import Controller
 from ..core.issues import InputError
 from ..core.program import (
     DEPOSIT,
@@ -55,6 +56,7 @@ Array = NDArray[np.float64]
 
 NO_ANALOGUE = "how a job waits for an analogue input differs with the controller's options, and the post yaskawa knows none"
 # why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(external=True, positioner="ST1", pulses=True)
 NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE, LAST_FILE = 512, 255, 1000  # groups of eight outputs; files of arc conditions
@@ -116,7 +118,9 @@ def program_name(name: str, where: str) -> str:
     return NAMING.checked(name, where)
 
 
-def refuse_setup(motion: str, setup: str) -> None:
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
     """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
@@ -126,14 +130,17 @@ def refuse_setup(motion: str, setup: str) -> None:
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post yaskawa cannot write {setup}")
+    if external:
+        _refuse_coordinated(motion, external)
 
 
-def refuse_coordinated(motion: str, beside: tuple[str, ...]) -> None:
-    """Raises InputError COORDINATED_MOTION for what cannot be said with axes of these kinds beside the robot."""
+def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
+    """Raises InputError COORDINATED_MOTION for what cannot be said with external axes of these kinds."""
     if motion != "cartesian":
         return
-    why = "over a part on a positioner are coordinated motion (SMOVL), and what their speed is of" if ROTARY in beside else (
-        "of a robot on a track have the base axis go along, and whether their speed counts its way")
+    why = "of a robot on a track have the base axis go along, and whether their speed counts its way"
+    if ROTARY in external:
+        why = "over a part on a positioner are coordinated motion (SMOVL), and what their speed is of"
     raise InputError(
         "COORDINATED_MOTION", "program.motion",
         f"linear moves {why} was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it",
@@ -145,7 +152,7 @@ def _refuse(program: Program) -> None:
     axes = len(AXES) + len(program.external_kinds)
     refuse_incomplete(program, "yaskawa", axes)
     if program.external_kinds:
-        refuse_coordinated(program.motion, program.external_kinds)
+        _refuse_coordinated(program.motion, program.external_kinds)
         refuse_external(program, MOST_EXTERNAL, r"ST[1-9]\d?", "the name of its station, such as ST1")
         refuse_named_track(program, f"the base axis {BASE} of the robot")
         if program.first_external != 1:

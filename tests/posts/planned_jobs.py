@@ -19,9 +19,9 @@ from freecad_am.core.parameters.program import NcParameters, ProgramParameters
 from freecad_am.core.planning import moving_tool
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.posts import catalogue
+from tests.programs import build
 
 CHORD_ERROR, SPEED, SIDES, LIFT = 0.05, 8.0, 3, 20.0
 WIDTH, HEIGHT = 8.0, 3.0  # of beads

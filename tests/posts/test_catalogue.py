@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Which of a program's files a controller is told to run."""
 
+import ast
 import re
 from pathlib import Path
 
@@ -27,3 +28,15 @@ def test_of_programs_that_are_written_it_names_all_parts(folder):
     parts = {match.group() for name in files if (match := re.search(r"(?i)(gauge|tip)\d\d", name))}
     text = (GOLDEN / folder / main).read_text(encoding="latin-1")
     assert len(parts) == 2 and all(part in text for part in parts)
+
+
+def test_no_other_room_names_a_controller():
+    """Nothing but its post knows of a controller: no constant elsewhere is the name of one, but the post of a new job."""
+    package = Path(catalogue.__file__).resolve().parent.parent
+    named = {
+        (path.relative_to(package).as_posix(), node.value)
+        for path in package.rglob("*.py") if path.parent.name != "posts"
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Constant) and node.value in catalogue.NAMES
+    }
+    assert named == {("core/parameters/program.py", "fanuc")}

@@ -11,8 +11,8 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.core.planning import controllers
 from freecad_am.core.planning.program import external_kinds
+from freecad_am.objects import controllers
 from freecad_am.posts import catalogue
 from tests.posts.planned_jobs import PULSES, WAYS
 
@@ -64,7 +64,7 @@ def refusal(post, motion, setup):
         controllers.check_external(cell, post)
         controllers.check_wrist(cell.machine, motion, post)
         controllers.check_pulses(cell.machine, motion, post)
-        catalogue.refuse(post, motion, cell.setup, external_kinds(cell), None)
+        catalogue.load(post).refuse_setup(motion, cell.setup, external_kinds(cell), None)
     except InputError as error:
         return error
     return None

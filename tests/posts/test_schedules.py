@@ -13,10 +13,10 @@ from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.motion import UNKNOWN
 from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters, ScheduleParameters
-from freecad_am.core.planning.program import build
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
+from tests.programs import build
 
 ONE_EACH = (
     ("fanuc", "joint", "time", "fanuc tool-on-robot"), ("fanuc", "cartesian", "time", "fanuc tool-on-robot"),

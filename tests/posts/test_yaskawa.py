@@ -10,8 +10,8 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import machine
-from freecad_am.core.planning.controllers import check_pulses, written_by
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitBelow, WaitInput
+from freecad_am.objects.controllers import check_pulses, written_by
 from freecad_am.posts import earlier, ur, yaskawa
 from tests.posts.fanuc_programs import GOLDEN_JOINT, beads, moves, program
 

@@ -29,8 +29,6 @@ from .machine import MAKER, Machine
 
 Array = NDArray[np.float64]
 
-POSTS = ("abb", "fanuc", "kuka", "yaskawa")  # that write axes beside the robot
-
 
 @dataclass(frozen=True, eq=False)
 class ExternalAxes:
@@ -160,7 +158,7 @@ def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
 
 
 def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machine:
-    """The robot with further axes e1, e2 ...: of its posts those write for it that know them."""
+    """The robot with further axes e1, e2 ...."""
     count, axes = sum(other.chain.axes for other in others), robot.chain.axes
     matrix = np.eye(axes + count)
     matrix[:axes, :axes] = robot.controller_matrix
@@ -182,7 +180,6 @@ def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machin
         axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))), controller_matrix=matrix,
         controller_offset=np.concatenate(offset),
         pulses_per_degree=sum((one.pulses_per_degree for one in all_), ()) if told else (), **alike,
-        posts=tuple(post for post in POSTS if robot.posts is None or post in robot.posts),
     )
 
 

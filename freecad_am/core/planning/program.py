@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import motion as motions
+from ..controller import Controller
 from ..geometry import frames
 from ..issues import InputError
 from ..kinematics import opw
@@ -41,7 +42,6 @@ from ..program import (
     WaitInput,
 )
 from ..toolpath import Toolpath
-from .controllers import FLANGE_TOLD, UNITS, check_controller, check_external, check_pulses, check_wrist
 from .joint_path import BeadPath
 from .program_beads import deposited, parted
 from .program_remarks import frames_of, remarks_of, six_of
@@ -51,28 +51,23 @@ ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
 
 def build(
-    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, name: str,
+    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, controller: Controller, name: str,
     waits: Sequence[float] = (), returns: Collection[tuple[int, int]] = (),
 ) -> Program:
-    """The program of a motion.
+    """The program of a motion, for a controller that takes it.
 
     returns: beads (layer, index) that return to a place, of `returning`; the torch waits above them until that has cooled.
     waits: s that the machine stands before each layer (`Layer.wait`), none when left out; `between_layers.wait` counts
     towards them. Before the first layer that is run there is nothing to wait for.
 
-    Raises InputError: START_AT for a start past the last bead, WRONG_CONTROLLER for a post the machine cannot read,
-    NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT, NO_SCHEDULE.
+    Raises InputError: START_AT for a start past the last bead, NO_SCHEDULE.
     """
-    check_controller(cell.robot, parameters.post)
-    check_external(cell, parameters.post)
-    check_wrist(cell.machine, parameters.motion, parameters.post)
-    check_pulses(cell.machine, parameters.motion, parameters.post)
-    blocks = _blocks(motion, cell, process, parameters, waits, returns)
+    blocks = _blocks(motion, cell, process, parameters, controller, waits, returns)
     remarks = remarks_of(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
-    return replace(without_moves(cell, parameters, name), blocks=blocks, remarks=remarks)
+    return replace(without_moves(cell, parameters, controller, name), blocks=blocks, remarks=remarks)
 
 
-def without_moves(cell: Cell, parameters: ProgramParameters, name: str) -> Program:
+def without_moves(cell: Cell, parameters: ProgramParameters, controller: Controller, name: str) -> Program:
     """What a program tells of its cell before the first move."""
     return Program(
         name=name,
@@ -100,7 +95,7 @@ def without_moves(cell: Cell, parameters: ProgramParameters, name: str) -> Progr
             parameters.nc.wire_output, parameters.nc.wire_gain,
         ),
         external_kinds=external_kinds(cell),
-        unit=_unit(cell, parameters),
+        unit=_unit(cell, parameters, controller),
         first_external=parameters.axes.first,
         schedule_output=parameters.schedule.output,
     )
@@ -111,11 +106,11 @@ def external_kinds(cell: Cell) -> tuple[str, ...]:
     return tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding[cell.robot.chain.axes :])
 
 
-def _unit(cell: Cell, parameters: ProgramParameters) -> str:
+def _unit(cell: Cell, parameters: ProgramParameters, controller: Controller) -> str:
     """What the controller calls the mechanism beside the robot. A track has no name unless one is given: it is always on."""
     if cell.external is None:
         return ""
-    return parameters.axes.unit or (UNITS.get(parameters.post, "") if cell.external.turning else "")
+    return parameters.axes.unit or (controller.positioner if cell.external.turning else "")
 
 
 def returning(toolpath: Toolpath, paths: Sequence[BeadPath]) -> frozenset[tuple[int, int]]:
@@ -155,20 +150,20 @@ def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
 
 
 def _blocks(
-    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, waits: Sequence[float],
-    returns: Collection[tuple[int, int]],
+    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, controller: Controller,
+    waits: Sequence[float], returns: Collection[tuple[int, int]],
 ) -> tuple[Block, ...]:
     def approach(rows: NDArray[np.int64], arriving: bool = False) -> list[Block]:
         """Rapids that lead to a bead; where it returns to a place the torch waits above it."""
         place = int(motion.layer[rows[-1]]), int(motion.bead[rows[-1]])
         if process.cooling.below is None or place not in returns:
-            return [_moves(motion, cell, rows, RAPID, parameters, arriving)]
+            return [_moves(motion, cell, rows, RAPID, parameters, controller, arriving)]
         onto = motion.role[rows] == motions.APPROACH
         if not onto.any():
             onto[-1] = True
-        above = [_moves(motion, cell, rows[~onto], RAPID, parameters, arriving)] if not onto.all() else []
+        above = [_moves(motion, cell, rows[~onto], RAPID, parameters, controller, arriving)] if not onto.all() else []
         value = process.cooling.zero + process.cooling.gain * process.cooling.below
-        down = _moves(motion, cell, rows[onto], RAPID, parameters, arriving and not above)
+        down = _moves(motion, cell, rows[onto], RAPID, parameters, controller, arriving and not above)
         return [*above, WaitBelow(process.cooling.input, value, *place), down]
 
     run = rows_from(motion, parameters.start_at)
@@ -179,7 +174,9 @@ def _blocks(
         first = int(rows[0])
         if motion.deposit[first]:
             parts = parted(motion.phase[rows[1:]], process.for_class(_class_of(motion, first)))
-            runs = [(_moves(motion, cell, rows[1:][part], DEPOSIT, parameters), number) for part, number in parts]
+            runs = [
+                (_moves(motion, cell, rows[1:][part], DEPOSIT, parameters, controller), number) for part, number in parts
+            ]
             blocks += deposited(runs, _class_of(motion, first), process, parameters)
             continue
         here = int(motion.layer[first])
@@ -188,13 +185,13 @@ def _blocks(
             blocks.append(LayerStart(here))
             blocks += approach(rows, arriving=True)
         elif last:
-            blocks.append(_moves(motion, cell, rows, RAPID, parameters))
+            blocks.append(_moves(motion, cell, rows, RAPID, parameters, controller))
         elif here == layer:
             blocks += approach(rows)
         else:
             retract = motion.role[rows] == motions.RETRACT
             if retract.any():
-                blocks.append(_moves(motion, cell, rows[retract], RAPID, parameters))
+                blocks.append(_moves(motion, cell, rows[retract], RAPID, parameters, controller))
             blocks += _between(process.between_layers, waits[here] if len(waits) else 0.0)
             blocks.append(LayerStart(here))
             blocks += approach(rows[~retract])
@@ -230,14 +227,15 @@ def _between(between: BetweenLayersParameters, cooling: float) -> list[Block]:
 
 
 def _moves(
-    motion: Motion, cell: Cell, rows: NDArray[np.int64], kind: str, parameters: ProgramParameters, arriving: bool = False
+    motion: Motion, cell: Cell, rows: NDArray[np.int64], kind: str, parameters: ProgramParameters, controller: Controller,
+    arriving: bool = False,
 ) -> Moves:
     duration = motion.duration[rows].copy()
     if arriving:
         duration[0] = FIRST_TIME
     position = rotation = direction = flange = None
     configuration = None
-    if parameters.post in FLANGE_TOLD and cell.arrangement.holds_part:
+    if controller.flange and cell.arrangement.holds_part:
         flange = frames.inverse(cell.machine.base) @ cell.machine.chain.forward(motion.joints[rows])
     if parameters.motion == "cartesian":
         station, carried = frames_of(cell, parameters)

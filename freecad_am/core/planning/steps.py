@@ -12,31 +12,31 @@ import dataclasses
 import numpy as np
 from numpy.typing import NDArray
 
+from ..controller import Controller
 from ..motion import Motion
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Rows = NDArray[np.intp]
 
-STEPS = {"ur": 2.0001e-3}  # s, of controllers that do not take shorter moves of a bead
-BLENDS = {"ur": 2.6e-3}  # mm beside a point, of those that blend by a share of it at 100 %, and stop where it is too little
 OFF = 0.4  # of the chord error, that points left out may lie off
 REACH = 2000.0  # mm; so far off an axis, at most, is what it turns
 
 
-def told(motion: Motion, post: str, chord_error: float, blend: float) -> tuple[Motion, Rows]:
-    """The motion that a post's programs tell, and which rows (m,) of all these are. blend: percent, of the program."""
-    if post not in STEPS:
+def told(motion: Motion, controller: Controller, chord_error: float, blend: float) -> tuple[Motion, Rows]:
+    """The motion that programs of a controller tell, and which rows (m,) of all these are. blend: percent."""
+    step, blended = controller.least_step, controller.least_blend
+    if not step:
         return motion, np.arange(len(motion))
-    rows = np.flatnonzero(_kept(motion, STEPS[post], 100.0 * BLENDS[post] / blend if blend else 0.0, chord_error))
+    rows = np.flatnonzero(_kept(motion, step, 100.0 * blended / blend if blend else 0.0, chord_error))
     columns = {field.name: getattr(motion, field.name)[rows] for field in dataclasses.fields(motion)}
     inside = columns["deposit"] & (columns["point"] > 0)
     duration = np.diff(np.cumsum(motion.duration)[rows], prepend=0.0)
     # the time of what was left out goes to the move that takes its place
     joined = inside & (np.diff(rows, prepend=-1) > 1)
     columns["duration"] = np.where(joined, duration, columns["duration"])
-    slow = inside & (columns["duration"] < STEPS[post])
-    columns["duration"] = np.where(slow, STEPS[post], columns["duration"])
+    slow = inside & (columns["duration"] < step)
+    columns["duration"] = np.where(slow, step, columns["duration"])
     way = np.linalg.norm(np.diff(columns["position"], axis=0, prepend=columns["position"][:1]), axis=1)
     columns["speed"] = np.where(joined | slow, way / np.where(inside, columns["duration"], 1.0), columns["speed"])
     return Motion(**columns), rows

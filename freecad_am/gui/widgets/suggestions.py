@@ -9,9 +9,9 @@ from typing import Any
 from ...core.issues import InputError
 from ...core.kinematics import machine
 from ...core.parameters.program import ProgramParameters
-from ...core.planning.controllers import written_by
 from ...core.process import bead_table
 from ...objects import preferences, user_machines
+from ...objects.controllers import written_by
 from ...posts import catalogue
 from ..texts.translation import tr
 from .choices import machines

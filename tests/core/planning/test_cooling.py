@@ -17,13 +17,14 @@ from freecad_am.core.parameters.process import BetweenLayersParameters, CoolingP
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build, returning
+from freecad_am.core.planning.program import returning
 from freecad_am.core.program import Moves, WaitBelow
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.core.planning.test_leaning_programs import CHORD_ERROR, HUB, ON_ROBOT, TABLE, UP
 from tests.core.strategies.test_developable import box
+from tests.programs import build
 
 COOLING = CoolingParameters(below=150.0, input=3, gain=0.01, zero=0.25)
 LIFT = 20.0

@@ -15,9 +15,9 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.posts import fanuc
+from tests.programs import build
 
 CHORD_ERROR = 0.05
 CONE = Developable(60.0, 200.0)

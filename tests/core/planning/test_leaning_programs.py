@@ -20,12 +20,12 @@ from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.process import bead_table
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.core.toolpath import Bead, Layer, SpeedLaw, Toolpath
 from freecad_am.posts import catalogue
 from tests.core.strategies.test_developable import box
+from tests.programs import build
 
 CHORD_ERROR, LEAN, MOST = 0.05, 20.0, 3.0  # mm; deg; deg/mm, what max_turn is on hubs
 HUB = Developable(60.0)

@@ -13,10 +13,8 @@ from freecad_am.core.kinematics import machine, opw
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters, StartParameters
-from freecad_am.core.planning.controllers import check_controller
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.planning.rapids import Moves as Driven
 from freecad_am.core.planning.rapids import Surroundings
 from freecad_am.core.planning.straight import kept_straight
@@ -24,7 +22,9 @@ from freecad_am.core.planning.task import Task
 from freecad_am.core.program import FIRST_TIME, Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
 from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl import chain as kdl
+from freecad_am.objects.controllers import check_controller
 from freecad_am.posts import catalogue
+from tests.programs import build
 
 
 @pytest.fixture(scope="module")

@@ -17,10 +17,10 @@ from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessP
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.kdl import chain as kdl
 from freecad_am.posts import catalogue
 from tests.batch import row_limits
+from tests.programs import build
 
 MACHINES = {
     "fanuc-arcmate120ic": (1100.0, 600.0), "kuka-kr16-2": (1100.0, 800.0), "staubli-tx60l": (550.0, 300.0),

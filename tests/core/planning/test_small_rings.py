@@ -16,9 +16,9 @@ from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.strategies import revolution
 from freecad_am.posts import catalogue
+from tests.programs import build
 
 
 def toolpath_of(radius, layer_height, top=np.pi / 2, end=2 * np.pi, process=None):

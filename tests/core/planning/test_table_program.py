@@ -15,9 +15,9 @@ from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessP
 from freecad_am.core.parameters.program import ProgramParameters, StartParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.program import LayerStart, Wait, slide_feeds
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from tests.programs import build
 
 PLATFORM = (10.0, -4.0, 30.0, 0.0, 0.0, 0.4)
 

@@ -20,11 +20,11 @@ from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.level import figures
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.core.planning.test_external_axes import bryant, driven, kdl_chain, kdl_pose
+from tests.programs import build
 
 ROBOT, ABB = "kuka-kr6-r900-sixx", "abb-irb1200-5-90"
 STANDS = (40.0, -250.0, -420.0, 0.0, 0.0, 80.0)  # mm, deg

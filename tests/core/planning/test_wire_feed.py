@@ -17,11 +17,11 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import build
 from freecad_am.core.program import DepositOff, DepositOn, Moves, Program
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.posts import catalogue, fanuc, staubli
 from freecad_am.verify import verify
+from tests.programs import build
 
 SHARE = 14.8  # mm of wire to a mm of bead
 

@@ -7,8 +7,8 @@ import pytest
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning.program import build
 from tests.core.planned_dome import planned_dome
+from tests.programs import build
 
 
 @pytest.fixture(scope="session")

@@ -1,22 +1,25 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a program must know of the controller that reads it, and machines and motions that it does not read."""
+"""Machines and motions that the controller of a post does not read, refused before anything is planned."""
 
 from __future__ import annotations
 
-from ..issues import InputError
-from ..kinematics.cell import Cell
-from ..kinematics.machine import NOT_TOLD, Machine
-from ..toolpath import Toolpath
+from ..core.issues import InputError
+from ..core.kinematics.cell import Cell
+from ..core.kinematics.machine import NOT_TOLD, Machine
+from ..core.parameters.program import ProgramParameters
+from ..core.toolpath import Toolpath
+from ..posts.catalogue import NAMES, controller
 
-# posts whose programs count on where the flange is, and those whose positions need no words for configurations of the arm
-FLANGE_TOLD, WITHOUT_CONFIGURATIONS = frozenset({"ur"}), frozenset({"ur"})
-# posts that write positions in pulses of the axes, and Cartesian speeds in the unit of the controller
-IN_PULSES = frozenset({"yaskawa"})
-# posts whose files are loaded one after the other, each with whole beads
-WHOLE_BEADS = frozenset({"abb", "staubli"})
-BESIDE = 50  # points of the ways to a bead, which are counted with it, at most
-# what controllers call the first positioner of a cell: mechanical unit, motion group, number of MACHINE_DEF
-UNITS = {"abb": "STN1", "fanuc": "2", "kuka": "2", "yaskawa": "ST1"}
+APPROACH_POINTS = 50  # of the ways to a bead, which are counted with it, at most
+
+
+def check(cell: Cell, parameters: ProgramParameters) -> None:
+    """InputError for what the controller of the program's post does not take of the cell: WRONG_CONTROLLER,
+    UNSUPPORTED_AXES, NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT."""
+    check_controller(cell.robot, parameters.post)
+    check_external(cell, parameters.post)
+    check_wrist(cell.machine, parameters.motion, parameters.post)
+    check_pulses(cell.machine, parameters.motion, parameters.post)
 
 
 def check_controller(machine: Machine, post: str) -> None:
@@ -34,31 +37,31 @@ def check_controller(machine: Machine, post: str) -> None:
 def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
     """InputError BEAD_TOO_LONG when a bead alone has more points than a file of the program may have: programs tell all
     points of beads."""
-    if post not in WHOLE_BEADS:
+    if not controller(post).whole_beads:
         return
     points, layer, index = max(((len(bead), layer, index) for layer, index, bead in toolpath), default=(0, 0, 0))
     if points > max_points:
         raise InputError(
             "BEAD_TOO_LONG", "program.max_points", f"layer {layer} bead {index} has {points} points, and loading another "
-            f"part within a bead would stop the robot while it deposits; use at least {points + BESIDE}, or a larger "
-            "strategy.chord_error",
+            f"part within a bead would stop the robot while it deposits; use at least {points + APPROACH_POINTS}, or a "
+            "larger strategy.chord_error",
         )
 
 
 def check_external(cell: Cell, post: str) -> None:
     """InputError UNSUPPORTED_AXES when a post of the robot does not write the axes beside it."""
-    written = cell.machine.posts
+    written = readers(cell)
     if cell.external is None or written is None or post in written:
         return
-    beside = "a positioner" if cell.external.slides is None else (
+    external = "a positioner" if cell.external.slides is None else (
         "a track and a positioner together" if cell.external.turning else "a track")
     known = f"use one of {', '.join(written)}" if written else "plan without a program; waypoints.csv has all axes"
-    raise InputError("UNSUPPORTED_AXES", "program.post", f"programs of {post} are not written with {beside}; {known}")
+    raise InputError("UNSUPPORTED_AXES", "program.post", f"programs of {post} are not written with {external}; {known}")
 
 
 def check_wrist(machine: Machine, motion: str, post: str) -> None:
     """InputError NOT_FOR_WRIST: Cartesian programs of robots without a spherical wrist by posts that name configurations."""
-    if motion == "cartesian" and machine.redundant and machine.opw is None and post not in WITHOUT_CONFIGURATIONS:
+    if motion == "cartesian" and machine.redundant and machine.opw is None and controller(post).configurations:
         raise InputError(
             "NOT_FOR_WRIST", "program.motion", f"{machine.title} has no spherical wrist, and what its controller calls the "
             "configurations of cartesian positions is not known; use joint",
@@ -67,13 +70,13 @@ def check_wrist(machine: Machine, motion: str, post: str) -> None:
 
 def check_pulses(machine: Machine, motion: str, post: str) -> None:
     """InputError NO_PULSES, NO_SPEED_UNIT where a post needs what only the controller of that very robot tells."""
-    if post in IN_PULSES and not machine.pulses_per_degree:
+    if controller(post).pulses and not machine.pulses_per_degree:
         raise InputError(
             "NO_PULSES", "cell.machine", f"how many pulses {machine.title} counts to a degree of each axis is not known, "
             "and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the "
             "pendant tells (a position in pulses over the same in degrees), or plan without a program",
         )
-    if post in IN_PULSES and motion == "cartesian" and not machine.speed_unit:
+    if controller(post).pulses and motion == "cartesian" and not machine.speed_unit:
         raise InputError(
             "NO_SPEED_UNIT", "cell.machine", f"the unit of V is a setting of the controller of {machine.title}, and another "
             "one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`",
@@ -84,4 +87,12 @@ def written_by(machine: Machine) -> tuple[str, ...] | None:
     """The posts that programs for a machine can be written by, with what its file tells; None for any."""
     if machine.posts is None or machine.pulses_per_degree:
         return machine.posts
-    return tuple(post for post in machine.posts if post not in IN_PULSES)
+    return tuple(post for post in machine.posts if not controller(post).pulses)
+
+
+def readers(cell: Cell) -> tuple[str, ...] | None:
+    """The posts that the controller of a cell reads, of those with external axes the ones that write these; None for any."""
+    posts = cell.machine.posts
+    if cell.external is None:
+        return posts
+    return tuple(post for post in sorted(NAMES if posts is None else posts) if controller(post).external)

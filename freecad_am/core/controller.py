@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What planning must know of the controller that a program is for. Every post has one such record and hands it down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Controller:
+    """A controller as planning sees it; the values by default are those of one that asks for nothing.
+
+    external: whether axes next to the robot are written, and positioner: what the first one that carries the part is called
+    there unless the job names it (mechanical unit, motion group, number of MACHINE_DEF). configurations: whether Cartesian
+    positions name the configuration of the arm, in words of a spherical wrist. flange: whether programs with the part on the
+    robot count on the pose of the flange. pulses: whether positions are in pulses of the axes, and Cartesian speeds in the
+    unit of the controller. whole_beads: whether a program of several files is loaded file by file, each with whole beads.
+    straight_in_part: whether linear moves with the part on the robot run straight as the part sees them, so that beads need
+    no points in between. least_step: s, shorter moves of a bead are not taken, 0 where there is no limit. least_blend: mm
+    next to a point, by controllers that blend by a share of it at 100 % and stop where that is too little.
+    """
+
+    external: bool = False
+    positioner: str = ""
+    configurations: bool = True
+    flange: bool = False
+    pulses: bool = False
+    whole_beads: bool = False
+    straight_in_part: bool = False
+    least_step: float = 0.0
+    least_blend: float = 0.0
