@@ -7627,7 +7627,7 @@
         <translation>la façon dont un job attend une entrée analogique dépend des options de la commande, et le post-processeur yaskawa n&apos;en connaît aucune</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>how many pulses {0} counts to a degree of each axis is not known, and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant tells (a position in pulses over the same in degrees), or plan without a program</source>
         <translation>combien d&apos;impulsions {0} compte par degré de chaque axe n&apos;est pas connu, et deux modèles diffèrent toujours ; faites-en un fichier machine à vous, avec controller.pulses_per_degree d&apos;après le pupitre (une position en impulsions divisée par la même en degrés), ou planifiez sans programme</translation>
     </message>
@@ -8742,7 +8742,7 @@
         <translation>couche {0} cordon {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>layer {0} bead {1} has {2} points, and loading another part within a bead would stop the robot while it deposits; use at least {3}, or a larger strategy.chord_error</source>
         <translation>couche {0} cordon {1} a {2} points, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {3}, ou une plus grande strategy.chord_error</translation>
     </message>
@@ -9692,32 +9692,32 @@
         <translation>programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>programs of {0} are not written with a positioner; plan without a program; waypoints.csv has all axes</source>
         <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; planifier sans programme ; waypoints.csv a tous les axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>programs of {0} are not written with a positioner; use one of {1}</source>
         <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; utiliser {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>programs of {0} are not written with a track and a positioner together; plan without a program; waypoints.csv has all axes</source>
         <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; planifier sans programme ; waypoints.csv a tous les axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>programs of {0} are not written with a track and a positioner together; use one of {1}</source>
         <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; utiliser {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>programs of {0} are not written with a track; plan without a program; waypoints.csv has all axes</source>
         <translation>les programmes de {0} ne sont pas écrits avec un rail ; planifier sans programme ; waypoints.csv a tous les axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>programs of {0} are not written with a track; use one of {1}</source>
         <translation>les programmes de {0} ne sont pas écrits avec un rail ; utiliser {1}</translation>
     </message>
@@ -10212,12 +10212,12 @@
         <translation>le contrôleur reçoit des programmes de soudage jusqu&apos;à {0}, non {1} ; prenez un autre numéro, là ou dans process.classes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>the controller of {0} does not read {1}; there is no post for it yet: plan without a program; waypoints.csv has its axes</source>
         <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle : planifiez sans programme ; waypoints.csv a ses axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>the controller of {0} does not read {1}; use one of {2}</source>
         <translation>la commande de {0} ne lit pas {1} ; utilisez l&apos;un de {2}</translation>
     </message>
@@ -11032,7 +11032,7 @@
         <translation>la transformation change pendant que le dépôt est en marche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>the unit of V is a setting of the controller of {0}, and another one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`</source>
         <translation>l&apos;unité de V est un réglage de la commande de {0}, et une autre unité est une autre vitesse ; donnez controller.speed_unit dans un fichier machine à vous, ou utilisez `motion: joint`</translation>
     </message>
@@ -12067,7 +12067,7 @@
         <translation>{0} n&apos;a pas de numéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>{0} has no spherical wrist, and what its controller calls the configurations of cartesian positions is not known; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
     </message>
@@ -12127,7 +12127,7 @@
         <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/controllers.py"/>
+        <location filename="../../freecad_am/objects/controllers.py"/>
         <source>{0} is a URDF, which does not tell what the controller shows; plan without a program, or make a machine file of it with New Machine…</source>
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
     </message>
