@@ -24,7 +24,6 @@ LONG_FUNCTIONS = {
     "core/kinematics/machine.py _parse": 48,
     "core/kinematics/opw_recognition.py _arm": 50,
     "core/planning/layer_by_layer.py _searched": 53,
-    "core/planning/program.py _blocks": 46,
     "core/process/bead_table.py measured": 44,
     "core/process/support.py _alone": 49,
     "core/simulation/rapid_look.py looked_at": 46,

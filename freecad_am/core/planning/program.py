@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +62,7 @@ def build(
 
     Raises InputError: START_AT for a start past the last bead, NO_SCHEDULE.
     """
-    blocks = _blocks(motion, cell, process, parameters, controller, waits, returns)
+    blocks = _Blocks(motion, cell, process, parameters, controller).of_all(waits, returns)
     remarks = remarks_of(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
     return replace(without_moves(cell, parameters, controller, name), blocks=blocks, remarks=remarks)
 
@@ -149,54 +149,93 @@ def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
     return np.asarray(run, dtype=np.bool_)
 
 
-def _blocks(
-    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, controller: Controller,
-    waits: Sequence[float], returns: Collection[tuple[int, int]],
-) -> tuple[Block, ...]:
-    def approach(rows: NDArray[np.int64], arriving: bool = False) -> list[Block]:
+@dataclass(frozen=True)
+class _Blocks:
+    """Makes the blocks of a program from rows of its motion."""
+
+    motion: Motion
+    cell: Cell
+    process: ProcessParameters
+    parameters: ProgramParameters
+    controller: Controller
+
+    def of_all(self, waits: Sequence[float], returns: Collection[tuple[int, int]]) -> tuple[Block, ...]:
+        """The blocks of the rows that are run; waits and returns as of `build`."""
+        groups = _groups(self.motion, np.flatnonzero(rows_from(self.motion, self.parameters.start_at)))
+        blocks: list[Block] = []
+        layer: int | None = None
+        for number, rows in enumerate(groups):
+            first = int(rows[0])
+            if self.motion.deposit[first]:
+                blocks += self._bead(number, rows)
+                continue
+            here = int(self.motion.layer[first])
+            if layer is None:
+                blocks += [LayerStart(here), *self._approach(rows, returns, arriving=True)]
+            elif number == len(groups) - 1:
+                blocks.append(self._moves(rows, RAPID))
+            elif here == layer:
+                blocks += self._approach(rows, returns)
+            else:
+                retract = self.motion.role[rows] == motions.RETRACT
+                blocks += [self._moves(rows[retract], RAPID)] if retract.any() else []
+                blocks += _between(self.process.between_layers, waits[here] if len(waits) else 0.0)
+                blocks += [LayerStart(here), *self._approach(rows[~retract], returns)]
+            layer = here
+        return tuple(blocks)
+
+    def _bead(self, number: int, rows: NDArray[np.int64]) -> list[Block]:
+        """A bead, switched on and off, by the group of rows of that number."""
+        kind = _class_of(self.motion, int(rows[0]))
+        parts = parted(self.motion.phase[rows[1:]], self.process.for_class(kind))
+        runs = [(self._moves(rows[1:][part], DEPOSIT), number) for part, number in parts]
+        return deposited(runs, kind, self.process, self.parameters)
+
+    def _approach(
+        self, rows: NDArray[np.int64], returns: Collection[tuple[int, int]], arriving: bool = False
+    ) -> list[Block]:
         """Rapids that lead to a bead; where it returns to a place the torch waits above it."""
-        place = int(motion.layer[rows[-1]]), int(motion.bead[rows[-1]])
-        if process.cooling.below is None or place not in returns:
-            return [_moves(motion, cell, rows, RAPID, parameters, controller, arriving)]
-        onto = motion.role[rows] == motions.APPROACH
+        cooling = self.process.cooling
+        place = int(self.motion.layer[rows[-1]]), int(self.motion.bead[rows[-1]])
+        if cooling.below is None or place not in returns:
+            return [self._moves(rows, RAPID, arriving)]
+        onto = self.motion.role[rows] == motions.APPROACH
         if not onto.any():
             onto[-1] = True
-        above = [_moves(motion, cell, rows[~onto], RAPID, parameters, controller, arriving)] if not onto.all() else []
-        value = process.cooling.zero + process.cooling.gain * process.cooling.below
-        down = _moves(motion, cell, rows[onto], RAPID, parameters, controller, arriving and not above)
-        return [*above, WaitBelow(process.cooling.input, value, *place), down]
+        above = [self._moves(rows[~onto], RAPID, arriving)] if not onto.all() else []
+        down = self._moves(rows[onto], RAPID, arriving and not above)
+        return [*above, WaitBelow(cooling.input, cooling.zero + cooling.gain * cooling.below, *place), down]
 
-    run = rows_from(motion, parameters.start_at)
-    groups = _groups(motion, np.flatnonzero(run))
-    blocks: list[Block] = []
-    layer: int | None = None
-    for number, rows in enumerate(groups):
-        first = int(rows[0])
-        if motion.deposit[first]:
-            parts = parted(motion.phase[rows[1:]], process.for_class(_class_of(motion, first)))
-            runs = [
-                (_moves(motion, cell, rows[1:][part], DEPOSIT, parameters, controller), number) for part, number in parts
-            ]
-            blocks += deposited(runs, _class_of(motion, first), process, parameters)
-            continue
-        here = int(motion.layer[first])
-        last = number == len(groups) - 1
-        if layer is None:
-            blocks.append(LayerStart(here))
-            blocks += approach(rows, arriving=True)
-        elif last:
-            blocks.append(_moves(motion, cell, rows, RAPID, parameters, controller))
-        elif here == layer:
-            blocks += approach(rows)
-        else:
-            retract = motion.role[rows] == motions.RETRACT
-            if retract.any():
-                blocks.append(_moves(motion, cell, rows[retract], RAPID, parameters, controller))
-            blocks += _between(process.between_layers, waits[here] if len(waits) else 0.0)
-            blocks.append(LayerStart(here))
-            blocks += approach(rows[~retract])
-        layer = here
-    return tuple(blocks)
+    def _moves(self, rows: NDArray[np.int64], kind: str, arriving: bool = False) -> Moves:
+        """A run of rows; arriving: the first one comes from where the machine happens to stand."""
+        motion, cell, parameters = self.motion, self.cell, self.parameters
+        duration = motion.duration[rows].copy()
+        if arriving:
+            duration[0] = FIRST_TIME
+        position = rotation = direction = flange = None
+        configuration = None
+        if self.controller.flange and cell.arrangement.holds_part:
+            flange = frames.inverse(cell.machine.base) @ cell.machine.chain.forward(motion.joints[rows])
+        if parameters.motion == "cartesian":
+            station, carried = frames_of(cell, parameters)
+            tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
+            seen = frames.inverse(tip) @ station if cell.torch_stands else frames.inverse(station) @ tip
+            position, arm = seen[:, :3, 3], cell.machine.arm
+            if arm is None:
+                direction = seen[:, :3, 2]
+            else:
+                rotation, own = seen[:, :3, :3], motion.joints[rows, : cell.robot.chain.axes]
+                configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(own))
+        wire = motion.wire[rows]
+        told = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
+        return Moves(
+            kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
+            joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
+            position=position, rotation=rotation, configuration=configuration, direction=direction,
+            wire=wire if told else None, flange=flange,
+            interpolation=LINEAR_MOVE if kind == DEPOSIT and parameters.motion == "cartesian" else JOINT_MOVE,
+            stops=motion.stops[rows], role=_roles(motion.role[rows]),
+        )
 
 
 def _class_of(motion: Motion, row: int) -> str:
@@ -224,39 +263,6 @@ def _between(between: BetweenLayersParameters, cooling: float) -> list[Block]:
     if between.call is not None:
         blocks.append(Call(between.call))
     return blocks
-
-
-def _moves(
-    motion: Motion, cell: Cell, rows: NDArray[np.int64], kind: str, parameters: ProgramParameters, controller: Controller,
-    arriving: bool = False,
-) -> Moves:
-    duration = motion.duration[rows].copy()
-    if arriving:
-        duration[0] = FIRST_TIME
-    position = rotation = direction = flange = None
-    configuration = None
-    if controller.flange and cell.arrangement.holds_part:
-        flange = frames.inverse(cell.machine.base) @ cell.machine.chain.forward(motion.joints[rows])
-    if parameters.motion == "cartesian":
-        station, carried = frames_of(cell, parameters)
-        tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
-        seen = frames.inverse(tip) @ station if cell.torch_stands else frames.inverse(station) @ tip
-        position, arm = seen[:, :3, 3], cell.machine.arm
-        if arm is None:
-            direction = seen[:, :3, 2]
-        else:
-            rotation, own = seen[:, :3, :3], motion.joints[rows, : cell.robot.chain.axes]
-            configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(own))
-    wire = motion.wire[rows]
-    told = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
-    return Moves(
-        kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
-        joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
-        position=position, rotation=rotation, configuration=configuration, direction=direction, wire=wire if told else None,
-        flange=flange,
-        interpolation=LINEAR_MOVE if kind == DEPOSIT and parameters.motion == "cartesian" else JOINT_MOVE,
-        stops=motion.stops[rows], role=_roles(motion.role[rows]),
-    )
 
 
 def _roles(role: NDArray[np.int64]) -> tuple[str, ...]:
