@@ -31,19 +31,6 @@ def process_of(section: Any, strategy: LayerParameters) -> ProcessParameters:
     return fields.build(ProcessParameters, given, "process")
 
 
-def with_bead_model(process: ProcessParameters, strategy: LayerParameters, path: str) -> ProcessParameters:
-    """The process with the path of its calibration table made absolute; the table is read, so that what is wrong with it is
-    told at once."""
-    if process.bead_model == "none":
-        return process
-    if not family_of(strategy).filled:
-        raise InputError(
-            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of strategy.kind solid, "
-            "developable and cladding alone; use none",
-        )
-    return with_path(process, path)
-
-
 def with_path(process: ProcessParameters, path: str) -> ProcessParameters:
     """A process with the file of its bead table found from the folder of the job."""
     if process.bead_model == "none":

@@ -21,7 +21,6 @@ from .feature_sections import (
     refuse_direction,
     strategy_of,
     substrate_of,
-    with_bead_model,
     with_direction,
     with_path,
 )
@@ -65,8 +64,7 @@ def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
     if isinstance(section, dict) and section.get("kind") == AUTO.kind:
         return _left_open(values, section, name, path)
     strategy = strategy_of(_with_fuse(values.get("strategy") or {}, part_section))
-    process = process_of(values.get("process") or {}, strategy)
-    process = with_bead_model(process, strategy, path)
+    process = with_path(process_of(values.get("process") or {}, strategy), path)
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
     refuse_direction(strategy, build_direction)
     part = part_of({key: value for key, value in part_section.items() if key != "fuse"}, path)

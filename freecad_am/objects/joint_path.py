@@ -168,10 +168,11 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
 
 def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:
     """What a bead model predicts of the heights where beads are slowed, in place of what the toolpath told."""
-    if toolpath.law is None or not any(issue.code == SLOWED for issue in path.issues):
+    model = None if toolpath.law is None else bead_table.of_process(process)
+    if model is None or not any(issue.code == SLOWED for issue in path.issues):
         return []
     beads = [one.bead for one in path.beads]
-    return [predicted.heights_told(beads, toolpath.layer_height, process, bead_table.load(process.bead_model), as_run=True)]
+    return [predicted.heights_told(beads, toolpath.layer_height, process, model, as_run=True)]
 
 
 def _sums(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> tuple[tuple[str, float], ...]:

@@ -19,7 +19,7 @@ from ..core.kinematics.cell import mounted
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
-from ..core.process import bead_table, classes
+from ..core.process import bead_table, classes, held_width
 from ..core.process.bead_model import BeadModel
 from ..core.process.laid_twice import laid_twice
 from ..core.process.wire import fed
@@ -54,7 +54,7 @@ class Given:
     @property
     def model(self) -> BeadModel | None:
         """The bead model of the process."""
-        return None if self.process.bead_model == "none" else bead_table.load(self.process.bead_model)
+        return bead_table.of_process(self.process)
 
 
 def planned(of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made: made) -> CoreToolpath:
@@ -83,11 +83,10 @@ def layers_of(of: Given) -> CoreToolpath:
         )
     classes.refuse_speeds(process)
     family = family_of(of.strategy)
-    if process.bead_model != "none" and not family.filled:
-        raise InputError(
-            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of solids alone; use none"
-        )
-    made = classes.with_ends(_PLANNERS[family.kind].layers(of), process)
+    laid, model = _PLANNERS[family.kind].layers(of), of.model
+    if model is not None and not family.filled:
+        laid = held_width.held(laid, process, model)
+    made = classes.with_ends(laid, process)
     twice = made.twice if family.filled else laid_twice(made)
     return dataclasses.replace(made, max_from_vertical=of.build.max_from_vertical, twice=twice)
 

@@ -710,8 +710,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, csw, or the path of a calibration table.</source>
-        <translation>Règle la vitesse d&apos;avance des solides sur cylindres et cônes de sorte que la largeur de cordon soit tenue : none, csw, ou le chemin d&apos;un tableau d&apos;étalonnage.</translation>
+        <source>Sets the travel speed so that beads keep their width in bends: none, csw (steel, Dai 2020), li-2025 (aluminium), or the path of a calibration table.</source>
+        <translation>Règle la vitesse d&apos;avance pour que les cordons gardent leur largeur dans les courbes : none, csw (acier, Dai 2020), li-2025 (aluminium), ou le chemin d&apos;une table d&apos;étalonnage.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -4478,8 +4478,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, csw, or the path of a calibration table.</source>
-        <translation>Règle la vitesse d&apos;avance des solides sur cylindres et cônes de sorte que la largeur de cordon soit tenue : none, csw, ou le chemin d&apos;un tableau d&apos;étalonnage.</translation>
+        <source>Sets the travel speed so that beads keep their width in bends: none, csw (steel, Dai 2020), li-2025 (aluminium), or the path of a calibration table.</source>
+        <translation>Règle la vitesse d&apos;avance pour que les cordons gardent leur largeur dans les courbes : none, csw (acier, Dai 2020), li-2025 (aluminium), ou le chemin d&apos;une table d&apos;étalonnage.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -6127,11 +6127,6 @@
         <translation>une bande de {0} % est trop étroite pour {1} points sur le tour : prenez-en davantage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned.py"/>
-        <source>a bead model sets the travel speed of solids alone; use none</source>
-        <translation>un modèle de cordon ne règle que la vitesse d&apos;avance des solides ; choisissez none</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>a bead of one point has no way to go; give it two points or more</source>
         <translation>un cordon d&apos;un seul point n&apos;a pas de chemin ; donnez-lui deux points ou plus</translation>
@@ -6495,6 +6490,11 @@
         <location filename="../../freecad_am/brep/turn.py"/>
         <source>all around</source>
         <translation>sur tout le tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed</source>
+        <translation>tous les cordons reçoivent la même longueur de fil par millimètre ; mesurez au moins deux vitesses à une même vitesse de fil</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
@@ -8462,11 +8462,6 @@
         <translation>ses cordons remplissent des solides, la plupart sont à l&apos;intérieur ; comparez les points à l&apos;élément à déposer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_table.py"/>
-        <source>its beads were laid at wire feeds from {0} to {1} m/min; the model is of one: keep the rows of one</source>
-        <translation>ses cordons ont été posés à des dévidages de {0} à {1} m/min ; le modèle vaut pour un seul : gardez les lignes de l&apos;un d&apos;eux</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/spin_map/source.py"/>
         <source>its cell has external axes, along which the map is not drawn yet; the curves of Plot show all axes</source>
         <translation>sa cellule a des axes externes, pour lesquels la carte n&apos;est pas encore tracée ; les courbes de Tracer montrent tous les axes</translation>
@@ -9452,7 +9447,7 @@
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the width asked for takes a speed outside of the table&apos;s {4} to {5} mm/min; it is kept within, and the width is not held: it is {6} mm at its farthest from the {7} mm</source>
         <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm</translation>
     </message>
@@ -10927,9 +10922,14 @@
         <translation>le résultat enregistré ne peut pas être lu ({0}) ; recalculez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>the table was measured at a wire feed of {0} mm/s, the job has {1} mm/s; set process.wire.feed to auto or to that, or measure a table at it</source>
         <translation>le tableau a été mesuré avec un dévidage de {0} mm/s, le travail a {1} mm/s ; mettez process.wire.feed à auto ou à cette valeur, ou mesurez un tableau avec celle du travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
+        <source>the table was measured at a wire feed of {0} to {1} mm/s, the job has {2} mm/s; set process.wire.feed to auto or to that, or measure a table at it</source>
+        <translation>la table a été mesurée à une vitesse de fil de {0} à {1} mm/s, le travail a {2} mm/s ; mettez process.wire.feed à auto ou à une de celles-ci, ou mesurez une table à cette vitesse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/ways.py"/>
@@ -11607,7 +11607,7 @@
         <translation>volume de la pièce moins ce que les cordons couvrent de chaque couche, à la largeur comptée, fois la hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>w = {0} v^(-1/3) + {1} / r + {2} with R2 = {3} and RMSE = {4} mm; a width of {5} mm takes travel speeds of {6} to {7} mm/min</source>
         <translation>w = {0} v^(-1/3) + {1} / r + {2} avec R2 = {3} et RMSE = {4} mm ; une largeur de {5} mm demande des vitesses d&apos;avance de {6} à {7} mm/min</translation>
     </message>
@@ -11797,7 +11797,7 @@
         <translation>{0} % des vitesses articulaires n&apos;est pas de 1 à 100</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>{0} % of the length bends more than the table&apos;s beads, of {1} mm or more, and counts as bent like these; widths are only estimated there</source>
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
     </message>
@@ -13380,6 +13380,11 @@
         <location filename="../../freecad_am/brep/three_mf.py"/>
         <source>{0}; export the part again</source>
         <translation>{0} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>{0}; measure at least two speeds</source>
+        <translation>{0} ; mesurez au moins deux vitesses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>

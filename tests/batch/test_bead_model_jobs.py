@@ -211,3 +211,26 @@ def test_widths_outside_of_the_table_are_told_with_their_number_and_the_worst(fi
     beads, of, segments, worst = re.search(r"in (\d+) of (\d+) beads and (\d+) segments.*it is (\S+) mm at", told).groups()
     assert (int(of), float(worst)) == (report["counts"]["beads"], pytest.approx(width.min(), abs=0.05))
     assert 0 < int(beads) <= int(of) and 0 < int(segments) <= len(deposit)
+
+
+def test_walls_and_parts_of_revolution_hold_their_width(workshop):
+    """A tube of 60 mm, whose rings bend by that: the speed from the errata's coefficients, the width in every row."""
+    Part.makeCylinder(60.0, 9.0).exportStep(str(workshop.folder / "tube.step"))
+    (workshop.folder / "tube.yaml").write_text(
+        "part: {file: tube.step, faces: [Face1]}\nstrategy: {layer_height: 3 mm, chord_error: 0.002 mm}\n"
+        "process: {bead_model: csw, bead_width: 9.5 mm}\n", encoding="utf-8",
+    )
+    done = workshop.run("plan", "tube.yaml", "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    speed = (85.550 / (9.5 - 52.742 / 60.0 + 1.7542)) ** 3 / 60.0
+    np.testing.assert_allclose([float(row["speed_mm_s"]) for row in rows], speed, rtol=1e-3)
+    np.testing.assert_allclose([float(row["width_mm"]) for row in rows], 9.5, atol=5e-3)
+    report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
+    m, p, t = _fitted("height_mm")
+    height = m * (60.0 * speed) ** (-1.0 / 3.0) + p / 60.0 + t
+    assert report["beads"]["height_mm"]["mean"] == pytest.approx(height, rel=1e-3)
+    drift = [row["drift_mm"] for row in report["beads"]["layers"]]
+    np.testing.assert_allclose(drift, (height - 3.0) * np.arange(1, len(drift) + 1), rtol=5e-3)
+    assert {"BEAD_MODEL", "BEAD_HEIGHT"} <= {issue["code"] for issue in report["issues"]}

@@ -239,7 +239,6 @@ LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key
         ("min_condition: auto", "min_condition: some", "BAD_VALUE", "joints.min_condition", "auto"),
         ("min_condition: auto", "min_condition: 1.5", "BAD_VALUE", "joints.min_condition", "at most 1"),
         ("[-180 deg, 180 deg]", "[180 deg, -180 deg]", "BAD_VALUE", "joints.rotation_range", "smaller first"),
-        ("bead_model: none", "bead_model: csw", "NOT_FOR_FAMILY", "process.bead_model", "none"),
         ("name: hemisphere", "name: a/b", "BAD_NAME", "name", "slash"),
         ("name: hemisphere", "name: .hidden", "BAD_NAME", "name", "dot"),
         ("name: hemisphere", f"name: {'x' * 300}", "BAD_NAME", "name", "too long"),

@@ -128,8 +128,8 @@ class ProcessParameters:
     between_layers: BetweenLayersParameters = f.group(BetweenLayersParameters, "What happens between two layers.")
     cooling: CoolingParameters = f.group(CoolingParameters, "A temperature to wait for before returning to a place.")
     bead_model: str = f.parameter(
-        "none", f.TEXT, "Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, "
-        "csw, or the path of a calibration table."
+        "none", f.TEXT, "Sets the travel speed so that beads keep their width in bends: none, csw (steel, Dai 2020), "
+        "li-2025 (aluminium), or the path of a calibration table."
     )
     acceleration: float = f.parameter(
         20.0, f.NUMBER, "Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.",

@@ -4,13 +4,14 @@
 The model holds the width, not the section: at one wire feed a bead that runs faster in a bend is lower there (ERRATA), so
 the height has a fit of its own, of the same form, and is predicted beside the width. Inside the fit the speed is in
 mm/min, as in the paper; all arguments are mm and mm/s. The radius has no sign: inside and outside of a bend are not told
-apart.
+apart. A bead is made by the wire that each millimetre of it gets: beads laid at several wire feeds f count at the speed at
+which the nominal one f0 lays as much, v f0 / f, and another feed within theirs scales the speeds alike.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,13 +56,27 @@ class Asked:
 
 @dataclass(frozen=True)
 class BeadModel:
-    """The fits of width and height, and what they were made from: speeds mm/s, radii mm, wire_feed mm/s."""
+    """The fits of width and height, and what they were made from: speeds mm/s, radii mm, infinite of straight beads,
+    wire_feed mm/s. feeds: least and largest wire feed, mm/s, paces: speeds as shares of their wire feed."""
 
     width: Fit
     height: Fit
     speeds: tuple[float, float]
     radii: tuple[float, float]
     wire_feed: float
+    feeds: tuple[float, float] | None = field(default=None, repr=False)
+    paces: tuple[float, float] | None = field(default=None, repr=False)
+
+    def at_feed(self, feed: float) -> BeadModel:
+        """The model of beads at another wire feed, mm/s; the same where nothing like it was measured."""
+        if self.feeds is None or self.paces is None or not self.feeds[0] <= feed <= self.feeds[1]:
+            return self
+        more = float(np.cbrt(feed / self.wire_feed))
+        low, high = (feed * pace for pace in self.paces)
+        return replace(
+            self, width=replace(self.width, m=more * self.width.m), height=replace(self.height, m=more * self.height.m),
+            speeds=(max(low, self.speeds[0]), min(high, self.speeds[1])), wire_feed=feed,
+        )
 
     def widths(self, speed: Array, radius: Array) -> Array:
         """Width (...,) mm at travel speeds mm/s; radii below the table's count as its least."""
@@ -102,10 +117,11 @@ class BeadModel:
 
 def fit(
     radius: Array, speed: Array, width: Array, height: Array, wire_feed: float, label: str = "table",
-    lines: Sequence[int] = (),
+    lines: Sequence[int] = (), feeds: Array | None = None,
 ) -> BeadModel:
     """The model of a calibration table: columns (n,) in mm and mm/s, and where each row stands in its file, for messages.
-    Least squares, linear in the three coefficients.
+    Least squares, linear in the three coefficients; two where all beads are straight, radii infinite. feeds: (n,) mm/s of
+    beads laid at several, of which `wire_feed` is the nominal one.
 
     InputError 'TOO_FEW_ROWS', 'BAD_TABLE' (values that are no beads: not positive, not finite), 'COLLINEAR_TABLE' (radii
     or speeds do not vary, or only together) or 'NO_MODEL' (width does not fall with speed).
@@ -118,21 +134,29 @@ def fit(
         rows = "1 row" if len(radius) == 1 else f"{len(radius)} rows"
         raise InputError("TOO_FEW_ROWS", label, f"it has {rows}; measure at least {FEWEST} beads")
     for name, (column, unit) in columns.items():
-        wrong = np.flatnonzero(~(np.isfinite(column) & (column > 0.0)))
+        wrong = np.flatnonzero(~((np.isfinite(column) | (column is radius)) & (column > 0.0)))
         if len(wrong):
             told = f"{name} {column[wrong[0]]:.9g} {unit} is not a positive number; mend the row, or leave it out"
             raise InputError("BAD_TABLE", row_name(label, int(wrong[0]), lines), told)
-    terms = np.stack([np.cbrt(1.0 / (MINUTE * speed)), 1.0 / radius, np.ones(len(radius))], axis=1)
+    counted = speed if feeds is None else speed * (wire_feed / feeds)
+    terms = np.stack([np.cbrt(1.0 / (MINUTE * counted)), np.ones(len(radius))], axis=1)
+    if np.isfinite(radius).any():
+        terms = np.insert(terms, 1, 1.0 / radius, axis=1)
     scaled = terms / np.linalg.norm(terms, axis=0)
     singular = np.linalg.svd(scaled, compute_uv=False)
     if singular[-1] < FLATTEST * singular[0]:
-        raise InputError("COLLINEAR_TABLE", label, f"{_alike(radius, speed)}; measure at least two speeds and two radii")
+        raise InputError("COLLINEAR_TABLE", label, _alike(radius, speed, counted))
     fits = [_fit(terms, column) for column in (width, height)]
     if fits[0].m <= 0.0:
         raise InputError("NO_MODEL", label, f"beads get wider with speed (m = {fits[0].m:.4g}); check the table's columns")
-    return BeadModel(
+    made = BeadModel(
         fits[0], fits[1], (float(speed.min()), float(speed.max())), (float(radius.min()), float(radius.max())), wire_feed
     )
+    return made if feeds is None else replace(made, feeds=_ends(feeds), paces=_ends(speed / feeds))
+
+
+def _ends(values: Array) -> tuple[float, float]:
+    return float(values.min()), float(values.max())
 
 
 def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
@@ -140,21 +164,26 @@ def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
     return f"{label} row {row + 1}" + (f" (line {lines[row]})" if len(lines) else "")
 
 
-def _alike(radius: Array, speed: Array) -> str:
-    """Why speeds and radii of a table do not determine the coefficients."""
+def _alike(radius: Array, speed: Array, counted: Array) -> str:
+    """Why speeds and radii of a table do not determine the coefficients, and what to measure."""
+    straight = np.isinf(radius).all()
     same = [
         f"all beads have the {name} {column[0]:.9g} {unit}"
         for name, column, unit in (("radius", radius, "mm"), ("travel speed", MINUTE * speed, "mm/min"))
-        if np.ptp(column) <= FLATTEST * column.max()
+        if not np.isinf(column).any() and np.ptp(column) <= FLATTEST * column.max()
     ]
-    return ", and ".join(same) or "speeds and radii vary only together"
+    if not same and np.ptp(counted) <= FLATTEST * counted.max():
+        return "all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed"
+    told = ", and ".join(same) or "speeds and radii vary only together"
+    return f"{told}; measure at least two speeds{'' if straight else ' and two radii'}"
 
 
 def _fit(terms: Array, values: Array) -> Fit:
     found = np.linalg.lstsq(terms, values, rcond=None)[0]
     rest = float(((values - terms @ found) ** 2).sum())
     spread = float(((values - values.mean()) ** 2).sum())
+    bend = float(found[1]) if len(found) == 3 else 0.0
     return Fit(
-        float(found[0]), float(found[1]), float(found[2]), 1.0 - rest / spread if spread > 0.0 else 1.0,
-        float(np.sqrt(rest / (len(values) - 3))),
+        float(found[0]), bend, float(found[-1]), 1.0 - rest / spread if spread > 0.0 else 1.0,
+        float(np.sqrt(rest / (len(values) - len(found)))),
     )

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.columns import columns
+from ..geometry.columns import columns, dots, lengths
 
 Array = NDArray[np.float64]
 
@@ -20,12 +20,31 @@ def radii(flat: Array, closed: bool, window: float) -> Array:
     the arc of that length. A closed bead repeats its first point.
     """
     step = np.diff(flat, axis=0)
-    length = np.linalg.norm(step, axis=1)
-    s = np.r_[0.0, np.cumsum(length)]
     x, y = columns(step)
     heading = np.unwrap(np.arctan2(y, x))
+    last = float(np.unwrap([heading[-1], heading[0]])[1] - heading[0]) if closed else None  # turn of a whole round
+    return _radii(np.linalg.norm(step, axis=1), heading, last, window)
+
+
+def radii_beside(points: Array, build: Array, closed: bool, window: float) -> Array:
+    """The same of a bead in space, points (n, 3): how it bends about its build directions (n, 3), to its sides."""
+    step = np.diff(points, axis=0)
+    before, after, up = step[:-1], step[1:], build[1:-1]
     if closed:
-        last = np.unwrap([heading[-1], heading[0]])[1] - heading[0]  # turn of a whole round
+        before, after, up = (np.vstack([rows, last[None]]) for rows, last in
+                             ((before, step[-1]), (after, step[0]), (up, build[0])))
+    level = dots(before, after) - dots(before, up) * dots(after, up)
+    turn = np.arctan2(dots(np.cross(before, after), up), level)
+    heading = np.r_[0.0, np.cumsum(turn[: len(step) - 1])]
+    return _radii(lengths(step), heading, float(turn.sum()) if closed else None, window)
+
+
+def _radii(length: Array, heading: Array, last: float | None, window: float) -> Array:
+    """The radii at the ends of segments of these lengths (n-1,) that run at these headings (n-1,), which turn by `last` in
+    a round where the bead is closed."""
+    closed = last is not None
+    s = np.r_[0.0, np.cumsum(length)]
+    if last is not None:
         rounds = max(1, int(np.ceil(window / s[-1])))
         turns = np.arange(-rounds, rounds + 1)
         knots = np.concatenate([s[:-1] + k * s[-1] for k in turns])

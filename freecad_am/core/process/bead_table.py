@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Calibration tables of bead models: comma separated values with one measured bead per row.
 
-Columns by name, in any order: radius_mm, travel_speed_mm_min, width_mm, height_mm and wire_feed_m_min; lines that begin
-with # are remarks.
+Columns by name, in any order: radius_mm (inf of a straight bead), travel_speed_mm_min, width_mm, height_mm and
+wire_feed_m_min; lines that begin with # are remarks.
 """
 
 from __future__ import annotations
@@ -15,17 +15,19 @@ import numpy as np
 
 from ..geometry.file_content import content
 from ..issues import InputError
+from ..parameters.process import ProcessParameters
 from .bead_model import MINUTE, Array, BeadModel, fit, row_name
+from .wire import with_model
 
-BUILT_IN = {"csw": "dai-2020.csv"}
+BUILT_IN = {"csw": "dai-2020.csv", "li-2025": "li-2025.csv"}
 LARGEST = 16  # MB
 FOLDER = Path(__file__).resolve().parents[2] / "beads"
 COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_feed_m_min")
 
 
 class Measured(NamedTuple):
-    """Beads of a calibration table: columns (n,) in mm and mm/s, and the wire feed of all, mm/s. label: the file's name;
-    lines: where in it each row stands, from 1."""
+    """Beads of a calibration table: columns (n,) in mm and mm/s, and the wire feed of all, or their mean, mm/s. label: the
+    file's name; lines: where in it each row stands, from 1. feeds: (n,) mm/s where they differ."""
 
     radius: Array
     speed: Array
@@ -34,6 +36,15 @@ class Measured(NamedTuple):
     wire_feed: float
     label: str
     lines: tuple[int, ...]
+    feeds: Array | None = None
+
+
+def of_process(process: ProcessParameters) -> BeadModel | None:
+    """The bead model of a process at the wire feed that it gives; None without one. InputError: those of `load`."""
+    if process.bead_model == "none":
+        return None
+    model = load(process.bead_model)
+    return model.at_feed(with_model(process, model))
 
 
 def load(name: str, folder: Path | None = None) -> BeadModel:
@@ -42,7 +53,8 @@ def load(name: str, folder: Path | None = None) -> BeadModel:
 
 
 def measured(name: str, folder: Path | None = None) -> Measured:
-    """The beads of a built-in table ('csw': table 1 of Dai 2020) or of the table at a path, relative to `folder`.
+    """The beads of a built-in table ('csw': table 1 of Dai 2020; 'li-2025': of table 5 of Li 2025) or of the table at a
+    path, relative to `folder`.
 
     InputError 'NO_FILE', 'BAD_TABLE' (naming row and column, or that it is no text).
     """
@@ -78,13 +90,10 @@ def measured(name: str, folder: Path | None = None) -> Measured:
         raise InputError(
             "BAD_TABLE", where, f"wire feed {feed[wrong[0]]:g} m/min is not a positive number; mend the row, or leave it out"
         )
-    if len(feed) and np.ptp(feed) > 1e-9 * feed.max():
-        raise InputError(
-            "BAD_TABLE", path.name, f"its beads were laid at wire feeds from {feed.min():g} to {feed.max():g} m/min; the "
-            "model is of one: keep the rows of one",
-        )
-    wire_feed = float(feed[0]) * 1000.0 / MINUTE if len(feed) else 0.0
-    return Measured(radius, speed / MINUTE, width, height, wire_feed, path.name, numbers)
+    several = len(feed) > 0 and np.ptp(feed) > 1e-9 * feed.max()
+    feeds = feed * 1000.0 / MINUTE
+    nominal = 0.0 if not len(feed) else float(feeds.mean()) if several else float(feed[0]) * 1000.0 / MINUTE
+    return Measured(radius, speed / MINUTE, width, height, nominal, path.name, numbers, feeds if several else None)
 
 
 def _number(row: dict[str, str | None], column: str, where: str) -> float:

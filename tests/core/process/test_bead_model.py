@@ -78,6 +78,7 @@ def columns(rows):
     (TABLE[:-1] + [(90, 900, -7.46, 2.14)], "BAD_TABLE"), (TABLE[:-1] + [(0, 900, 7.46, 2.14)], "BAD_TABLE"),
     (TABLE[:-1] + [(90, float("nan"), 7.46, 2.14)], "BAD_TABLE"),
     ([(r, 1200 - v, w, h) for r, v, w, h in TABLE], "NO_MODEL"),
+    ([(math.inf, 300, w, h) for _, _, w, h in TABLE], "COLLINEAR_TABLE"),
 ])
 def test_tables_that_are_none(rows, code):
     with pytest.raises(InputError) as caught:
@@ -130,7 +131,6 @@ HEAD = "radius_mm,travel_speed_mm_min,width_mm,height_mm,wire_feed_m_min\n"
     (HEAD + "30,300,12,3,6.5\n30,300,12,3,-6.5\n", r"row 2 \(line 3\): wire feed -6.5 m/min is not a positive number"),
     (HEAD + "\n".join(f"{r},{v},{w},{h},6.5" for r, v, w, h in TABLE).replace("50,600", "50,-600"),
      r"row 5 \(line 6\): travel speed -600 mm/min is not"),
-    (HEAD + "".join(f"{r},{v},{w},{h},{5 + k % 2}\n" for k, (r, v, w, h) in enumerate(TABLE)), "wire feeds from 5 to 6"),
 ])
 def test_files_that_are_no_table(tmp_path, text, told):
     (tmp_path / "mine.csv").write_text(text, encoding="utf-8")
@@ -150,6 +150,14 @@ def test_a_table_of_the_users_own(tmp_path):
     with pytest.raises(InputError, match="no text in UTF-8") as caught:
         bead_table.load("bin.csv", tmp_path)
     assert caught.value.code == "BAD_TABLE" and caught.value.where == "bin.csv"
+
+
+def test_beads_that_all_get_the_same_wire_to_a_millimetre_are_no_table(tmp_path):
+    rows = "".join(f"inf,{100 * feed},{w},{h},{feed}\n" for feed, (_, _, w, h) in enumerate(TABLE, 5))
+    (tmp_path / "mine.csv").write_text(HEAD + rows, encoding="utf-8")
+    with pytest.raises(InputError, match="the same length of wire to each millimetre") as caught:
+        bead_table.load("mine.csv", tmp_path)
+    assert caught.value.code == "COLLINEAR_TABLE"
 
 
 @pytest.mark.parametrize("radius", [3.0, 30.0, 90.0])

@@ -21,7 +21,7 @@ from ...parameters.process import ProcessParameters
 from ...process import classes
 from ...process.bead_model import BeadModel
 from ...process.bead_speed import followed, radii
-from ...process.wire import with_model
+from ...process.held_width import at_speed, of_segments
 from ...toolpath import Bead
 from .filling import bead_width
 from .lean import Course, Lean, Turned, held
@@ -100,7 +100,9 @@ def _rolled(
     closed = curve.closed and not curve.turns
     share = None if curve.share is None else _share(curve, ended, flat)
     if model is not None:
-        return _at_speed(bead, flat, closed, process, model, 1.0 if share is None else share)._replace(turned=turned)
+        radius = radii(flat, closed, process.bead_width)
+        found = at_speed(bead, radius, flat, closed, process, model, 1.0 if share is None else share)
+        return Rolled(*found, turned)
     heights = surface.heights(flat)
     if share is None and heights is None:
         return Rolled(bead, turned=turned)
@@ -108,7 +110,7 @@ def _rolled(
     section = high if share is None else high * share
     speed = followed(flat, process.travel_speed / section, closed, max(process.acceleration, AGILE))
     section = process.travel_speed / speed  # at one wire feed
-    bead = replace(bead, speed=_of_segments(speed))
+    bead = replace(bead, speed=of_segments(speed))
     if share is None:
         return Rolled(replace(bead, height=strategy.layer_height * section), turned=turned)
     width = bead_width(strategy, process, model) * section / high
@@ -132,11 +134,6 @@ def _share(curve: PlaneCurve, ended: Array, flat: Array) -> Array:
     share = np.r_[curve.share, curve.share[:1]] if curve.closed else curve.share
     given, laid = (np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))] for line in (ended, flat))
     return np.asarray(np.interp(laid / laid[-1], given / given[-1], share))
-
-
-def _of_segments(speed: Array) -> Array:
-    """Speeds (n,) of the segments that end at points, from those at points (n,)."""
-    return np.concatenate([speed[:1], 0.5 * (speed[:-1] + speed[1:])])
 
 
 def _needed(flat: Array, tolerance: float, besides: Mask | None) -> Array:
@@ -173,22 +170,6 @@ def dense(flat: Array, surface: LayerSurface, chord_error: float, kept: Mask | N
     number = np.arange(len(start)) - np.repeat(np.cumsum(count) - count, count)
     points = flat[start] + (number / count[start])[:, None] * edge[start]
     return np.asarray(np.vstack([points, flat[-1:]]))
-
-
-def _at_speed(
-    bead: Bead, flat: Array, closed: bool, process: ProcessParameters, model: BeadModel, part: Array | float
-) -> Rolled:
-    """The bead, laid flat (n, 2) where it may be closed or not, at the speeds that keep its width, or a part of it."""
-    radius = radii(flat, closed, process.bead_width)
-    asked = model.speed_for(process.bead_width * part, radius)
-    speed = followed(flat, asked.speed, closed, process.acceleration)
-    segment = _of_segments(speed)
-    widths, heights, share = model.widths(speed, radius), model.heights(speed, radius), None
-    if process.wire.feed_mode == "proportional":
-        heights = model.heights_of_section(widths, process.bead_width)
-        share = with_model(process, model) / model.straight_speed(process.bead_width)
-    at_speed = replace(bead, speed=segment, width=widths, height=heights, wire_share=share)
-    return Rolled(at_speed, asked.too_slow | asked.too_fast, asked.too_tight)
 
 
 def reversed_curve(curve: PlaneCurve) -> PlaneCurve:
