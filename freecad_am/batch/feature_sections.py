@@ -14,7 +14,7 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.families import AUTO, KINDS, NEEDED, NONE, family_of
 
-from . import fields, job_classes, quantity
+from . import fields, job_classes, material, quantity
 from .part_source import PartSource, absolute, part_of
 
 
@@ -23,9 +23,10 @@ def kept_clear(kind: str) -> tuple[str, ...]:
     return ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
 
 
-def process_of(section: Any, strategy: LayerParameters) -> ProcessParameters:
-    """The process; where solids are filled a bead width that the job gives is meant, whatever it is."""
-    given = job_classes.told(fields.mapping(section, "process"))
+def process_of(section: Any, strategy: LayerParameters, path: str) -> ProcessParameters:
+    """The process, what its material says filled in; where solids are filled a bead width that the job gives is meant,
+    whatever it is."""
+    given = job_classes.told(material.filled_in(fields.mapping(section, "process"), path))
     if "bead_width" in given and family_of(strategy).filled:
         given = {"fill_width": "bead_width", **given}
     return fields.build(ProcessParameters, given, "process")

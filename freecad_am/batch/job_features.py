@@ -14,7 +14,7 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family
 
-from . import fields, job_classes, tree
+from . import auto_layers, fields, job_classes, material, tree
 from .feature_sections import (
     kept_clear,
     process_of,
@@ -60,11 +60,14 @@ def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
     if values.get("part") is None:
         raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
     part_section = fields.mapping(values["part"], "part")
+    if auto_layers.asked(values.get("strategy")):
+        process = process_of_all(values.get("process") or {}, path)
+        values = {**values, "strategy": auto_layers.resolved(values["strategy"], process)}
     section = values.get("strategy")
     if isinstance(section, dict) and section.get("kind") == AUTO.kind:
         return _left_open(values, section, name, path)
     strategy = strategy_of(_with_fuse(values.get("strategy") or {}, part_section))
-    process = with_path(process_of(values.get("process") or {}, strategy), path)
+    process = with_path(process_of(values.get("process") or {}, strategy, path), path)
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
     refuse_direction(strategy, build_direction)
     part = part_of({key: value for key, value in part_section.items() if key != "fuse"}, path)
@@ -127,7 +130,8 @@ def _keys(family: Family) -> tuple[str, ...]:
 
 def process_of_all(section: Any, path: str) -> ProcessParameters:
     """The process of a program of several features, which may differ from it."""
-    process = fields.build(ProcessParameters, job_classes.told(fields.mapping(section, "process")), "process")
+    given = job_classes.told(material.filled_in(fields.mapping(section, "process"), path))
+    process = fields.build(ProcessParameters, given, "process")
     return with_path(process, path)
 
 

@@ -22,6 +22,7 @@ from ..core.parameters.process import ProcessParameters
 from ..core.process import bead_table, classes, held_width
 from ..core.process.bead_model import BeadModel
 from ..core.process.laid_twice import laid_twice
+from ..core.process.material import speeds_told
 from ..core.process.wire import fed
 from ..core.strategies import clearance_look, platform, support
 from ..core.strategies.families import family_of
@@ -100,8 +101,8 @@ def kept_clear(
 
 
 def with_wire(toolpath: CoreToolpath, of: Given) -> CoreToolpath:
-    """The toolpath with the speed of its wire."""
-    return fed(toolpath, of.process, of.model)
+    """The toolpath with the speed of its wire, and whether its beads are laid as their material is."""
+    return speeds_told(fed(toolpath, of.process, of.model), of.process)
 
 
 def bases_of(of: Given) -> list[Any]:

@@ -155,6 +155,10 @@ def _process(process: ProcessParameters, toolpath: Toolpath) -> dict[str, Any]:
             "feed": "auto" if process.wire.feed == "auto" else "given",
         },
         "density_g_cm3": process.density,
+        "material": None if process.material.name is None else {
+            "name": process.material.name, "source": process.material.source,
+            "slowest_mm_s": process.material.slowest, "fastest_mm_s": process.material.fastest,
+        },
         "temperature": process.temperature, "gas": process.gas, "stand_off_mm": process.stand_off,
     }
 

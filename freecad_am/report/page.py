@@ -18,7 +18,7 @@ from . import hub_figures, places, scan_figures, view, wall_figures
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
 from .style import STYLE
-from .tables import axis_names, classes_of, clock, figure_text, grid_of, in_units, pairs_of, table_of
+from .tables import axis_names, classes_of, clock, figure_text, grid_of, in_units, material_row, pairs_of, table_of
 from .turned import columns, element
 
 _WHOLE = (
@@ -84,7 +84,7 @@ def render(content: Content) -> str:
         *(_spacings(one) for one in content.features if one.rows),
         _spacing_motion(report),
         _comparison(report),
-        _totals(report["totals"]),
+        _totals(report),
         _criteria(report),
         pairs_of("Time taken", {stage: f"{seconds:.3f} s" for stage, seconds in report["timing_s"].items()}),
         _programs(report["programs"]),
@@ -199,8 +199,9 @@ def _spacing_motion(report: dict[str, Any]) -> str:
     return f"<h2>What spacing gains in motion</h2>{table_of(whole)}{table_of(axes)}"
 
 
-def _totals(sums: dict[str, Any]) -> str:
-    """What the job takes and deposits."""
+def _totals(report: dict[str, Any]) -> str:
+    """What the job takes and deposits, and of what material."""
+    sums = report["totals"]
     return pairs_of("Time and material", {
         "the whole job": clock(sums["time_s"]), "depositing": clock(sums["deposit_s"]),
         "rapid moves": clock(sums["rapid_s"]), "waits and lead times": clock(sums["wait_s"]),
@@ -209,6 +210,7 @@ def _totals(sums: dict[str, Any]) -> str:
         "volume of the deposit": f"{sums['volume_cm3']:,.2f} cm\u00b3",
         "volume of the wire fed": "unknown" if sums["fed_cm3"] is None else f"{sums['fed_cm3']:,.2f} cm\u00b3",
         "mass of the deposit": f"{sums['mass_g']:,.1f} g",
+        **material_row(report),
     })
 
 

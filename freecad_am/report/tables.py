@@ -39,6 +39,14 @@ def pairs_of(title: str, values: dict[str, str]) -> str:
     return f"<h2>{title}</h2>{table_of([(word, [value]) for word, value in values.items()])}"
 
 
+def material_row(report: dict[str, Any]) -> dict[str, str]:
+    """The material and where its figures are from; nothing where the job names none."""
+    material = report["process"]["material"]
+    if material is None:
+        return {}
+    return {"material": material["name"] + (f" ({material['source']})" if material["source"] else "")}
+
+
 def table_of(rows: Iterable[tuple[str, Iterable[str]]]) -> str:
     """A table of rows with their names."""
     lines = "".join(

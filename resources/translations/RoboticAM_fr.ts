@@ -199,6 +199,11 @@
         <translation>Faces qui sont recouvertes.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Fastest travel speed at which the material is laid; faster beads are told. (mm/s)</source>
+        <translation>Vitesse d&apos;avance la plus rapide à laquelle le matériau est déposé ; les cordons plus rapides sont signalés. (mm/s)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move (G94).</source>
         <translation>Avance des mouvements articulaires : le temps de chacun (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
@@ -539,6 +544,11 @@
         <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Name of the material; carried to the report.</source>
+        <translation>Nom du matériau ; repris dans le rapport.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/program.py"/>
         <source>Name of the program and of its files.</source>
         <translation>Nom du programme et de ses fichiers.</translation>
@@ -782,6 +792,11 @@
         <location filename="../../freecad_am/gui/inspection/view.py"/>
         <source>Size of the points in pixels.</source>
         <translation>Taille des points en pixels.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Slowest travel speed at which the material is laid; slower beads are told. (mm/s)</source>
+        <translation>Vitesse d&apos;avance la plus lente à laquelle le matériau est déposé ; les cordons plus lents sont signalés. (mm/s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -1082,6 +1097,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Where closed beads start.</source>
         <translation>Là où commencent les cordons fermés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Where the figures of the material are from; carried to the report.</source>
+        <translation>D&apos;où viennent les valeurs du matériau ; repris dans le rapport.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -2397,6 +2417,16 @@
         <translation>Les faces qui surplombent le vide de plus que cet angle sont rouges dans la vue 3D</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Fastest</source>
+        <translation>Le plus rapide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Fastest travel speed at which the material is laid; faster beads are told.</source>
+        <translation>Vitesse d&apos;avance la plus rapide à laquelle le matériau est déposé ; les cordons plus rapides sont signalés.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/feature.py"/>
         <source>Feature</source>
         <translation>Élément</translation>
@@ -3407,6 +3437,11 @@
         <translation>Masse du dépôt (g).</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Material</source>
+        <translation>Matériau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Max from vertical</source>
         <translation>Écart max à la verticale</translation>
@@ -3550,6 +3585,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
         <source>Name in jobs</source>
         <translation>Nom dans les travaux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Name of the material; carried to the report.</source>
+        <translation>Nom du matériau ; repris dans le rapport.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/inputs.py"/>
@@ -4625,6 +4665,16 @@
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
         <source>Six axes that turn, without a spherical wrist.</source>
         <translation>Six axes rotatifs, sans poignet sphérique.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Slowest</source>
+        <translation>Le plus lent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Slowest travel speed at which the material is laid; slower beads are told.</source>
+        <translation>Vitesse d&apos;avance la plus lente à laquelle le matériau est déposé ; les cordons plus lents sont signalés.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -5907,6 +5957,11 @@
         <translation>D&apos;où viennent les poses de contrôle</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Where the figures of the material are from; carried to the report.</source>
+        <translation>D&apos;où viennent les valeurs du matériau ; repris dans le rapport.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Where the fit begins: three or more pairs of a measured point and the same point of the part, each x y z &gt; x y z in mm, with a semicolon between; empty: it is looked for.</source>
         <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
@@ -6900,6 +6955,16 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>bead_width</source>
         <translation>largeur de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/material.py"/>
+        <source>beads are laid at {0} to {1} mm/s, and {2} at {3} mm/s or more; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
+        <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} à {3} mm/s ou plus ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/material.py"/>
+        <source>beads are laid at {0} to {1} mm/s, and {2} at {3} to {4} mm/s; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
+        <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} de {3} à {4} mm/s ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/predicted.py"/>
@@ -10517,6 +10582,11 @@
         <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, pour qu&apos;on ne revienne à aucun solide avant {4} s</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/material.py"/>
+        <source>the material</source>
+        <translation>le matériau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>the matrix has no inverse</source>
         <translation>la matrice n&apos;a pas d&apos;inverse</translation>
@@ -12870,6 +12940,11 @@
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} mm/s cannot be written; use {1} to {2} mm/s</source>
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez {1} à {2} mm/s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/material.py"/>
+        <source>{0} mm/s is more than the fastest, {1} mm/s; give the slower speed here</source>
+        <translation>{0} mm/s est plus que le plus rapide, {1} mm/s ; donnez ici la vitesse la plus lente</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>

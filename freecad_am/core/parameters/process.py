@@ -91,6 +91,27 @@ class CoolingParameters:
 
 
 @dataclass(frozen=True)
+class MaterialParameters:
+    """What is deposited, and where its figures are from."""
+
+    name: str | None = f.parameter(None, f.TEXT, "Name of the material; carried to the report.", optional=True)
+    source: str | None = f.parameter(
+        None, f.TEXT, "Where the figures of the material are from; carried to the report.", optional=True, advanced=True
+    )
+    slowest: float | None = f.parameter(
+        None, f.SPEED, "Slowest travel speed at which the material is laid; slower beads are told.", low=0.0, open_low=True,
+        optional=True, advanced=True,
+    )
+    fastest: float | None = f.parameter(
+        None, f.SPEED, "Fastest travel speed at which the material is laid; faster beads are told.", low=0.0, open_low=True,
+        optional=True, advanced=True,
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, "process.material")
+
+
+@dataclass(frozen=True)
 class ProcessParameters:
     """Speeds, seams and the switching of the deposit. mm, mm/s, s, rad."""
 
@@ -147,6 +168,7 @@ class ProcessParameters:
 
     start: BeadStart = f.group(BeadStart, "What differs where beads begin.")
     end: BeadEnd = f.group(BeadEnd, "What differs where beads end.")
+    material: MaterialParameters = f.group(MaterialParameters, "What is deposited.")
 
     def __post_init__(self) -> None:
         f.check(self, "process")
