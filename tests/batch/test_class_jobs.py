@@ -6,6 +6,7 @@ import csv
 import json
 import re
 
+import FreeCAD
 import numpy as np
 import Part
 import pytest
@@ -202,6 +203,23 @@ def test_schedules_change_within_a_bead_without_a_stop(workshop):
         moves = [line for line in inside[: inside.index(told[0])] if re.search(r"\bX", line)]
         border = along[-1] - 4.0 if contour else 5.0
         assert abs(along[len(moves)] - border) < 2e-3  # the next move begins there
+
+
+def test_points_put_in_look_where_the_machine_looks_there(workshop):
+    """Between tilted tools of coarse pieces: the text, driven through the joint frames, and the trunnion of a table."""
+    Part.makeCylinder(12.0, 40.0).Faces[0].exportBrep(str(workshop.folder / "tube.brep"))
+    Part.makeBox(40, 40, 10, FreeCAD.Vector(-20, -20, -10)).exportStep(str(workshop.folder / "block.step"))
+    (workshop.folder / "bar.yaml").write_text(
+        "part: {file: tube.brep}\nsubstrate: {file: block.step}\n"
+        "strategy: {kind: surface, layer_height: 10 mm, chord_error: 0.5 mm}\nbuild_direction: {tilt: 30 deg}\n"
+        "process: {start: {length: 2 mm, travel_speed: 5 mm/s}, end: {length: 3 mm, travel_speed: 8 mm/s}}\n"
+        "cell: {machine: table-xyzac, setup: rotary-table, platform: 60 mm}\nprogram: {post: siemens}\n")
+    done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
+    assert done.status == 0 and (workshop.folder / "out" / "program" / "BAR.MPF").is_file(), done.err
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    tool, tilt = numbers(rows, "tx", "ty", "tz"), numbers(rows, "a_deg")[:, 0]  # the trunnion of the table
+    assert len(rows) > 20 and np.abs(np.degrees(np.arccos(tool[:, 2])) - np.abs(tilt)).max() < 1e-5
 
 
 @pytest.mark.parametrize(("more", "status", "words"), [

@@ -17,6 +17,7 @@ from tests.core.kinematics.arms import EXAMPLES as MACHINES
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "resources" / "examples"
+MACHINE_FILES = ROOT / "freecad_am" / "machines"
 # mm; about eight layers each, and a few of each of FAMILIES: most of a round are jobs of these
 # fmt: off
 LAYERS = {
@@ -55,10 +56,34 @@ FAMILIES = {
         ],
     },
 }
+CLASSES = {
+    "first_layer": {"travel_speed": "4 mm/s", "schedule": 1}, "fill": {"lead": "3 deg", "lead_on": "0.2 s"},
+    "contour": {"travel_speed": "8 mm/s", "schedule": 3, "start": {"length": "2 mm", "travel_speed": "3 mm/s"}},
+    "wall": {"tilt": "2 deg", "end": {"length": "2 mm", "travel_speed": "9 mm/s"}},
+}
+ENDS = {"start": {"length": "2 mm", "travel_speed": "5 mm/s"}, "end": {"length": "3 mm", "travel_speed": "8 mm/s"}}
+# what may be told of any family, and the families that it is told of
+TOLD = {
+    "classes": ({"process": {"schedule": 2, "classes": CLASSES, **ENDS}}, ("solid", "surface", "features")),
+    "scan": ({"substrate": {"file": "block.step", "scan": "block.csv"}}, ("surface", "post")),
+    "place": (
+        {"place": {"x": "100 mm", "y": "0 mm", "z": "100 mm", "points": 40, "proven": 1}}, ("revolution", "curves"),
+    ),
+}
+TOLD_ON = ("abb-irb1600-6-12", "fanuc-arcmate120ic", "table-xyzac", "ur-ur10e")
+POST = {"part": {"file": "pin.step"}, "strategy": {"kind": "solid", "layer_height": "5 mm", "bead_spacing": "5 mm"}}
+PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75)  # of an axis each, as a user's machine file tells them
+RAIL = {"machine": "kuka-kl100-2", "pose": [0, 0, -356, 0, 0, 90], "carries": "robot"}
+TURNS = {"machine": "motoman-motopos-d500", "pose": [850, 60, -300, 0, 0, 20], "carries": "part"}
+# machine: where the part stands, and its post
+RAILS = {
+    "fanuc-arcmate120ic": ([1000, 500, -100, 0, 0, 0], "fanuc"), "motoman-ma2010": ([1000, 500, -300, 0, 0, 0], "yaskawa"),
+    "kuka-kr16-2": ([1050, 500, 200, 0, 0, 0], "kuka"), "abb-irb1600-6-12": ([800, 500, 100, 0, 0, 0], "abb"),
+}
 
 
 def write_parts(folder):
-    """The small parts of FAMILIES, a mesh of each, and a document."""
+    """The small parts of FAMILIES, a mesh of each, scans of the block, machine files of a user, and a document."""
     up = FreeCAD.Vector(0, 0, 1)
     cup = Part.makeSphere(30.0, FreeCAD.Vector(), up, 0, 60, 360)
     cup.exportStep(str(folder / "cup.step"))
@@ -69,6 +94,17 @@ def write_parts(folder):
     angle = Part.makeBox(50, 40, 15).fuse(Part.makeBox(15, 40, 40))
     angle.cut(Part.makeCylinder(8, 60, FreeCAD.Vector(32, 20, -5))).exportStep(str(folder / "bracket.step"))
     Part.makeCylinder(6, 20, FreeCAD.Vector(7.5, 20, 40)).exportStep(str(folder / "post.step"))
+    Part.makeCylinder(9, 25).exportStep(str(folder / "pin.step"))
+    scan = [(x, y, 0.01 * x) for x in range(-20, 21) for y in range(-20, 21)]
+    scan += [(side, y, z) for side in (-20, 20) for y in range(-20, 21) for z in range(-10, 0)]
+    scan += [(x, side, z) for side in (-20, 20) for x in range(-20, 21) for z in range(-10, 0)]
+    lines = [" ".join(f"{number:.6g}" for number in point) for point in scan]
+    (folder / "block.xyz").write_text("\n".join([*lines, ""]), encoding="utf-8")
+    rows = ["x,y,z", *(line.replace(" ", ",") for line in lines), ""]
+    (folder / "block.csv").write_text("\n".join(rows), encoding="utf-8")
+    head = ("ply", "format ascii 1.0", f"element vertex {len(lines)}", *(f"property float {axis}" for axis in "xyz"))
+    (folder / "block.ply").write_text("\n".join([*head, "end_header", *lines, ""]), encoding="utf-8")
+    Part.makeBox(40, 40, 10, FreeCAD.Vector(-20, -20, -10)).exportStl(str(folder / "block.stl"))
     (folder / "beads.csv").write_text("x,y,z,bead\n0,0,0,1\n30,0,0,1\n30,20,0,1\n0,6,0,2\n20,6,0,2\n", encoding="utf-8")
     hub = Part.makeCylinder(25.0, 80.0)
     hub.exportStep(str(folder / "hub.step"))
@@ -77,6 +113,11 @@ def write_parts(folder):
     boxes.append(boxes[0].rotated(FreeCAD.Vector(), up, 180.0))
     Part.Compound(boxes).exportBrep(str(folder / "boxes.brep"))
     Part.Compound(boxes).exportStl(str(folder / "boxes.stl"))
+    for name in ("motoman-ma2010", "mechanisms/kuka-kl100-2", "mechanisms/motoman-motopos-d500"):
+        machine = json.loads((MACHINE_FILES / f"{name}.json").read_text(encoding="utf-8"))
+        machine["controller"] |= {"pulses_per_degree": PULSES[: len(machine["joints"])], "speed_unit": "mm/s"}
+        machine["id"] += "-of-a-user"
+        (folder / f"{Path(name).name}.json").write_text(json.dumps(machine), encoding="utf-8")
     document = FreeCAD.newDocument("Parts")
     document.addObject("Part::Cylinder", "Cylinder").Radius = 25
     document.addObject("Part::Feature", "Cup").Shape = cup
@@ -89,21 +130,50 @@ def write_parts(folder):
 def bases(folder):
     """(name, job) of all, the job as values with absolute paths of its parts, of which the small ones are in `folder`."""
     found = [(path.stem, _example(path)) for path in sorted(EXAMPLES.rglob("*.yaml"))]
-    for path in sorted(ROOT / "freecad_am" / "machines" / f"{name}.json" for name in MACHINES):
-        machine = json.loads(path.read_text(encoding="utf-8"))
-        for family, sections in FAMILIES.items():
-            job = copy.deepcopy(sections)
-            for where in (job, *job.get("features", ())):
-                for key in ("part", "substrate"):
-                    if key in where:
-                        where[key]["file"] = str(Path(folder) / where[key]["file"])
-            job["strategy"]["chord_error"] = "0.5 mm"
-            job["cell"] = _cell(machine)
-            posts = written_by(machines.load(machine["id"], ())) or ()
-            fit = catalogue.fitting(posts, "joint", job["cell"].get("setup", "part-on-robot"))
-            job["program"] = {"post": next(iter(fit), "none")}
-            found.append((f"{family} on {machine['id']}", job))
-    return found
+    for machine in sorted(MACHINES, key="{}.json".format):
+        found += [(f"{family} on {machine}", _on(machine, sections, folder)) for family, sections in FAMILIES.items()]
+    return found + [*_told(folder), *_on_rails(folder)]
+
+
+def _told(folder):
+    """Jobs of some families and machines with further sections, those of TOLD."""
+    for machine in TOLD_ON:
+        for what, (more, families) in TOLD.items():
+            for family in families:
+                sections = {**(POST if family == "post" else FAMILIES[family]), **more}
+                yield f"{what} of {family} on {machine}", _on(machine, sections, folder)
+
+
+def _on_rails(folder):
+    """Jobs of robots on a track, beside a positioner or not."""
+    for machine, (point, post) in RAILS.items():
+        for family in ("curves", "solid"):
+            for external in ([RAIL], [TURNS], [RAIL, TURNS]):
+                job = _on(machine, FAMILIES[family], folder)
+                cell = {"machine": machine, "setup": "tool-on-robot", "mount": "part", "branch": "auto",
+                        "external": copy.deepcopy(external), "platform_diameter": "100 mm",
+                        "nozzle": {"tool": [0, 0, 250, 0, 0, 0]}}
+                if post == "yaskawa":
+                    for one in (cell, *cell["external"]):
+                        one["machine"] = str(Path(folder) / f"{one['machine']}.json")
+                cell.update({"platform": "10 mm"} if TURNS in external else {"deposition_point": point})
+                program = {"post": post, "motion": "cartesian" if post == "kuka" else "joint"}
+                yield f"rail of {family} on {machine}", {**job, "cell": cell, "program": program}
+
+
+def _on(name, sections, folder):
+    """The job of a family on a machine."""
+    machine = json.loads((MACHINE_FILES / f"{name}.json").read_text(encoding="utf-8"))
+    job = copy.deepcopy(sections)
+    for where in (job, *job.get("features", ())):
+        for section in (where[key] for key in ("part", "substrate") if key in where):
+            section.update({key: str(Path(folder) / section[key]) for key in ("file", "scan") if key in section})
+    job["strategy"]["chord_error"] = "0.5 mm"
+    job["cell"] = _cell(machine)
+    posts = written_by(machines.load(machine["id"], ())) or ()
+    fit = catalogue.fitting(posts, "joint", job["cell"].get("setup", "part-on-robot"))
+    job["program"] = {"post": next(iter(fit), "none")}
+    return job
 
 
 def _example(path):

@@ -8,23 +8,32 @@ import math
 
 import yaml
 
+from freecad_am.core.parameters import bead_classes
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.place import PlaceParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.scan import ScanParameters
 from freecad_am.core.strategies import families
 
 SECTIONS = {
     "build_direction": BuildDirectionParameters, "cell": CellParameters, "joints": JointParameters,
     "process": ProcessParameters, "program": ProgramParameters,
 }
+LATER = {"place": PlaceParameters, "substrate": ScanParameters}  # sections that few jobs have,
+LATER_BY = {"place": {"points", "proven"}, "substrate": {"scan"}}  # and which of their keys tell that
 STRATEGIES = {kind: family.parameters for kind, family in families.KINDS.items()}
 OTHER_KEYS = (
     "version", "name", "part.file", "part.object", "part.faces", "part.start_edges", "part.scale", "part.set", "fixtures",
     "substrate.file", "substrate.faces", "strategy.kind",
 )
+SCAN_KEYS = {
+    "substrate.scan_unit": ("auto", "mm", "cm", "m", "um", "inch"), "substrate.scan_fit": ("auto", "best", "none"),
+    "substrate.scan_pairs": ("0 0 0 > 0 0 0; 9 0 0 > 9 0 0; 0 9 0 > 0 9 0", "20 20 0 > 20 20 0.3", "1 2 > 3"),
+}
 # fmt: off
 ODD = (
     None, True, False, [], {}, "", " ", "auto", "none", "nan", ".nan", math.nan, math.inf, -math.inf, 0, -1, 1e308,
@@ -38,8 +47,8 @@ ODD = (
 PATHS = (
     "", ".", "..", "/", "/dev/null", "/dev/zero", "nowhere.step", "nowhere", "job.yaml", "~/x.step", "a\x00b.step",
     "x" * 300 + ".step", "cup.step/..", "cup.step/cup.step", "./cup.step", "../parts/cup.step", "cup.STEP", "cup.igs",
-    "hub.stl", "boxes.stl", "parts.FCStd", "tube.brep", "boxes.brep", "hub.step", "block.step", "file:///cup.step",
-    "cup.step\n", "кубок.step", "*.step",
+    "hub.stl", "boxes.stl", "block.csv", "block.xyz", "block.ply", "block.stl", "beads.csv", "parts.FCStd", "tube.brep",
+    "boxes.brep", "hub.step", "block.step", "file:///cup.step", "cup.step\n", "кубок.step", "*.step",
 )
 PUT_IN = (
     b"\t", b"  ", b":", b"- ", b"#", b"\r", b"&a ", b"*a ", b"!!python/object:os.system ", b"{", b"]", b"\xef\xbb\xbf",
@@ -51,7 +60,7 @@ PUT_IN = (
 def mutated(base, chance, folder):
     """The text, bytes, of a job like `base` with one to three things done to it; `folder` has the small parts."""
     job = copy.deepcopy(base)
-    kind = chance.choices(("valid", "values", "structure", "text"), (2, 7, 4, 5))[0]
+    kind = chance.choices(("valid", "values", "structure", "text"), (6, 5, 3, 4))[0]
     if kind == "valid":
         if chance.random() < 0.3:  # the toolpath alone
             job.pop("cell", None), job.pop("program", None), job.pop("joints", None)
@@ -82,10 +91,15 @@ def specs(job):
     """(dotted key, Spec, default) of all parameters that the job may have."""
     kind = str(job.get("strategy", {}).get("kind", "revolution"))
     kind = kind if kind in STRATEGIES else "revolution"  # what was done to it before
+    own = {name: factory for name, factory in LATER.items() if _section(job, name).keys() & LATER_BY[name]}
     return [
-        entry for name, factory in {"strategy": STRATEGIES[kind], **SECTIONS}.items() if name in ("strategy", *SECTIONS)
+        entry for name, factory in {"strategy": STRATEGIES[kind], **SECTIONS, **own}.items()
         for entry in _specs(factory, name)
     ]
+
+
+def _section(job, name):
+    return job[name] if isinstance(job.get(name), dict) else {}
 
 
 def _specs(factory, prefix):
@@ -100,11 +114,31 @@ def _specs(factory, prefix):
 
 def _valid(job, chance):
     """A key and a value that it may well have."""
+    if "scan" in _section(job, "substrate") and chance.random() < 0.2:
+        key = chance.choice(list(SCAN_KEYS))
+        return key, chance.choice(SCAN_KEYS[key])
+    if chance.random() < 0.15:
+        return "process.classes", _classes(chance)
     while True:
         key, spec, default = chance.choice(specs(job))
         if key in ("cell.machine", "cell.setup", "strategy.base.axis", "process.bead_model") or spec.kind == f.TEXT:
             continue
         return key, valid_value(key, spec, default, chance)
+
+
+def _classes(chance):
+    """Some classes of beads with keys of their own."""
+    found = {}
+    for name in chance.sample(bead_classes.CLASSES, chance.randint(1, 3)):
+        found[name] = {}
+        for key in chance.sample(list(bead_classes.SPECS), chance.randint(1, 4)):
+            phase, _, inner = key.partition("_")
+            value = valid_value(key, bead_classes.SPECS[key], 3.0, chance)
+            if phase in (bead_classes.START, bead_classes.END):
+                found[name].setdefault(phase, {})[inner] = value
+            else:
+                found[name][key] = value
+    return found
 
 
 def valid_value(key, spec, default, chance):
@@ -146,9 +180,11 @@ def valid_value(key, spec, default, chance):
 
 def _odd(job, chance, folder):
     """A key and a value that is seldom right."""
-    chosen = chance.choice([*specs(job), *((key, None, None) for key in OTHER_KEYS)])
+    chosen = chance.choice([*specs(job), *((key, None, None) for key in _others(job))])
     key, spec, _ = chosen
-    if key.endswith(".file") or (key in ("cell.machine", "process.bead_model") and chance.random() < 0.7):
+    if key in ("process.classes", "cell.external") and chance.random() < 0.8:
+        return key, _odd_entries(job, key, chance, folder)
+    if key.endswith((".file", ".scan")) or (key in ("cell.machine", "process.bead_model") and chance.random() < 0.7):
         name = chance.choice(PATHS)
         return key, f"{folder}/{name}" if chance.random() < 0.6 else name
     if spec is not None and spec.low is not None and chance.random() < 0.3:
@@ -162,6 +198,30 @@ def _odd(job, chance, folder):
         properties = {"Radius": "9 mm"}, {"Shape": 1}, {}, {"Radius": [1]}
         return key, chance.choice((*({name: chance.choice(properties)} for name in ("Cylinder", "Cup", "x")), "x"))
     return key, chance.choice(ODD)
+
+
+def _others(job):
+    """Keys that no dataclass has."""
+    return (*OTHER_KEYS, "substrate.scan", *SCAN_KEYS) if "scan" in _section(job, "substrate") else OTHER_KEYS
+
+
+def _odd_entries(job, key, chance, folder):
+    """Classes, or external axes, of which something is seldom right."""
+    if key == "process.classes":
+        found = _classes(chance)
+        name = chance.choice(list(found))
+        inner = chance.choice((*bead_classes.SPECS, "start", "end", "length", "classes"))
+        found[chance.choice((name, name, "seam", ""))] = {inner: chance.choice(ODD)}
+        return found
+    name, parent = chance.choice(("machine", "pose", "carries", "x")), _section(job, "cell").get("external")
+    found = copy.deepcopy(parent) if isinstance(parent, list) and parent else [
+        {"machine": "kuka-kl100-2", "pose": [0, 0, -356, 0, 0, 90], "carries": "robot"},
+    ]
+    if not isinstance(found[0], dict) or chance.random() < 0.2:
+        return found * chance.randint(2, 4)
+    odd = (*ODD, "robot", "part", "kuka-kl100-2", "ur-ur10e", "table-xyzac", f"{folder}/{chance.choice(PATHS)}")
+    found[0][name] = chance.choice(odd)
+    return found
 
 
 def _restructured(job, chance):

@@ -332,5 +332,5 @@ def _stl(facets):
 def machines(parts):
     """The sections of cells and programs that parts are planned on; those that stand there once more for families that came
     later are left out, so that seeds make the parts they made."""
-    later = ("cladding on", "features on")
+    later = ("cladding on", "features on", *job_bases.TOLD, "rail")
     return [job for name, job in job_bases.bases(parts) if "cell" in job and "program" in job and not name.startswith(later)]

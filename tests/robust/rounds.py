@@ -103,7 +103,7 @@ def faults(done, folder):
     out = folder / "out"
     if done.status == 2 and out.exists():
         wrong.append("files of a job that was refused")
-    if done.status == 0 and not (out / "report.json").exists():
+    if done.status == 0 and not ((out / "report.json").exists() or (out / "place.csv").exists()):
         wrong.append("no report")
     return wrong
 

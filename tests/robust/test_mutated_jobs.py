@@ -13,6 +13,7 @@ import yaml
 
 from tests.robust import job_bases, mutations, rounds, triangles
 
+STRIDE = 61  # a prime: neighbouring jobs are of other families and machines, and each base has its turn
 DEFLECTION = 0.05  # mm of the triangles that deposit points are held against
 
 
@@ -27,8 +28,11 @@ def parts(tmp_path_factory):
 def mutated_job(parts, number, chance, folder):
     """The words of a command with a mutated job, and how far points are off what they may be."""
     known = job_bases.bases(str(parts))
+    base = known[number * STRIDE % len(known)][1]
     job = folder / "job.yaml"
-    job.write_bytes(mutations.mutated(known[number % len(known)][1], chance, parts))
+    job.write_bytes(mutations.mutated(base, chance, parts))
+    if "place" in base:
+        return ["place", "job.yaml", "-o", "out"], None
     page = [] if chance.random() < 0.1 else ["--no-page"]
     return ["plan", "job.yaml", "-o", "out", *page], functools.partial(off, job)
 
@@ -53,7 +57,8 @@ def off(path, points, build):
 
 def _merged(job, feature):
     """The sections that tell what a feature is: its own keys over those of the job."""
-    return {name: {**_section(job, name), **_section(feature, name)} for name in ("part", "strategy", "process")}
+    names = ("part", "substrate", "strategy", "process")
+    return {name: {**_section(job, name), **_section(feature, name)} for name in names}
 
 
 def _section(job, name):
@@ -63,12 +68,13 @@ def _section(job, name):
 
 def _excess(folder, job, points, build):
     """By how much, mm, each point (n,) is farther off than a feature allows."""
-    strategy, process = job["strategy"], job["process"]
+    strategy, process, scan = job["strategy"], job["process"], job["substrate"]
     file = folder / job["part"]["file"]
     if file.suffix not in (".step", ".brep", ".igs"):
         return np.zeros(len(points))
     around = triangles_of(str(file.resolve()))
     away = np.min([triangles.distance(place, around) for place in cuts(points, build, strategy)], axis=0)
+    away -= length(scan.get("scan_within", 5.0)) if scan.get("scan") else 0.0  # layers lie on what was scanned
     chord = length(strategy.get("chord_error", 0.01))
     if strategy.get("kind") in ("developable", "solid", "auto"):  # of parts in these jobs the last comes to a solid
         inside = [triangles.inside(place, around) for place in cuts(points, build, strategy)]
@@ -107,7 +113,7 @@ def test_every_base_is_sound(parts):
 
 
 def test_mutated_jobs(parts, tmp_path):
-    rounds.assert_sound(functools.partial(mutated_job, parts), 30, 19, tmp_path)
+    rounds.assert_sound(functools.partial(mutated_job, parts), 30, 6, tmp_path)
 
 
 @pytest.mark.long

@@ -88,7 +88,7 @@ def _with_points(cell: Cell, path: BeadPath, along: Array, borders: Array) -> Be
         field.name: between(getattr(bead, field.name)) for field in dataclasses.fields(bead)
         if isinstance(getattr(bead, field.name), np.ndarray)
     }
-    columns["points"][new] = cell.tip_in_part(cell.machine.chain.forward(joints[new]))[0]
+    columns["points"][new], columns["tool"][new] = cell.tip_in_part(cell.machine.chain.forward(joints[new]))
     columns["speed"][new] = bead.speed[at]
     if bead.tangents is not None:  # a point within a segment is no corner
         columns["tangents"][new] = (bead.tangents[segment, 1] + bead.tangents[at, 0])[:, None]
