@@ -27,6 +27,7 @@ from typing import Any
 from .core.geometry.curves.bead_curves import POINT_FILES
 from .core.issues import InputError, Issue
 from .core.kinematics import machine as machines
+from .core.kinematics import urdf_cell, urdf_machine
 from .core.kinematics.proposed_cell import cell_of
 from .core.one_thread import one_thread
 from .core.parameters.cell import CellParameters
@@ -78,7 +79,12 @@ __all__ = (
 
 
 def make_cell(doc: Any, label: str = "Cell", *, parameters: CellParameters | None = None, **values: Any) -> Any:
-    """A cell: machine, set-up, platform and nozzle. `am.make_cell(doc, machine="kuka-kr16-2", nozzle_length=80)`"""
+    """A cell: machine, set-up, platform and nozzle. `am.make_cell(doc, machine="kuka-kr16-2", nozzle_length=80)`
+
+    external="urdf" takes track and positioner of the URDF that is the machine, and the robot of it.
+    """
+    if values.get("external") == urdf_machine.WHOLE:
+        values["machine"], values["external"] = urdf_cell.texts_of_machine(values.get("machine"))
     return make_stage(doc, Cell, "Cell", label, {}, [parameters], values)
 
 

@@ -9,7 +9,7 @@ import os
 from typing import Any
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import arrangement, calibration, proposed_cell, urdf_reference
+from freecad_am.core.kinematics import arrangement, calibration, proposed_cell, urdf_cell, urdf_machine, urdf_reference
 from freecad_am.core.parameters import external, obstacles
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.cell import CellParameters
@@ -45,7 +45,9 @@ def _of_section(section: Any, path: str) -> CellParameters:
     if section.get("machine") is not None:
         section["machine"] = _machine(section["machine"], path)
     external_axes = section.pop("external", None)
-    if external_axes not in (None, []):
+    if external_axes == urdf_machine.WHOLE:
+        section["machine"], section["external"] = urdf_cell.texts_of_machine(section.get("machine"))
+    elif external_axes not in (None, []):
         section["external"] = _external(external_axes, path)
     around = section.pop("obstacles", None)
     if around not in (None, []):
@@ -68,9 +70,8 @@ def _proposed(cell: CellParameters, own_branch: bool) -> CellParameters:
     return cell
 
 
-def _machine(value: Any, path: str) -> Any:
+def _machine(value: Any, path: str, key: str = "cell.machine") -> Any:
     """What `cell.machine` says, the path of a file made absolute: of a machine file, or of a URDF with the links meant."""
-    key = "cell.machine"
     if isinstance(value, dict) and value:
         fields.known_keys(value, ("file", "base", "tip", "name", "calibration"), key)
         texts = {name: fields.text(one, f"{key}.{name}").strip() for name, one in value.items() if one is not None}
@@ -116,9 +117,10 @@ def _one_external(value: Any, key: str, path: str) -> external.External:
     section = fields.mapping(value, key)
     fields.known_keys(section, ("machine", "pose", "carries"), key)
     pose = _pose(section.get("pose"), f"{key}.pose")
-    machine = fields.text(section.get("machine"), f"{key}.machine").strip()
-    if os.sep in machine or machine.lower().endswith(".json"):
-        machine = absolute(machine, path)
+    told = section.get("machine")
+    if not isinstance(told, dict):
+        told = fields.text(told, f"{key}.machine").strip()
+    machine = _machine(told, path, f"{key}.machine")
     return external.External(machine, pose, section.get("carries") or external.PART)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.issues import NOTE, AmError, InputError, Issue
 from ..core.kinematics import cell as cells
+from ..core.kinematics.machine import NOT_TOLD
 from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.joints import JointParameters
@@ -22,6 +23,7 @@ from ..core.planning.plan import plan_joints
 from ..core.planning.remedies import Fixed, Tried, most_points, remedies
 from ..core.planning.speeds import SLOWED
 from ..core.process import bead_table, predicted
+from ..core.simulation import payload
 from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
@@ -130,7 +132,7 @@ class JointPath(Stage):
                 joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height, rods
             )
             near = () if not rods else arm_issues(motion, cell, toolpath, process, (*joint_path.issues, *rapid_issues))
-            issues = (*joint_path.issues, *rapid_issues, *near, *_not_kept(cell))
+            issues = (*joint_path.issues, *rapid_issues, *near, *_not_kept(cell), *_drawn_plain(cell))
             issues = (*issues, *_heights_as_run(joint_path, toolpath, process))
             asked = Tried(
                 lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,
@@ -138,6 +140,7 @@ class JointPath(Stage):
             )
             _tell_remedies(cell, toolpath, issues)
             issues = (*remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)), *issues)
+            issues = (*issues, *payload.issues(motion, cell, toolpath, process))
             condition = np.concatenate([bead.condition for bead in joint_path.beads])
             smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0
             return Outcome(Planned(joint_path, motion), issues,
@@ -164,6 +167,12 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
     names = ", ".join(one.name for one in cell.obstacles)
     return [Issue(NOTE, "OBSTACLES_NOT_KEPT", f"{names}: looked at for the nozzle on rapids, and in simulation and "
                   "preflight; give cell.arm_clearance so that links, part and nozzle are kept clear of it while planning")]
+
+
+def _drawn_plain(cell: cells.Cell) -> list[Issue]:
+    """A note on what the URDF of a robot tells that was left out, such as meshes that cannot be drawn."""
+    notes = cell.robot.remarks if cell.robot.controller_remark == NOT_TOLD else ()
+    return [Issue(NOTE, "URDF_LOOKS", f"{cell.robot.title}: {'; '.join(notes)}")] if notes else []
 
 
 def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:

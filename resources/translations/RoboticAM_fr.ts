@@ -9747,6 +9747,11 @@
         <translation>les positions sur la pièce demandent la cinématique que choisit M428 ; mettez-le à true, ou utilisez `motion: joint`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/simulation/payload.py"/>
+        <source>process.density tells what it weighs; what the machine carries is in its file</source>
+        <translation>process.density dit ce qu&apos;elle pèse ; ce que la machine porte est dans son fichier</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/program.py"/>
         <source>program</source>
         <translation>programme</translation>
@@ -10245,6 +10250,16 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>the cell that runs it</source>
         <translation>la cellule qui l&apos;exécute</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/simulation/payload.py"/>
+        <source>the centre of gravity of the part, {0} kg by then, is {1} mm from the last axis of {2} ({3} mm when it is finished), which carries {4} mm with {5} kg; put it nearer to the middle (cell.platform may be a pose); {6}</source>
+        <translation>le centre de gravité de la pièce, {0} kg à ce moment, est à {1} mm du dernier axe de {2} ({3} mm une fois finie), qui porte {4} mm avec {5} kg ; rapprochez-la du milieu (cell.platform peut être une pose) ; {6}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/simulation/payload.py"/>
+        <source>the centre of gravity of the part, {0} kg by then, is {1} mm from the last axis of {2} ({3} mm when it is finished), which carries {4} mm; put it nearer to the middle (cell.platform may be a pose); {5}</source>
+        <translation>le centre de gravité de la pièce, {0} kg à ce moment, est à {1} mm du dernier axe de {2} ({3} mm une fois finie), qui porte {4} mm ; rapprochez-la du milieu (cell.platform peut être une pose) ; {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/figures.py"/>
@@ -10752,6 +10767,11 @@
         <translation>la pièce touche {what}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/simulation/payload.py"/>
+        <source>the part weighs more than {0} kg from here on, {1} kg when it is finished, {2} kg of which it grows on, and {3} carries no more; {4}</source>
+        <translation>la pièce pèse plus de {0} kg à partir d&apos;ici, {1} kg une fois finie, dont {2} kg de ce sur quoi elle pousse, et {3} ne porte pas plus ; {4}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/verify.py"/>
         <source>the path between two points leaves the straight line by {0} mm, more than the chord error</source>
         <translation>la trajectoire entre deux points quitte la droite de {0} mm, plus que l&apos;erreur de corde</translation>
@@ -11252,6 +11272,11 @@
         <translation>il y a {0} programmes qui ne sont pas des sous-programmes, un seul attendu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <source>there are {0} robots in it, the last axes of which are {1}; name one in `cell.machine`, with base and tip, and what stands beside it in `{2}`</source>
+        <translation>il y a {0} robots dedans, dont les derniers axes sont {1} ; nommez-en un dans `cell.machine`, avec base et tip, et ce qui se trouve à côté dans `{2}`</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
         <source>there are {0}; a machine needs at least 3 joint vectors with their flange poses</source>
         <translation>il y en a {0} ; une machine demande au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
@@ -11277,7 +11302,7 @@
         <translation>il n&apos;y a pas de &lt;{0}&gt;</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
         <source>there is no URDF {0}</source>
         <translation>il n’y a pas d’URDF {0}</translation>
     </message>
@@ -11340,6 +11365,11 @@
         <location filename="../../freecad_am/objects/stored.py"/>
         <source>there is no result yet; recompute it</source>
         <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <source>there is no robot in it: no chain has six turning axes on nothing but axes that slide; the longest is {0}</source>
+        <translation>il n&apos;y a pas de robot dedans : aucune chaîne n&apos;a six axes qui tournent portés par des axes qui glissent seulement ; la plus longue est {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
@@ -11892,6 +11922,11 @@
         <translation>{0} et {1} sont des faces de solides différents ; recouvrez chaque solide comme un élément à part, ou fusionnez-les d&apos;abord</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} and {1} are two mechanisms of one name, {2}; give one of the files another id</source>
+        <translation>{0} et {1} sont deux mécanismes d&apos;un même nom, {2} ; donnez un autre id à l&apos;un des fichiers</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/wall_checks.py"/>
         <source>{0} and {1} are {2} mm apart at {3}; close the gap: edges must meet within {4} mm</source>
         <translation>{0} et {1} sont à {2} mm l&apos;une de l&apos;autre en {3} ; fermez le jour : les arêtes doivent se rencontrer à {4} mm près</translation>
@@ -12012,6 +12047,11 @@
         <translation>{0} porte le robot et n&apos;est pas un rail, c&apos;est-à-dire un axe qui coulisse ; rien d&apos;autre ne peut être planifié</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <source>{0} chains move beside the robot ({1}), and one can carry the part; name it in `{2}`, with base and tip</source>
+        <translation>{0} chaînes bougent à côté du robot ({1}), et une seule peut porter la pièce ; nommez-la dans `{2}`, avec base et tip</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>{0} changed; recompute</source>
         <translation>{0} a changé ; recalculez</translation>
@@ -12083,8 +12123,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
-        <source>{0} from {1} to {2}: {3}; the robot begins at the link {4}</source>
-        <translation>{0} de {1} à {2} : {3} ; le robot commence au corps {4}</translation>
+        <source>{0} from {1} to {2}: {3}; the robot begins at the link {4}; or write `external: {5}`, which takes track and positioner of the file</source>
+        <translation>{0} de {1} à {2} : {3} ; le robot commence au corps {4} ; ou écrivez `external: {5}`, qui prend rail et positionneur du fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/front_tree.py"/>
@@ -12302,9 +12342,19 @@
         <translation>{0} est appelé avant d&apos;être chargé</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <source>{0} is carried by {1}, as the robot is; a positioner must stand on the floor</source>
+        <translation>{0} est porté par {1}, comme le robot ; un positionneur doit être posé au sol</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur_read.py"/>
         <source>{0} is defined again, or within a part</source>
         <translation>{0} est défini à nouveau, ou dans une partie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <source>{0} is for a machine that is the URDF of the whole cell, such as machine: bay.urdf; or give a list of mechanisms</source>
+        <translation>{0} est pour une machine qui est l&apos;URDF de toute la cellule, comme machine: bay.urdf ; ou donnez une liste de mécanismes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -12648,8 +12698,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} is not known; built in are {1}; or give the path of a machine file</source>
-        <translation>{0} n&apos;est pas connu ; sont intégrés {1} ; ou donnez le chemin d&apos;un fichier de machine</translation>
+        <source>{0} is not known; built in are {1}; or give the path of a machine file or a URDF</source>
+        <translation>{0} n&apos;est pas connu ; sont intégrés {1} ; ou donnez le chemin d&apos;un fichier de machine ou d&apos;un URDF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -12795,6 +12845,11 @@
         <location filename="../../freecad_am/core/layers/stacking.py"/>
         <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than {5} deg, and it is {6} mm high; along (0, 0, 1) it would be {7} mm^2 and {8} mm</source>
         <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de {5} deg, et sa hauteur est de {6} mm ; suivant (0, 0, 1) ce serait {7} mm^2 et {8} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} is the machine of the cell, which cannot carry itself; name what stands beside it</source>
+        <translation>{0} est la machine de la cellule, qui ne peut pas se porter elle-même ; nommez ce qui se trouve à côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -13157,9 +13212,19 @@
         <translation>{0} y est deux fois</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} stands there twice; leave one of them out, or give a second one of the same kind a pose of its own</source>
+        <translation>{0} s&apos;y trouve deux fois ; retirez-en un, ou donnez au second du même type sa propre pose</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/patch_wall.py"/>
         <source>{0} starts in {1} curves, about {2}: layers grow from all of them; choose the edges to start from if only some are meant</source>
         <translation>{0} commence en {1} courbes, vers {2} : les couches croissent à partir de toutes ; choisissez les arêtes de départ si seules certaines sont voulues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <source>{0} takes all of the file; leave out base and tip of the machine, or name the mechanisms one by one</source>
+        <translation>{0} prend tout le fichier ; retirez base et tip de la machine, ou nommez les mécanismes un par un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>

@@ -13,6 +13,8 @@ import yaml
 
 from freecad_am.batch.job import read_job
 from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import external
+from tests.core.kinematics import urdf_cells
 
 MOST = 10.0  # deg, of the job
 
@@ -55,13 +57,13 @@ def test_rows_and_report_say_where_the_positioner_is(workshop, written):
     assert all(abs(float(row["e1_deg"])) <= 134.9946 and abs(float(row["e2_deg"])) <= 199.9966 for row in rows)
 
     told = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
-    external = told["joints"]["external"]
-    assert external["from_vertical_max_deg"] == pytest.approx(leaning, abs=1e-3)
+    axes = told["joints"]["external"]
+    assert axes["from_vertical_max_deg"] == pytest.approx(leaning, abs=1e-3)
     turned = sum(
         abs(float(other["e2_deg"]) - float(one["e2_deg"])) for one, other in zip(rows, rows[1:])
         if one["kind"] == other["kind"] == "deposit" and (one["layer"], one["bead"]) == (other["layer"], other["bead"])
     )
-    assert external["turned_deg"]["e2"] == pytest.approx(turned, abs=1.0)
+    assert axes["turned_deg"]["e2"] == pytest.approx(turned, abs=1.0)
     assert len(told["joints"]["min_deg"]) == 8 and told["machine"]["axes"][-2:] == ["e1", "e2"]
 
 
@@ -85,8 +87,65 @@ def test_the_program_takes_the_positioner_along(workshop, written):
     assert text.count("$BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,BASE_DATA[1])") == 1
 
 
+def columns(workshop, first):
+    """Waypoints of the job as numbers, without its class, from a column on."""
+    lines = workshop.files("out")["waypoints.csv"].decode().splitlines()
+    at = lines[0].split(",").index(first)
+    return np.array([[float(word) for word in line.split(",")[at:-1]] for line in lines[1:]])
+
+
+def test_one_urdf_of_a_whole_cell_moves_as_its_mechanisms_named_one_by_one(workshop, written):
+    """Robot on a track, and a positioner, told apart by the tree; the cell by hand has the figures of the maker's files."""
+    (workshop.folder / "cell.urdf").write_text(urdf_cells.whole_cell(), encoding="utf-8")
+
+    def whole(job):
+        job["cell"].update(machine="cell.urdf", external="urdf")
+        job["program"] = {"post": "none"}
+
+    def by_hand(job):
+        job["cell"]["external"] = [
+            {"machine": "kuka-kl100-2", "pose": [0, 0, -356, 0, 0, 90], "carries": "robot"},
+            {"machine": "motoman-motopos-d500", "pose": [1400, 50, -56, 0, 0, "0.4 rad"], "carries": "part"},
+        ]
+        job["program"] = {"post": "none"}
+
+    def by_link(job):
+        by_hand(job)
+        for one, name in zip(job["cell"]["external"], ("track", "positioner"), strict=True):
+            tip = "robot_base_link" if name == "track" else f"{name}_tool0"
+            one["machine"] = {"file": "cell.urdf", "base": f"{name}_base_link", "tip": tip}
+
+    found = []
+    for change in (by_hand, whole, by_link):
+        written(change)
+        done = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
+        assert done.status == 0, done.err
+        found.append(columns(workshop, "q1_deg"))
+    assert found[0].shape[0] > 100 and found[0].shape[1] == 9 and np.ptp(found[0][:, 8]) > 300.0
+    # degrees of the machine files are rounded by the URDF in the last digits of a double
+    np.testing.assert_allclose(found[1], found[0], atol=2e-5)
+    np.testing.assert_allclose(found[2], found[0], atol=2e-5)
+
+
+def test_a_part_too_heavy_for_its_table_gets_no_program(workshop, written):
+    told = json.loads((external.MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8"))
+    told["payload"] = {"kg": 0.5, "source": "the plate"}
+    (workshop.folder / "light.json").write_text(json.dumps(told), encoding="utf-8")
+    written(lambda job: job["cell"]["external"][0].update(machine="light.json"))
+    done = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
+    assert done.status == 3 and "error[PAYLOAD]" in done.err and "carries no more" in done.err
+    report = json.loads(workshop.files("out")["report.json"])
+    assert report["status"] == "infeasible" and report["programs"] == []
+    assert report["totals"]["mass_g"] > 500.0
+    written(lambda job: (job["cell"]["external"][0].update(machine="light.json"), job["process"].update(density=2.7)))
+    done = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
+    assert done.status == 0 and json.loads(workshop.files("out")["report.json"])["totals"]["mass_g"] < 500.0
+
+
 @pytest.mark.parametrize(("change", "code", "where"), [
     (lambda job: job.update(program={"post": "fanuc"}), "WRONG_CONTROLLER", "program.post"),
+    (lambda job: job["cell"]["external"][0].update(machine="kuka-kr8-r2100-2-arc-hw"), "BAD_VALUE", "cannot carry itself"),
+    (lambda job: job["cell"]["external"].append(job["cell"]["external"][0]), "BAD_VALUE", "stands there twice"),
     (lambda job: job["cell"]["external"][0].update(carries="robot"), "NOT_YET", "cell.external"),
     (lambda job: job["cell"].update(setup="part-on-robot"), "WRONG_SETUP", "cell.external"),
 ])
@@ -99,6 +158,8 @@ def test_refused_when_it_is_planned(workshop, written, change, code, where):
 
 @pytest.mark.parametrize(("change", "code", "where"), [
     (lambda job: job["cell"].update(external="motoman-motopos-d500"), "BAD_VALUE", "cell.external"),
+    (lambda job: job["cell"].update(external="urdf"), "BAD_VALUE", "cell.external"),
+    (lambda job: job["cell"]["external"][0].update(machine={"base": "here"}), "BAD_VALUE", "cell.external[0].machine.file"),
     (lambda job: job["cell"]["external"][0].update(pose=[1, 2, 3]), "BAD_VALUE", "cell.external[0].pose"),
     (lambda job: job["cell"]["external"][0].update(pose=[1, 2, 3, 4, 5, "6 kg"]), "BAD_UNIT", "cell.external[0].pose"),
     (lambda job: job["cell"]["external"][0].pop("machine"), "BAD_VALUE", "cell.external[0].machine"),

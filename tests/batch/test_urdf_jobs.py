@@ -58,6 +58,19 @@ def test_a_robot_with_its_track_is_refused_and_told_where_the_robot_begins(plann
     assert workshop.files()["waypoints.csv"] == rows
 
 
+def test_a_mirrored_mesh_is_told_in_the_job_and_changes_no_path(planned, workshop):
+    assert planned("arm.urdf").status == 0
+    rows = workshop.files()["waypoints.csv"]
+    (workshop.folder / "hand.stl").touch()
+    mesh = '<visual><geometry><mesh filename="hand.stl" scale="1 1 -1"/></geometry></visual>'
+    text = (workshop.folder / "arm.urdf").read_text().replace('<link name="link_6"/>', f'<link name="link_6">{mesh}</link>')
+    (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
+    done = planned("arm.urdf")
+    assert done.status == 0 and "note[URDF_LOOKS]" in done.err
+    assert "hand.stl is mirrored or flat by its scale 1 1 -1" in done.err and "link_6 is drawn plain" in done.err
+    assert workshop.files()["waypoints.csv"] == rows
+
+
 def test_a_program_is_refused_for_a_controller_that_a_urdf_does_not_tell_of(planned):
     done = planned("arm.urdf", "fanuc")
     assert done.status == 2 and "does not tell what the controller shows; plan without a program" in done.err

@@ -105,6 +105,13 @@ class Cell:
         """Whether the part moves in the world."""
         return self.arrangement.carries_part or (self.external is not None and bool(self.external.turning))
 
+    @property
+    def carriers(self) -> tuple[Machine, ...]:
+        """What carries the part and moves it, from the floor on; the part hangs on the face, or the flange, of the last."""
+        if self.arrangement.carries_part:
+            return (self.machine,)
+        return () if self.external is None else self.external.carriers
+
     def in_part(self) -> tuple[Body, ...]:
         """The obstacles in part coordinates; none where the part moves in the world."""
         if self.part_moves or not self.obstacles:
@@ -131,6 +138,11 @@ class Cell:
             assert external is not None  # whoever asks for the poses of a cell with external axes knows where these are
             stands = frames.inverse(self.external.base(external)) @ stands
         return PoseFrames(stands, -1.0, (_TURNED @ frames.inverse(self.carried))[None])
+
+    def on_carrier(self, position: Array) -> Array:
+        """Points (n, 3) mm of the part as seen from the flange or the face that carries it; there are `carriers`."""
+        seen = (self.carried if self.arrangement.carries_part else self.station) @ frames.inverse(self.mount)
+        return np.asarray(position @ seen[:3, :3].T + seen[:3, 3])
 
     def on_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
         """Points (n, 3) and tool axes (n, 3) of the part as seen from the flange that carries it."""

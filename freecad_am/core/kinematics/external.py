@@ -14,7 +14,6 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,11 +22,15 @@ from ..geometry import frames
 from ..issues import InputError
 from ..parameters.external import PART, ROBOT, WHERE, External
 from . import machine as machines
+from . import urdf_machine
 from .chain import Chain, Piece, joined
 from .limits import Limits
 from .machine import MAKER, Machine
+from .urdf_reference import reference
 
 Array = NDArray[np.float64]
+
+MECHANISMS = machines.BUILT_IN / "mechanisms"
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +39,7 @@ class ExternalAxes:
     the platform's face or the world, to the robot's base_link. up: (3,) against gravity, in the world. turning: the unit
     axes (3,) of the positioner in the world with all axes at zero, from the floor on, and `turned` which of the values these
     are. at_zero: (3, 3) turns directions on the face into the world, at zero. along: (3,) the unit way of the track in the
-    world and `slides` its value's place, None where the robot stands."""
+    world and `slides` its value's place, None where the robot stands. carriers: what carries the part, from the floor on."""
 
     robot: Machine
     to_robot: Chain
@@ -46,6 +49,7 @@ class ExternalAxes:
     at_zero: Array
     along: Array | None = None
     slides: int | None = None
+    carriers: tuple[Machine, ...] = ()
 
     @property
     def axes(self) -> int:
@@ -73,12 +77,12 @@ def coupled(
     Raises InputError NOT_YET for what cannot be planned, UNKNOWN_MACHINE, BAD_MACHINE.
     """
     found = [(one, load(one.machine, folders)) for one in named]
+    _check_names(robot, found)
     _check(found)
     if not robot.redundant:
         raise InputError("WRONG_SETUP", WHERE, f"{robot.title} is no robot and takes no external axes; leave them out")
-    axes, count = robot.chain.axes, sum(machine.chain.axes for _, machine in found)
-    ends = np.cumsum([0, *(machine.chain.axes for _, machine in found)])
-    values = [np.arange(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)]
+    axes, ends = robot.chain.axes, np.cumsum([0, *(machine.chain.axes for _, machine in found)])
+    values, count = [np.arange(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)], int(ends[-1])
     carriers = [k for k, (one, _) in enumerate(found) if one.carries == PART]
     in_world = frames.inverse(robot.base)
     pieces, face, turned = [], np.eye(4), np.zeros(0, dtype=np.intp)
@@ -100,7 +104,8 @@ def coupled(
     whole = joined([
         Piece(np.eye(4), to_robot, axes + np.arange(count)), Piece(np.eye(4), robot.chain, np.arange(axes)),
     ], np.eye(4))
-    external = ExternalAxes(robot, to_robot, _unit(up), turning, turned, face[:3, :3], along, slides)
+    carry = tuple(found[k][1] for k in carriers)
+    external = ExternalAxes(robot, to_robot, _unit(up), turning, turned, face[:3, :3], along, slides, carry)
     machines_ = [machine for _, machine in found]
     return _together(robot, machines_, whole), _limits(limits, machines_), external
 
@@ -124,20 +129,45 @@ def _check(found: Sequence[tuple[External, Machine]]) -> None:
         raise InputError("NOT_YET", WHERE, f"{count} axes carry the part; one or two turning axes can be planned")
 
 
+def _check_names(robot: Machine, found: Sequence[tuple[External, Machine]]) -> None:
+    """Refuse mechanisms that are the robot itself, or each other."""
+    for k, (one, machine) in enumerate(found):
+        if machine.id == robot.id or (_alike(machine, robot) and one.carries == ROBOT):
+            raise InputError("BAD_VALUE", WHERE, f"{machine.title} is the machine of the cell, which cannot carry "
+                             "itself; name what stands beside it")
+        for other, before in found[:k]:
+            if machine.id != before.id:
+                continue
+            if not _alike(machine, before):
+                raise InputError("BAD_VALUE", WHERE, f"{one.machine} and {other.machine} are two mechanisms of one name, "
+                                 f"{machine.id!r}; give one of the files another id")
+            if one.pose == other.pose or one.carries != other.carries:
+                raise InputError("BAD_VALUE", WHERE, f"{machine.id!r} stands there twice; leave one of them out, or give a "
+                                 "second one of the same kind a pose of its own")
+
+
+def _alike(one: Machine, other: Machine) -> bool:
+    return one.chain.axes == other.chain.axes and np.array_equal(one.chain.origins, other.chain.origins)
+
+
 def load(name: str, folders: Sequence[str] = ()) -> Machine:
-    """A mechanism by its id, built in or in the user's folders, or by the path of a machine file."""
-    built_in = machines.BUILT_IN / "mechanisms"
-    file = built_in / f"{name}.json"
-    if file.is_file():
-        return machines.load(file)
+    """A mechanism by its id, in the user's folders or built in, by the path of a machine file, or the links of a URDF.
+
+    Raises InputError UNKNOWN_MACHINE, BAD_MACHINE, BAD_URDF.
+    """
+    meant = reference(name)
+    if meant is not None:
+        found = urdf_machine.chain_of(meant)
+        called = f"{found.name} {' - '.join(found.joints)}"  # a file may describe several
+        return dataclasses.replace(machines.of_description(name, found, None), id=called, title=called)
     try:
-        return machines.load(name, folders)
+        return machines.load(name, (*folders, MECHANISMS))
     except InputError as error:
         if error.code != "UNKNOWN_MACHINE":
             raise
-        known = ", ".join(sorted(path.stem for path in Path(built_in).glob("*.json")))
+        known = ", ".join(sorted(path.stem for path in MECHANISMS.glob("*.json")))
         raise InputError("UNKNOWN_MACHINE", WHERE, f"{name!r} is not known; built in are {known}; or give the path of a "
-                         "machine file") from None
+                         "machine file or a URDF") from None
 
 
 def _unit(up: Sequence[float]) -> Array:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -111,3 +112,12 @@ def _share(column: Array, low: float, high: float) -> Array:
     if np.isfinite(half):
         return np.asarray(np.minimum(column - low, high - column) / (half if half > 0.0 else 1.0))
     return np.where(np.isfinite(column), 1.0, np.minimum(column, -column))
+
+
+@dataclass(frozen=True)
+class Payload:
+    """What a machine carries at most: kg, and how far, mm, the centre of gravity of the load may be from the last axis;
+    infinite where the file does not tell it."""
+
+    kg: float = math.inf
+    from_axis: float = math.inf

@@ -21,18 +21,19 @@ from numpy.typing import ArrayLike, NDArray
 from ..geometry.frames import Array
 from ..issues import InputError
 from . import calibration, check_poses, urdf_machine
+from . import machine_entries as entry
 from .arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement
 from .chain import Chain
 from .five_axis import is_five_axis
 from .inverse.calibrated import CalibratedArm
 from .inverse.parallel_axes import ParallelAxesArm
 from .inverse.serial_arm import SerialArm
-from .limits import Limits
+from .limits import Limits, Payload
 from .link_shape import LinkShape, link_shapes
-from .machine_entries import limits_of, most_of, name_of, opw_arm, pulses_of, recognised, slides, speed_unit_of, unit_of
 from .machine_file import Node, read
 from .opw import OpwArm
-from .urdf_reference import Reference, reference
+from .urdf import Description
+from .urdf_reference import reference
 
 BUILT_IN = Path(__file__).resolve().parents[2] / "machines"
 MAKER = "maker"
@@ -80,6 +81,7 @@ class Machine:
     max_jerk: Array
     shapes: tuple[LinkShape | None, ...]
     external: int = 0
+    payload: Payload = Payload()
 
     @property
     def opw(self) -> OpwArm | None:
@@ -172,7 +174,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
         return _parse(read(path))
     meant = reference(text)
     if meant is not None:
-        return _of_urdf(meant)
+        return of_description(f"{meant}", *urdf_machine.described(meant))
     path = file_of(text, folders)
     machine = _built_in(path, path.stat().st_mtime_ns) if path.parent == BUILT_IN else _parse(read(path))
     if machine.id != text:
@@ -224,37 +226,35 @@ def _parse(top: Node) -> Machine:
     if not joints:
         raise top["joints"].bad("there is no joint")
     count = len(joints)
-    sliding = np.array([slides(joint) for joint in joints])
+    sliding = np.array([entry.slides(joint) for joint in joints])
     units = unit_values(sliding)
     # the axes of a robot go by number unless the file has what its pendant shows; those of a machine tool have names
-    names = tuple(name_of(joint, f"q{index + 1}", bool(sliding.any())) for index, joint in enumerate(joints))
+    names = tuple(entry.name_of(joint, f"q{index + 1}", bool(sliding.any())) for index, joint in enumerate(joints))
     controller = top["controller"].only("matrix", "offset", "remark", "posts", "pulses_per_degree", "speed_unit")
     chain = Chain(
         np.stack([joint.pose() for joint in joints]),
-        np.stack([unit_of(joint["axis"]) for joint in joints]),
+        np.stack([entry.unit_of(joint["axis"]) for joint in joints]),
         top["flange"].only("origin", "rpy").pose(),
         sliding,
     )
-    arm, no_arm = (opw_arm(top["opw"], count), "") if top.has("opw") else recognised(chain)
+    arm, no_arm = (entry.opw_arm(top["opw"], count), "") if top.has("opw") else entry.recognised(chain)
     machine = Machine(
-        id=top["id"].text(),
-        title=top["title"].text(),
-        axes=names,
+        id=top["id"].text(), title=top["title"].text(), axes=names,
         chain=chain, arm=arm, no_arm=no_arm,
         base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
-        max_speed=np.array([most_of(joint, "max_speed", "a speed") for joint in joints]) * units,
-        limit_sets={name: limits_of(name, node, names, units) for name, node in top["limits"].pairs()},
+        max_speed=np.array([entry.most_of(joint, "max_speed", "a speed") for joint in joints]) * units,
+        limit_sets={name: entry.limits_of(name, node, names, units) for name, node in top["limits"].pairs()},
         controller_matrix=controller["matrix"].matrix(count, count),
         controller_offset=controller["offset"].numbers(count) * units,
         controller_remark=controller["remark"].text(),
         posts=controller["posts"].texts() if controller.has("posts") else None,
-        pulses_per_degree=pulses_of(controller["pulses_per_degree"], count) if controller.has("pulses_per_degree") else (),
-        speed_unit=speed_unit_of(controller["speed_unit"]) if controller.has("speed_unit") else "",
+        pulses_per_degree=entry.pulses_of(controller, count),
+        speed_unit=entry.speed_unit_of(controller["speed_unit"]) if controller.has("speed_unit") else "",
         sources=top["sources"].texts(),
         remarks=top["remarks"].texts() if top.has("remarks") else (),
-        max_acceleration=np.array([most_of(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
-        max_jerk=np.array([most_of(joint, "max_jerk", "a jerk") for joint in joints]) * units,
-        shapes=link_shapes(top, tuple(joint["name"].text() for joint in joints)),
+        max_acceleration=np.array([entry.most_of(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
+        max_jerk=np.array([entry.most_of(joint, "max_jerk", "a jerk") for joint in joints]) * units,
+        shapes=link_shapes(top, tuple(joint["name"].text() for joint in joints)), payload=entry.payload_of(top),
     )
     if MAKER not in machine.limit_sets:
         raise top["limits"].bad(f"the set {MAKER!r} is missing")
@@ -278,16 +278,15 @@ def _calibrated(machine: Machine, path: Path) -> Machine:
     return replace(machine, chain=chain, arm=CalibratedArm(machine.arm, chain), sources=(*machine.sources, told))
 
 
-def _of_urdf(meant: Reference) -> Machine:
+def of_description(source: str, found: Description, arm: SerialArm | None) -> Machine:
     """The machine of a URDF: limits and speeds are those of the file, and no post writes for a controller that it does not
     tell of."""
-    found, arm = urdf_machine.described(meant)
     count = found.chain.axes
     none = np.zeros((0, count))
     names = found.joints if found.chain.sliding.any() else tuple(f"q{index + 1}" for index in range(count))
     limits = Limits(
         name=MAKER, lower=found.lower, upper=found.upper, coefficients=none, coupled_lower=none[:, 0],
-        coupled_upper=none[:, 0], labels=names, source=f"{meant}",
+        coupled_upper=none[:, 0], labels=names, source=source,
     )
     unknown = np.full(count, math.inf)
     return Machine(
@@ -295,5 +294,5 @@ def _of_urdf(meant: Reference) -> Machine:
         base=np.eye(4) if found.base is None else found.base, max_speed=found.max_speed, limit_sets={MAKER: limits},
         controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=NOT_TOLD, posts=(),
         pulses_per_degree=(), speed_unit="",
-        sources=(f"{meant}",), remarks=found.notes, max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes,
+        sources=(source,), remarks=found.notes, max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes,
     )

@@ -13,14 +13,18 @@ from .chain import Chain
 from .five_axis import is_five_axis
 from .inverse import recognition
 from .inverse.serial_arm import SerialArm
-from .limits import Limits
+from .limits import Limits, Payload
 from .machine_file import Node
 from .opw import OpwArm
 
 SPEED_UNITS = ("mm/s", "cm/min", "mm/min")
 
 
-def pulses_of(node: Node, count: int) -> tuple[float, ...]:
+def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
+    """The pulses of each axis, none where the file does not tell them."""
+    if not controller.has("pulses_per_degree"):
+        return ()
+    node = controller["pulses_per_degree"]
     pulses = node.numbers(count)
     if (pulses == 0.0).any():
         raise node.bad(f"{node.value} has a 0; give the pulses of a degree of each axis, negative where they count down")
@@ -62,6 +66,14 @@ def most_of(joint: Node, key: str, what: str) -> float:
     if most <= 0.0:
         raise joint[key].bad(f"{most:g} is not {what}; give more than 0, or null where not known")
     return most
+
+
+def payload_of(top: Node) -> Payload:
+    """What a machine carries, as far as its file tells it."""
+    if not top.has("payload"):
+        return Payload()
+    told = top["payload"].only("kg", "from_axis", "source")
+    return Payload(most_of(told, "kg", "a mass"), most_of(told, "from_axis", "a distance"))
 
 
 def recognised(chain: Chain) -> tuple[SerialArm | None, str]:

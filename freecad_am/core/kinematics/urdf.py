@@ -96,7 +96,7 @@ class Urdf:
         the usual name, or as can be; of these those whose Z points out along the last axis, then by name."""
         moving: dict[str, int] = {}
         for link in self.links:
-            carried = [link, *self._above(link)]
+            carried = [link, *self.above(link)]
             if base in carried[1:]:
                 joints = [self.parent[below] for below in carried[: carried.index(base)]]
                 moving[link] = sum(joint.text("type") != FIXED for joint in joints)
@@ -104,7 +104,7 @@ class Urdf:
         axes = moving[named[0]] if named else max(moving.values(), default=0)
 
         def rank(link: str) -> tuple[object, ...]:
-            crooked = moving[link] == axes == ROBOT and not self._points_out(link)
+            crooked = moving[link] == axes == ROBOT and not self.points_out(link)
             return moving[link] != axes, crooked, link not in named, link != TIPS[0], -moving[link]
 
         return sorted((link for link, count in moving.items() if count), key=rank)
@@ -113,7 +113,7 @@ class Urdf:
         """The link that a joint moves; it must be there."""
         return next(link for link, one in self.parent.items() if one.text("name") == joint)
 
-    def _points_out(self, link: str) -> bool:
+    def points_out(self, link: str) -> bool:
         """Whether the Z of a link lies along the axis of the last joint that moves it, and does not point back to the one
         before."""
         last, rest = self._moved(link, np.eye(4))
@@ -152,7 +152,7 @@ class Urdf:
         names = tuple(joint.text("name") for joint in moving)
         return Description(self.name, names, chain, lower, upper, speed, self._makers(base), shapes, tuple(notes))
 
-    def _above(self, link: str) -> list[str]:
+    def above(self, link: str) -> list[str]:
         """The links that carry a link, next first."""
         found: list[str] = []
         while link in self.parent:
@@ -167,7 +167,7 @@ class Urdf:
 
     def _between(self, base: str, tip: str) -> Iterator[Element]:
         """The joints from a link to another, in order."""
-        above = [tip, *self._above(tip)]
+        above = [tip, *self.above(tip)]
         if base not in above:
             raise InputError(CODE, self.path.name, f"the link {base!r} does not carry {tip!r}; choose others")
         for link in reversed(above[: above.index(base)]):
@@ -202,7 +202,10 @@ class Urdf:
                 notes.append(f"line {mesh.line}: {name} is not there; {link} is drawn plain")
             elif file.suffix.lower() not in FORMATS:
                 notes.append(f"line {mesh.line}: {file.name} cannot be drawn; {link} is drawn plain")
-            elif np.ptp(scales) > 1e-9 or scales[0] <= 0.0:
+            elif (scales <= 0.0).any():
+                notes.append(f"line {mesh.line}: {file.name} is mirrored or flat by its scale {mesh.attributes['scale']}; "
+                             f"write a mirrored mesh out as it is; {link} is drawn plain")
+            elif np.ptp(scales) > 1e-9:
                 notes.append(f"line {mesh.line}: {file.name} has unequal scales; {link} is drawn plain")
             else:
                 where = f"{self.path.name}: line {mesh.line}"

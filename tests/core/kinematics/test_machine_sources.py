@@ -236,6 +236,20 @@ def test_a_urdf_is_read_with_fixed_joints_units_rounded_angles_and_meshes(tmp_pa
     assert found.shapes[1:] == (None, None) and any("arm.dae cannot be drawn" in note for note in found.notes)
 
 
+@pytest.mark.parametrize(("scale", "words"), [
+    ("0.001 -0.001 0.001", "base.stl is mirrored or flat by its scale 0.001 -0.001 0.001"),
+    ("-1 -1 -1", "base.stl is mirrored"), ("1 0 1", "base.stl is mirrored or flat"),
+    ("0.001 0.001 0.002", "base.stl has unequal scales"),
+])
+def test_meshes_that_are_mirrored_or_stretched_are_told_and_not_drawn(tmp_path, scale, words):
+    folder = tmp_path / "two_support" / "meshes"
+    folder.mkdir(parents=True)
+    (folder / "base.stl").touch()
+    found = read(folder, ARM.replace('scale="0.001 0.001 0.001"', f'scale="{scale}"'), "base_link", "hand")
+    assert found.shapes[0] is None
+    assert any(note.startswith(f"line 6: {words}") and "base_link is drawn plain" in note for note in found.notes)
+
+
 def test_links_to_choose_from(tmp_path):
     path = tmp_path / "two.urdf"
     path.write_text(ARM, encoding="utf-8")
@@ -315,6 +329,8 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
     ('"0 0 2"', '"0 0"', 14, "is not 3 numbers"),
     ('"0 0 2"', '"0 0 0"', 14, "has no direction"),
     ('type="revolute"', 'type="floating"', 13, "is floating"),
+    ('<limit lower="-2.967" upper="2.9671" velocity="3.4034" effort="0"/>', "", 13, "the joint 'turn' has no <limit>"),
+    ('lower="-2.967" upper="2.9671"', "", 15, "run from 0 to 0; give the lower one first"),
     ('lower="-2.967" upper="2.9671"', 'lower="1" upper="-1"', 15, "give the lower one first"),
     ('<child link="hand"/>', '<child link="arm"/>', 17, "is moved by 'turn' already"),
     ('<child link="hand"/>', '<child link="fist"/>', 17, "there is no link 'fist'"),

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether what carries the part can: its mass as it grows, and how far its centre of gravity is from the last axis.
+
+The part is the deposit and the bodies it grows on, all as dense as the deposit; what of them is no closed mesh counts
+nothing. A load may be farther from the axis the less it weighs: what counts is its moment about the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import frames
+from ..geometry.surroundings import Body
+from ..issues import ERROR, Issue
+from ..kinematics.cell import Cell
+from ..kinematics.machine import Machine
+from ..motion import Motion
+from ..parameters.process import ProcessParameters
+from ..toolpath import Toolpath
+from .deposit import volumes
+
+Array = NDArray[np.float64]
+
+CODE = "PAYLOAD"
+KG = 1e-6  # of a mm3 at 1 g/cm3
+REMEDY = "process.density tells what it weighs; what the machine carries is in its file"
+
+
+def issues(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:
+    """At most one of each machine that carries the part and is overloaded, and one where the part is too far out, where
+    that begins."""
+    if all(np.isinf([one.payload.kg, one.payload.from_axis]).all() for one in cell.carriers):
+        return []
+    deposited = KG * process.density * np.nan_to_num(volumes(motion, process, toolpath))
+    bodies, centre = _bodies(toolpath.surroundings)
+    bodies *= KG * process.density
+    mass, found = bodies + np.cumsum(deposited), []
+    for machine in cell.carriers:
+        over = mass > machine.payload.kg
+        if over.any():
+            row = int(over.argmax())
+            found.append(_at(motion, row, f"the part weighs more than {machine.payload.kg:g} kg from here on, "
+                             f"{mass[-1]:.4g} kg when it is finished, {bodies:.3g} kg of which it grows on, and "
+                             f"{machine.title} carries no more; {REMEDY}"))
+    out = cell.carriers[-1].payload.from_axis
+    if np.isfinite(out):
+        from_axis = _from_axis(cell, cell.carriers[-1], motion.position, deposited, bodies, centre)
+        found += _too_far(motion, cell.carriers[-1], mass, from_axis)
+    return found
+
+
+def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> list[Issue]:
+    """About a part of masses (n,) kg with moments (n,) kg mm about the last axis."""
+    load = machine.payload
+    most = load.from_axis * (mass if np.isinf(load.kg) else load.kg)
+    over = moment > most * (1.0 + 1e-9)
+    if not over.any():
+        return []
+    row = int(over.argmax())
+    middle = moment[-1] / mass[-1] if mass[-1] > 0.0 else 0.0
+    rated = f"{load.from_axis:g} mm" if np.isinf(load.kg) else f"{load.from_axis:g} mm with {load.kg:g} kg"
+    out = moment[row] / mass[row]
+    return [_at(motion, row, f"the centre of gravity of the part, {mass[row]:.4g} kg by then, is {out:.4g} mm from "
+                f"the last axis of {machine.title} ({middle:.4g} mm when it is finished), which carries {rated}; put it "
+                f"nearer to the middle (cell.platform may be a pose); {REMEDY}")]
+
+
+def _from_axis(cell: Cell, machine: Machine, position: Array, deposited: Array, bodies: float, centre: Array) -> Array:
+    """(n,) kg mm, the moment of the part about the last axis of what carries it, after each row."""
+    rest = machine.chain.frames(np.zeros(machine.chain.axes))
+    to_flange = frames.inverse(rest.flange)
+    axis = to_flange[:3, :3] @ rest.directions[-1]
+    through = to_flange[:3, :3] @ rest.origins[-1] + to_flange[:3, 3]
+    middles = 0.5 * (position + np.concatenate([position[:1], position[:-1]]))
+    arms = np.cross(cell.on_carrier(np.nan_to_num(middles)) - through, axis)
+    own = np.cross(cell.on_carrier(centre[None]) - through, axis)
+    return np.asarray(np.linalg.norm(bodies * own + np.cumsum(deposited[:, None] * arms, axis=0), axis=1))
+
+
+def _bodies(around: Sequence[Body]) -> tuple[float, Array]:
+    """The volume of all closed bodies, mm3, and where its middle (3,) is."""
+    volume, weighted = 0.0, np.zeros(3)
+    for body in around:
+        edges = np.concatenate([body.triangles[:, [0, 1]], body.triangles[:, [1, 2]], body.triangles[:, [2, 0]]])
+        count = len(body.vertices)
+        if not np.array_equal(np.sort(edges @ (count, 1)), np.sort(edges @ (1, count))):
+            continue
+        corners = body.corners()
+        parts = np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+        volume += abs(float(parts.sum()))
+        weighted += np.sign(parts.sum()) * (parts[:, None] * corners.sum(axis=1) / 4.0).sum(axis=0)
+    return volume, weighted / volume if volume > 0.0 else weighted
+
+
+def _at(motion: Motion, row: int, message: str) -> Issue:
+    return Issue(ERROR, CODE, message, int(motion.layer[row]), int(motion.bead[row]), max(0, int(motion.point[row])))

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parts too heavy, or too far from the middle, for what carries them: masses and places worked out here."""
+
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry import surroundings
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import machine as machines
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.simulation import deposit, payload
+from tests.core.planned_dome import planned_dome
+
+DENSITY = 7.85  # g/cm3, where a job says nothing
+SKEWED = {"origin": [2, -3, 70], "rpy": [1, 0, 40]}
+JOINTS = [
+    {"name": "tilt", "origin": [10, -20, 400], "rpy": [3, 0, 5], "axis": [0, 1, 0], "max_speed": 90},
+    {"name": "turn", "origin": [35, 12, 60], "rpy": [0, 8, 0], "axis": [0, 0, 1], "max_speed": 180},
+]
+
+
+def turned(axis, degrees):
+    x, y, z = axis
+    cross, angle = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]], float), math.radians(degrees)
+    return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
+
+
+def step(told, axis=None, degrees=0.0):
+    found = np.eye(4)
+    roll, pitch, yaw = told["rpy"]
+    found[:3, :3] = turned((0, 0, 1), yaw) @ turned((0, 1, 0), pitch) @ turned((1, 0, 0), roll)
+    found[:3, 3] = told["origin"]
+    if axis is not None:
+        moved = np.eye(4)
+        moved[:3, :3] = turned(axis, degrees)
+        found = found @ moved
+    return found
+
+
+def face(turn):
+    """The face of the positioner with axis 1 at zero."""
+    return step(JOINTS[0], JOINTS[0]["axis"]) @ step(JOINTS[1], JOINTS[1]["axis"], turn) @ step(SKEWED)
+
+
+@pytest.fixture
+def positioner(tmp_path):
+    """Writes a positioner whose axes neither meet nor are square, with a payload."""
+
+    def write(**load):
+        q = ((0.0, 0.0), (0.0, 90.0), (0.0, -170.0))
+        poses = [{"q": one, "origin": face(one[1])[:3, 3].tolist(), "rotation": face(one[1])[:3, :3].tolist()} for one in q]
+        path = tmp_path / "skew.json"
+        path.write_text(json.dumps({
+            "id": "skew", "title": "Skew positioner", "sources": ["made up"], "joints": JOINTS, "flange": SKEWED,
+            "controller": {"matrix": [[1, 0], [0, 1]], "offset": [0, 0], "remark": "as it is"},
+            "limits": {"maker": {"axes": [[-140, 140], [-400, 400]], "source": "made up"}}, "check_poses": poses,
+            "payload": {**load, "source": "made up"},
+        }), encoding="utf-8")
+        return path
+
+    return write
+
+
+def cell_with(path, toolpath, platform=(60.0, -20.0, 5.0, 0.0, 0.0, 30.0)):
+    return cells.resolve(CellParameters(
+        machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto",
+        platform=(*platform[:3], *np.radians(platform[3:])), external=f"{path} at 1400 0 0 0 0 0 carries part",
+    ), toolpath.frame)
+
+
+@pytest.fixture(scope="module")
+def toolpath():
+    return planned_dome(9.0, ProcessParameters()).toolpath
+
+
+def grown(toolpath, width):
+    """Masses (n,) kg of all segments as beads of that width, and their middles (n, 3) in part coordinates."""
+    masses, middles = [], []
+    for _, _, bead in toolpath:
+        steps = np.diff(bead.points, axis=0)
+        masses += (1e-6 * DENSITY * width * toolpath.layer_height * np.linalg.norm(steps, axis=1)).tolist()
+        middles += (bead.points[:-1] + 0.5 * steps).tolist()
+    return np.array(masses), np.array(middles)
+
+
+def on_face(toolpath, places, platform):
+    """As the part stands: its own frame on the platform."""
+    x, y, z, *angles = platform
+    mounted = np.eye(4)
+    mounted[:3, :3] = turned((1, 0, 0), angles[0]) @ turned((0, 1, 0), angles[1]) @ turned((0, 0, 1), angles[2])
+    mounted[:3, 3] = x, y, z
+    seen = mounted @ np.linalg.inv(toolpath.frame)
+    return places @ seen[:3, :3].T + seen[:3, 3]
+
+
+def found(toolpath, path, process=None, **more):
+    process = process or ProcessParameters()
+    return payload.issues(deposit.alone(toolpath), cell_with(path, toolpath, **more), toolpath, process)
+
+
+def test_the_mass_counts_as_the_part_grows(toolpath, positioner):
+    masses, _ = grown(toolpath, toolpath.bead_width or ProcessParameters().bead_width)
+    whole = masses.sum()
+    assert found(toolpath, positioner(kg=1.001 * whole)) == []
+    (issue,) = found(toolpath, positioner(kg=0.6 * whole))
+    assert issue.code == "PAYLOAD" and issue.level == "error"
+    assert "carries no more" in issue.message and f"{whole:.4g} kg when it is finished" in issue.message
+    counts = np.cumsum([len(bead.points) - 1 for _, _, bead in toolpath])
+    row = int(np.searchsorted(np.cumsum(masses), 0.6 * whole))
+    layer, number, _ = list(toolpath)[int(np.searchsorted(counts, row, side="right"))]
+    assert (issue.layer, issue.bead) == (layer, number)
+    assert found(toolpath, positioner(kg=0.6 * whole), ProcessParameters(density=0.5 * DENSITY)) == []
+
+
+def test_what_it_grows_on_weighs_too(toolpath, positioner):
+    plate = surroundings.box((200.0, 100.0, 20.0), np.eye(4), "substrate")
+    masses, _ = grown(toolpath, toolpath.bead_width or ProcessParameters().bead_width)
+    on_plate = dataclasses.replace(toolpath, surroundings=(plate,))
+    whole = masses.sum() + 0.4e6 * 1e-6 * DENSITY
+    assert found(on_plate, positioner(kg=1.001 * whole)) == []
+    (issue,) = found(on_plate, positioner(kg=0.999 * whole))
+    assert "3.14 kg of which it grows on" in issue.message
+    # a plate without its top encloses nothing
+    open_plate = dataclasses.replace(plate, triangles=plate.triangles[:-1])
+    assert found(dataclasses.replace(toolpath, surroundings=(open_plate,)), positioner(kg=0.999 * whole)) == []
+
+
+@pytest.mark.parametrize("with_plate", [False, True])
+def test_the_middle_of_the_part_may_be_so_far_from_the_last_axis(toolpath, positioner, with_plate):
+    """Half of the way between where the middle of the part is now, and with the table turned half round."""
+    platform = (60.0, -20.0, 5.0, 0.0, 0.0, 30.0)
+    masses, middles = grown(toolpath, toolpath.bead_width or ProcessParameters().bead_width)
+    if with_plate:
+        at = np.eye(4)
+        at[:3, 3] = 30.0, 10.0, -10.0
+        toolpath = dataclasses.replace(toolpath, surroundings=(surroundings.box((60.0, 40.0, 20.0), at, "substrate"),))
+        masses, middles = np.r_[0.048 * DENSITY, masses], np.concatenate([at[None, :3, 3], middles])
+    places = on_face(toolpath, middles, platform)
+    ways = []
+    for turn in (0.0, 180.0):
+        pose = face(turn)
+        ways.append(np.cumsum(masses[:, None] * (places @ pose[:3, :3].T + pose[:3, 3]), axis=0))
+    moment = 0.5 * np.linalg.norm(ways[0] - ways[1], axis=1)
+    far, whole = (moment / np.cumsum(masses)).max(), masses.sum()
+    assert found(toolpath, positioner(from_axis=1.0001 * far)) == []
+    (issue,) = found(toolpath, positioner(from_axis=0.9999 * far))
+    assert issue.code == "PAYLOAD" and "nearer to the middle" in issue.message and "Skew positioner" in issue.message
+    # what weighs half of the load may be twice as far out
+    rated = moment.max() / (2.0 * whole)
+    assert found(toolpath, positioner(kg=2.0 * whole, from_axis=1.0001 * rated)) == []
+    assert len(found(toolpath, positioner(kg=2.0 * whole, from_axis=0.9999 * rated))) == 1
+
+
+def test_robots_that_hold_the_part_and_what_is_not_told(toolpath):
+    parameters = CellParameters(machine="kuka-kr10-r1100-2", limits="maker", branch="auto")
+    held = cells.resolve(parameters, toolpath.frame)
+    heavy = ProcessParameters(density=DENSITY * 10.1 / grown(toolpath, toolpath.bead_width or 0.0)[0].sum())
+    (issue,) = payload.issues(deposit.alone(toolpath), held, toolpath, heavy)
+    assert "carries no more" in issue.message and "more than 10 kg" in issue.message
+    tool = cells.resolve(dataclasses.replace(parameters, setup="tool-on-robot"), toolpath.frame)
+    assert payload.issues(deposit.alone(toolpath), tool, toolpath, heavy) == []
+    unknown = cells.resolve(dataclasses.replace(parameters, machine="fanuc-arcmate120ic"), toolpath.frame)
+    assert payload.issues(deposit.alone(toolpath), unknown, toolpath, heavy) == []
+
+
+@pytest.mark.parametrize("load", [{"kg": -1}, {"kg": "many"}, {"from_axis": 0}, {"grams": 3}])
+def test_payloads_that_are_none(positioner, load):
+    path = positioner(**load)
+    with pytest.raises(InputError, match="payload"):
+        machines.load(path)
