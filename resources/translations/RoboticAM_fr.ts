@@ -1642,6 +1642,11 @@
         <translation>Au-dessous de</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Beside the robot of this file, in its base frame, as a cell names it: NAME {}</source>
+        <translation>À côté du robot de ce fichier, dans son repère de base, comme une cellule le nomme : NOM {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
         <source>Best</source>
         <translation>Meilleure</translation>
@@ -3263,8 +3268,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide and two that turn; whether yours is one is looked at when you go on.</source>
-        <translation>Les longueurs sont en mm, les angles en degrés. Les robots doivent avoir six axes rotatifs, les machines-outils trois axes de translation et deux de rotation ; on regarde si la vôtre en est une lorsque vous continuez.</translation>
+        <source>Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide and two that turn; whether yours is one is looked at when you go on. Tracks, turntables and positioners, which stand beside a robot, have one axis or two.</source>
+        <translation>Les longueurs sont en mm, les angles en degrés. Les robots ont besoin de six axes qui tournent, les machines-outils de trois axes qui glissent et deux qui tournent ; si la vôtre en est une est examiné à la page suivante. Les rails, tables tournantes et positionneurs, qui se trouvent à côté d&apos;un robot, ont un axe ou deux.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/quantity.py"/>
@@ -3777,6 +3782,11 @@
         <translation>Des vitesses dans les champs et affichages ; ce qui est saisi peut en avoir une autre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Of the cell</source>
+        <translation>De la cellule</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s, deg/s² and deg/s³, sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without end, speeds, accelerations and jerks where they are not known.</source>
         <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s, deg/s² et deg/s³, de translation en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses, accélérations et jerks là où ils ne sont pas connus.</translation>
@@ -4132,6 +4142,11 @@
         <translation>Poses à essayer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Positioner</source>
+        <translation>Positionneur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Post</source>
         <translation>Post-processeur</translation>
@@ -4345,6 +4360,11 @@
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Result</source>
         <translation>Résultat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Robot</source>
+        <translation>Robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
@@ -5672,6 +5692,11 @@
         <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Track</source>
+        <translation>Rail</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>Travel speed</source>
         <translation>Vitesse d&apos;avance</translation>
@@ -5912,6 +5937,11 @@
         <translation>Ce qui fait d&apos;une pose réalisable la meilleure : la plus grande des plus petites marges, le temps le plus court, ou la plus grande distance du bras à tout le reste.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>What stands beside a robot: a cell names it as external axis.</source>
+        <translation>Ce qui se trouve à côté d&apos;un robot : une cellule le nomme comme axe externe.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/form.py"/>
         <source>What the colours of the beads tell</source>
         <translation>Ce que disent les couleurs des cordons</translation>
@@ -5925,6 +5955,11 @@
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>What the colours tell</source>
         <translation>Ce que disent les couleurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>What the file has beside one another; each gets a machine file of its own</source>
+        <translation>Ce que le fichier a côte à côte ; chacun reçoit son propre fichier de machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>

@@ -8,8 +8,10 @@ import FreeCAD as App
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics import machine, pendant, pose_figures, urdf_text
+from freecad_am.core.kinematics import external, machine, pendant, pose_figures, urdf_text
+from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects import preferences, user_machines
+from tests.core.kinematics import urdf_cells
 from tests.core.kinematics.arms import on_track
 
 NAME = "RoboticAM_NewMachine"
@@ -317,7 +319,8 @@ def test_a_robot_on_its_track_begins_with_the_robot(person, hand, wizard, tmp_pa
     path.write_text(on_track(urdf_text.text(machine.load("abb-irb140"))), encoding="utf-8")
     hand.enter(wizard, "file", str(path))
     base = person.field(wizard, "baseLink")
-    assert base.currentText() == "base_link"
+    assert base.currentText() == "carriage"  # proposed
+    person.choose(wizard, "baseLink", "base_link")
     assert "its first axis slides and carries the six that turn, as a track does" in refused(person, hand, wizard)
     person.choose(wizard, "baseLink", "carriage")
     go_on(person, hand, wizard, "LimitsPage")
@@ -344,3 +347,34 @@ def test_a_defective_urdf_is_called_by_its_name_and_quaternions_are_seen_whole(p
         item = poses.item(0, column)
         assert item.text() == "-0.408248"
         assert poses.visualItemRect(item).width() > poses.fontMetrics().boundingRect(item.text()).width() + 6
+
+
+def test_a_positioner_out_of_the_urdf_of_a_whole_cell(person, hand, wizard, tmp_path):
+    path = tmp_path / "cell.urdf"
+    path.write_text(urdf_cells.whole_cell(), encoding="utf-8")
+    hand.enter(wizard, "file", str(path))
+    mechanism = person.field(wizard, "mechanism")
+    assert [mechanism.itemText(row) for row in range(mechanism.count())] == ["Robot", "Track", "Positioner"]
+    base, tip = person.field(wizard, "baseLink"), person.field(wizard, "tipLink")
+    assert (base.currentText(), tip.currentText()) == ("robot_base_link", "robot_tool0")
+    person.choose(wizard, "mechanism", "Positioner")
+    assert (base.currentText(), tip.currentText()) == ("positioner_base_link", "positioner_tool0")
+    person.screenshot("machine_8_positioner")
+    go_on(person, hand, wizard, "LimitsPage")
+    assert person.field(wizard, "limits").rowCount() == 2
+    said = " ".join(label.text() for label in wizard.currentPage().findChildren(person.widgets.QLabel))
+    assert "NAME at 1400 50 -56 0 0 22.9183118052 carries part" in said
+    go_on(person, hand, wizard, "FramesPage")
+    go_on(person, hand, wizard, "PosesPage")
+    given = external.load("motoman-motopos-d500")
+    values = np.array([[0, 0], [30, 90], [-100, -170]], float)
+    poses = KdlArm(given).forward(np.radians(values))
+    fill(person.field(wizard, "poses"), np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))))
+    person.until(lambda: "gives all 3 poses" in person.field(wizard, "verdict").text(), "the mechanism to give its poses")
+    go_on(person, hand, wizard, "NamePage")
+    hand.enter(wizard, "machineTitle", "Table 7")
+    hand.enter(wizard, "poseSource", "pendant")
+    hand.click(wizard.button(person.widgets.QWizard.FinishButton))
+    made = external.load("table-7", user_machines.folders())
+    q = np.random.default_rng(3).uniform(-2, 2, (30, 2))
+    np.testing.assert_allclose(made.chain.forward(q), given.chain.forward(q), atol=1e-6)

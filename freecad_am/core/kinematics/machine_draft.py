@@ -117,8 +117,8 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
 
 
 def closed_form(draft: Draft) -> SerialArm | None:
-    """The inverse of a draft, as `urdf_machine.closed_form` has it."""
-    return urdf_machine.closed_form(draft.chain)
+    """The inverse of a draft, as `urdf_machine.closed_form` has it; None too of what stands beside a robot."""
+    return None if urdf_machine.is_mechanism(draft.chain) else urdf_machine.closed_form(draft.chain)
 
 
 def text(draft: Draft) -> str:

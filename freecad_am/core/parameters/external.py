@@ -34,9 +34,13 @@ class External:
         if len(self.pose) != 6 or not all(math.isfinite(number) for number in self.pose):
             raise InputError("BAD_VALUE", WHERE, f"{self.pose!r} is not a pose; give six numbers x y z RX RY RZ")
 
-    def __str__(self) -> str:
+    def where(self) -> str:
+        """Where it stands, as its text says it."""
         numbers = (*self.pose[:3], *(math.degrees(angle) for angle in self.pose[3:]))
-        return f"{self.machine} at {' '.join(f'{number:.12g}' for number in numbers)} carries {self.carries}"
+        return f"at {' '.join(f'{number:.12g}' for number in numbers)}"
+
+    def __str__(self) -> str:
+        return f"{self.machine} {self.where()} carries {self.carries}"
 
 
 def externals(text: str) -> tuple[External, ...]:

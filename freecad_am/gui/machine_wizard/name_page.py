@@ -12,6 +12,7 @@ from PySide import QtGui
 from ...core.issues import InputError
 from ...core.kinematics import machine_draft
 from ...core.kinematics.opw import OpwArm
+from ...core.kinematics.urdf_machine import is_mechanism
 from ...objects import user_machines
 from ...posts import catalogue
 from ...posts.names import plain
@@ -75,7 +76,8 @@ class NamePage(Page):
         super().initializePage()
         arm = machine_draft.closed_form(self.owner.draft)
         if arm is None:
-            self.summary.setText(tr("Three axes that slide and two that turn."))
+            self.summary.setText(tr("What stands beside a robot: a cell names it as external axis.") if is_mechanism(
+                self.owner.draft.chain) else tr("Three axes that slide and two that turn."))
             return
         if not isinstance(arm, OpwArm):
             self.summary.setText(tr("Six axes that turn, without a spherical wrist."))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,9 @@ from ...core.kinematics import denavit_hartenberg, machine, machine_draft, opw_r
 from ...core.kinematics.machine_draft import Draft
 from ...core.kinematics.opw import OpwArm
 from ...core.kinematics.urdf import Urdf
+from ...core.kinematics.urdf_cell import UrdfCell
+from ...core.kinematics.urdf_reference import reference
+from ...core.parameters.external import ROBOT
 from ...objects import user_machines
 from ..texts.translation import tr
 from .figure_table import FigureTable
@@ -31,7 +35,8 @@ class SourcePage(Page):
     def __init__(self, wizard: Any) -> None:
         super().__init__(wizard, "SourcePage", tr("Where the geometry comes from"), tr(
             "Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide "
-            "and two that turn; whether yours is one is looked at when you go on."))
+            "and two that turn; whether yours is one is looked at when you go on. Tracks, turntables and positioners, "
+            "which stand beside a robot, have one axis or two."))
         self.kind = choice("source", [
             (tr("A URDF file"), "urdf"), (tr("A table of Denavit and Hartenberg"), "table"),
             (tr("Figures of an arm with a spherical wrist (OPW)"), "opw"), (tr("A copy of another machine"), "copy"),
@@ -69,6 +74,11 @@ class SourcePage(Page):
         line.addWidget(self.file, 1)
         line.addWidget(browse)
         rows.addRow(tr("File"), line)
+        self.mechanism, self.mechanism_row = choice("mechanism", []), QtGui.QLabel(tr("Of the cell"))
+        self.mechanism.setToolTip(tr("What the file has beside one another; each gets a machine file of its own"))
+        rows.addRow(self.mechanism_row, self.mechanism)
+        self.mechanism.currentIndexChanged.connect(self._choose_mechanism)
+        self.beside: list[tuple[str, Any, str]] = []
         self.base, self.tip = choice("baseLink", []), choice("tipLink", [])
         self.base.setToolTip(tr("The link that stands still"))
         self.tip.setToolTip(tr("The link whose frame is the flange, with its Z out of it: tool0 in files of ROS-Industrial"))
@@ -76,6 +86,8 @@ class SourcePage(Page):
         rows.addRow(tr("To link"), self.tip)
         self.file.textChanged.connect(self._look)
         self.base.currentIndexChanged.connect(self._offer_tips)
+        for widget in (self.mechanism, self.mechanism_row):
+            widget.hide()
         return form
 
     def _table_form(self) -> Any:
@@ -144,13 +156,41 @@ class SourcePage(Page):
         self.base.clear()
         self.say("")
         path = self.file.text().strip()
-        if not os.path.isfile(path):
-            return
-        try:
-            self.robot = Urdf(path)
-            self.base.addItems(self.robot.bases())
-        except InputError as error:
-            self.say(told(error))
+        if os.path.isfile(path):
+            try:
+                self.robot = Urdf(path)
+                self.base.addItems(self.robot.bases())
+            except InputError as error:
+                self.say(told(error))
+        self._offer_mechanisms()
+
+    def _offer_mechanisms(self) -> None:
+        """Robot, track and positioner of a file that has more than a robot; the robot is proposed."""
+        self.beside = []
+        if self.robot is not None:
+            with contextlib.suppress(InputError):  # no whole cell: links are chosen one by one
+                cell = UrdfCell(self.robot.path)
+                self.beside = [(tr("Robot"), cell.machine(), "")] + [
+                    (tr("Track") if one.carries == ROBOT else tr("Positioner"), reference(one.machine),
+                     f"{one.where()} carries {one.carries}") for one in cell.external()
+                ]
+        several = len(self.beside) > 1
+        self.mechanism.clear()
+        self.mechanism.addItems([name for name, _, _ in self.beside] if several else [])
+        for widget in (self.mechanism, self.mechanism_row):
+            widget.setVisible(several)
+
+    def _choose_mechanism(self, index: int) -> None:
+        """The links of the mechanism that is chosen."""
+        if index >= 0:
+            _, meant, _ = self.beside[index]
+            for box, link in ((self.base, meant.base), (self.tip, meant.tip)):
+                box.setCurrentIndex(box.findText(link))
+
+    def _stands(self) -> str:
+        """Where the mechanism of these links stands in the cell of the file; '' where nothing tells it."""
+        links = self.base.currentText(), self.tip.currentText()
+        return next((where for _, meant, where in self.beside if (meant.base, meant.tip) == links), "")
 
     def _offer_tips(self, *_: Any) -> None:
         self.tip.clear()
@@ -194,8 +234,12 @@ class SourcePage(Page):
             said = tr("no link is carried by {}").format(self.base.currentText())
             raise InputError("BAD_URDF", os.path.basename(path), said)
         described = self.robot.between(self.base.currentText(), self.tip.currentText())
-        return machine_draft.of_description(described, f"URDF {os.path.basename(path)}, {self.base.currentText()} to "
-                                            f"{self.tip.currentText()}")
+        draft = machine_draft.of_description(described, f"URDF {os.path.basename(path)}, {self.base.currentText()} to "
+                                             f"{self.tip.currentText()}")
+        if not self._stands():
+            return draft
+        stands = tr("Beside the robot of this file, in its base frame, as a cell names it: NAME {}").format(self._stands())
+        return replace(draft, notes=(*draft.notes, stands))
 
     def _of_table(self) -> Draft:
         count = max((row + 1 for row in range(MOST_AXES) if self.rows.begun(row, 4)), default=0)

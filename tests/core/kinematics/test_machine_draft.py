@@ -9,9 +9,21 @@ import pytest
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import machine, machine_draft, opw_recognition, pendant, pose_figures, urdf, urdf_text
+from freecad_am.core.kinematics import (
+    external,
+    machine,
+    machine_draft,
+    opw_recognition,
+    pendant,
+    pose_figures,
+    urdf,
+    urdf_cell,
+    urdf_text,
+)
 from freecad_am.core.kinematics.pendant import Shown
+from freecad_am.core.kinematics.urdf_reference import reference
 from freecad_am.kdl.chain import KdlArm
+from tests.core.kinematics import urdf_cells
 from tests.core.kinematics.arms import EXAMPLES
 
 FANUC = machine.load("fanuc-arcmate120ic")
@@ -139,6 +151,32 @@ def test_a_draft_makes_a_machine_file_that_loads(tmp_path):
     np.testing.assert_allclose([ours.coupled_lower, ours.coupled_upper], [theirs.coupled_lower, theirs.coupled_upper])
     np.testing.assert_allclose(made.max_speed, FANUC.max_speed)
     assert made.posts == ("fanuc",) and made.remarks == ("hall 3",) and made.sources[0] == "URDF arm.urdf"
+
+
+@pytest.mark.parametrize("name", ["motoman-motopos-d500", "kuka-kl100-2"])
+def test_what_stands_beside_a_robot_gets_a_file_too(tmp_path, name):
+    """Of the URDF of a whole cell: one axis that slides, two that turn, their poses by PyKDL of the maker's figures."""
+    path = tmp_path / "cell.urdf"
+    path.write_text(urdf_cells.whole_cell(), encoding="utf-8")
+    prefix = "track" if name.startswith("kuka") else "positioner"
+    meant = next(base for one in urdf_cell.UrdfCell(path).external()
+                 if (base := reference(one.machine).base).startswith(prefix))
+    made_of = machine_draft.of_description(urdf.Urdf(path).between(meant, f"{prefix}_tool0"), "URDF cell.urdf")
+    given = external.load(name)
+    count = given.chain.axes
+    values = np.random.default_rng(8).uniform(-60.0, 60.0, (4, count))
+    values[0] = 0.0
+    poses = KdlArm(given).forward(values * given.unit_values)
+    made_of = dataclasses.replace(made_of, id="mine", title="Mine", values=values, poses=poses)
+    (tmp_path / "mine.json").write_text(machine_draft.text(made_of), encoding="utf-8")
+    made = external.load("mine", (str(tmp_path),))
+    q = np.random.default_rng(3).uniform(-2, 2, (30, count))
+    np.testing.assert_allclose(made.chain.forward(q), KdlArm(given).forward(q), atol=1e-9)
+    np.testing.assert_allclose(made.limits("maker").upper, given.limits("maker").upper, rtol=1e-9)
+    np.testing.assert_allclose(made.max_speed, given.max_speed, rtol=1e-9)
+    # the user's own goes before the built-in one of its name
+    (tmp_path / f"{name}.json").write_text(machine_draft.text(dataclasses.replace(made_of, id=name)), encoding="utf-8")
+    assert external.load(name, (str(tmp_path),)).title == "Mine" and external.load(name).title != "Mine"
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
