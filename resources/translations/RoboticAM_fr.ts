@@ -10852,6 +10852,11 @@
         <translation>la pose aux zéros en série manque</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>the positioner is out of the robot&apos;s reach: the nearest point of the part is {0} mm from the shoulder, arm and tool stretch {1} mm at most; put the positioner nearer (cell.external)</source>
+        <translation>le positionneur est hors d&apos;atteinte du robot : le point de la pièce le plus proche est à {0} mm de l&apos;épaule, bras et outil s&apos;étendent à {1} mm au plus ; rapprochez le positionneur (cell.external)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb.py"/>
         <source>the post abb cannot write {0} ({1} motion)</source>
         <translation>le post-processeur abb ne peut pas écrire {0} (mouvement {1})</translation>
@@ -13135,6 +13140,11 @@
         <location filename="../../freecad_am/core/planning/findings.py"/>
         <source>{0} of {1} points cannot be reached with this branch; move the deposition point, choose another branch or tilt less</source>
         <translation>{0} de {1} points ne peuvent pas être atteints avec cette branche ; déplacez le point de dépôt, choisissez une autre branche ou inclinez moins</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>{0} of {1} points cannot be reached with this branch; move the positioner, choose another branch or tilt less</source>
+        <translation>{0} de {1} points ne peuvent pas être atteints avec cette branche ; déplacez le positionneur, choisissez une autre branche ou inclinez moins</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>

@@ -2,6 +2,7 @@
 """What an infeasible job is told would make it feasible does so, when it is put into the job as it was told."""
 
 import json
+import math
 import re
 
 import pytest
@@ -14,8 +15,25 @@ JOBS = {
     "speed": {"cell": {"limits": "paper"}, "process": {"travel_speed": "300 mm/s"}},
     "range": {"cell": {}, "joints": {"rotation_range": "[-5 deg, 5 deg]"}},
     "tool": {"cell": {"machine": "abb-irb2400-12-155", "setup": "tool-on-robot", "deposition_point": OF_ANOTHER}},
+    # nothing turns the part so that its walls could be laid upright, nor does one direction for all do, on a slant
+    "leaning": {
+        "cell": {"machine": "kuka-kr8-r2100-2-arc-hw", "setup": "tool-on-robot", "nozzle": "{tool: [0, 0, 300, 0, 0, 0]}",
+                 "deposition_point": "[1300, 0, 100, 40, 0, 0]", "mount": "part"},
+        "build_direction": {"max_from_vertical": "10 deg"},
+    },
+    # a branch that does not reach round the positioner
+    "branch": {
+        "cell": {"machine": "kuka-kr8-r2100-2-arc-hw", "setup": "tool-on-robot", "nozzle": "{tool: [0, 0, 300, 0, 0, 0]}",
+                 "branch": "[back, down, noflip]",
+                 "external": "[{machine: motoman-motopos-d500, pose: [1615, 0, 0, 0, 0, 0], carries: part}]"},
+        "build_direction": {"max_from_vertical": "10 deg"},
+    },
 }
-EXPECTED = {"machine": "cell.deposition_point", "speed": "process.travel_speed", "range": "", "tool": ""}
+EXPECTED = {
+    "branch": "cell.branch",
+    "machine": "cell.deposition_point", "speed": "process.travel_speed", "range": "", "tool": "",
+    "leaning": "cell.external: [{machine: motoman-motopos-d500, pose: ",
+}
 
 
 def written(sections):
@@ -54,3 +72,24 @@ def test_what_was_tried_in_vain_is_told(workshop):
     assert done.status == 3
     told = "note[NO_REMEDY] job: none of these makes the job feasible, each was tried: `"
     assert done.err.startswith((told, "note[REMEDY]"))
+
+
+def test_a_positioner_out_of_reach_is_called_so_and_told_where_it_could_stand(workshop):
+    told = "machine: motoman-motopos-d500, pose: {}, carries: part"
+    sections = {**JOBS["leaning"], "cell": {**JOBS["leaning"]["cell"], "branch": "auto"}}
+    sections["cell"]["external"] = "[{" + told.format("[200, 3600, -40, 0, 0, 20]") + "}]"
+    workshop.write_job(written(sections))
+    done = workshop.run("plan", "cup.yaml", "--no-page")
+    assert done.status == 3
+    found = re.search(r"error\[UNREACHABLE\] job: the positioner is out of the robot's reach: the nearest point of the "
+                      r"part is (\d+) mm from the shoulder, arm and tool stretch (\d+) mm at most", done.err)
+    assert found, done.err
+    # the shoulder is above the base's middle at some 0.3 m, ahead of it by less; the part is 40 mm wide
+    assert abs(float(found[1]) - math.hypot(200.0, 3600.0)) < 320.0 and 2100.0 < float(found[2]) < float(found[1])
+    assert "move the positioner, choose another branch" in done.err
+    (pose,) = re.findall(r"with `cell\.external\[0\]\.pose: (\[[^`]+\])` this job is feasible", done.err)
+    assert pose.endswith(", -40, 0, 0, 20]")  # on the same floor, turned as it was
+    sections["cell"]["external"] = "[{" + told.format(pose) + "}]"
+    workshop.write_job(written(sections))
+    again = workshop.run("plan", "cup.yaml", "--no-page")
+    assert again.status == 0 and "error[" not in again.err, again.err

@@ -25,7 +25,7 @@ from ..parameters.external import externals
 from . import machine as machines
 from . import opw
 from .arrangement import Arrangement, of_setup, planned_of
-from .external import ExternalAxes, coupled
+from .external import ExternalAxes, coupled, upward
 from .limits import Limits
 from .machine import Machine
 from .pose_frames import PoseFrames
@@ -49,7 +49,7 @@ class Cell:
     branch: index of the branch (opw.branch_index), or None when all are to be searched.
     external: axes beside the robot; the machine then is the robot together with them, and what stands for base_link in its
     chain is the face that carries the part, or the world where only the robot is carried.
-    obstacles: what stands in the world, the maker's base frame, in its coordinates.
+    obstacles: what stands in the world, the maker's base frame, in its coordinates. up: (3,) against gravity, there.
     """
 
     machine: Machine
@@ -64,6 +64,7 @@ class Cell:
     external: ExternalAxes | None = None
     arm_clearance: float | None = None
     obstacles: tuple[Body, ...] = ()
+    up: Array = field(default_factory=lambda: np.array(UP))
 
     @property
     def robot(self) -> Machine:
@@ -263,6 +264,7 @@ def resolve(
         platform_diameter=parameters.platform_diameter,
         external=external,
         arm_clearance=parameters.arm_clearance,
+        up=upward(parameters.upward()),
     )
 
 

@@ -105,7 +105,7 @@ def coupled(
         Piece(np.eye(4), to_robot, axes + np.arange(count)), Piece(np.eye(4), robot.chain, np.arange(axes)),
     ], np.eye(4))
     carry = tuple(found[k][1] for k in carriers)
-    external = ExternalAxes(robot, to_robot, _unit(up), turning, turned, face[:3, :3], along, slides, carry)
+    external = ExternalAxes(robot, to_robot, upward(up), turning, turned, face[:3, :3], along, slides, carry)
     machines_ = [machine for _, machine in found]
     return _together(robot, machines_, whole), _limits(limits, machines_), external
 
@@ -170,7 +170,8 @@ def load(name: str, folders: Sequence[str] = ()) -> Machine:
                          "machine file or a URDF") from None
 
 
-def _unit(up: Sequence[float]) -> Array:
+def upward(up: Sequence[float]) -> Array:
+    """(3,) the unit vector along three numbers."""
     vector = np.array(up, float)
     return np.asarray(vector / np.linalg.norm(vector))
 

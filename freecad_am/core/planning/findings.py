@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry import frames
 from ..issues import ERROR, Issue
+from ..kinematics.cell import Cell
 from .joint_path import BeadPath
 from .task import Task
 
@@ -23,13 +26,38 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
     place = {"layer": path.layer, "bead": path.index}
     lost = np.flatnonzero(~np.isfinite(path.joints).all(axis=1))
     if len(lost):
+        count = f"{len(lost)} of {len(path.joints)} points cannot be reached with this branch; "
+        external = task.cell.external
         return [Issue(
             ERROR, "UNREACHABLE",
-            f"{len(lost)} of {len(path.joints)} points cannot be reached with this branch; move the deposition point, "
-            f"choose another branch or tilt less",
-            point=int(lost[0]), **place,
+            f"{count}move the positioner, choose another branch or tilt less" if external and external.turning else
+            f"{count}move the deposition point, choose another branch or tilt less", point=int(lost[0]), **place,
         )]
     return _limit_findings(task, path, place) + _condition_findings(path, place) + _range_findings(task, path, place)
+
+
+def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
+    """That the positioner stands too far from the robot, where no bead gets nearer than the arm with its tool reaches."""
+    external, arm = cell.external, cell.robot.arm
+    if external is None or not external.turning or arm is None or any(path.reachable for path in paths):
+        return []
+    shoulder, height = arm.shoulder
+    nearest = math.inf
+    for path in paths:
+        values = path.bead.external
+        if values is None:
+            return []
+        seen = frames.inverse(external.base(values)) @ frames.pose(np.eye(3), cell.on_carrier(path.bead.points))
+        ahead = np.hypot(seen[:, 0, 3], seen[:, 1, 3]) - shoulder
+        nearest = min(nearest, float(np.hypot(ahead, seen[:, 2, 3] - height).min()))
+    lengths = (*cell.robot.chain.origins[4:, :3, 3], cell.robot.chain.flange[:3, 3], cell.carried[:3, 3])
+    most = arm.reach + sum(float(np.linalg.norm(length)) for length in lengths)
+    if nearest <= most:
+        return []
+    return [Issue(
+        ERROR, "UNREACHABLE", f"the positioner is out of the robot's reach: the nearest point of the part is {nearest:.0f} "
+        f"mm from the shoulder, arm and tool stretch {most:.0f} mm at most; put the positioner nearer (cell.external)",
+    )]
 
 
 def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[Issue]:

@@ -54,15 +54,29 @@ def levelled(cell: Cell, toolpath: Toolpath) -> tuple[list[Bead], list[Issue]]:
         tilt = tilt_from(external.upright(directions, values), external.up)
         worst = int(tilt.argmax())
         if tilt[worst] > most + ROUNDING:
-            issues.append(_not_level(external, float(tilt[worst]), most, *place, worst))
+            issues.append(_not_level(bool(external.turning), float(tilt[worst]), most, *place, worst))
         before = values[-1]
         laid.append(dataclasses.replace(bead, external=values))
     return laid, issues
 
 
-def _not_level(external: ExternalAxes, tilt: float, most: float, *place: int) -> Issue:
+def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
+    """What leans more than allowed where no axis beside the robot turns the part: at most one issue of a bead."""
+    up, issues = cell.machine.base[:3, :3] @ cell.up, []
+    for (layer, index, bead), most in zip(toolpath, _allowed(toolpath), strict=True):
+        if most >= math.pi:
+            continue
+        axes = cell.station[None, :3, 2] if cell.arrangement.carries_part else on_face(cell, bead.tool)
+        tilt = tilt_from(axes, up)
+        worst = int(tilt.argmax())
+        if tilt[worst] > most + ROUNDING:
+            issues.append(_not_level(False, float(tilt[worst]), most, layer, index, worst))
+    return issues
+
+
+def _not_level(turning: bool, tilt: float, most: float, *place: int) -> Issue:
     leans, allowed = math.degrees(tilt), math.degrees(most)
-    if not external.turning:
+    if not turning:
         return Issue(ERROR, "NOT_LEVEL", f"the tool axis would be {leans:.3g} deg from the vertical, "
                      f"build_direction.max_from_vertical allows {allowed:.3g} deg, and nothing turns the part; put it on a "
                      "positioner, or allow more", *place)

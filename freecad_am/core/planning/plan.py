@@ -31,9 +31,9 @@ from . import (
 )
 from .arm_kept import ArmKept, Rods, of_job
 from .certificate import bound
-from .findings import findings
+from .findings import findings, out_of_reach
 from .joint_path import BeadPath, JointPath
-from .level import levelled
+from .level import levelled, standing
 from .overlap import run_on
 from .points import gather
 from .speeds import corners_slowed, rings_slowed, too_fast
@@ -72,7 +72,8 @@ def plan_joints(
     """
     if not cell.arrangement.redundant:
         return _on_table(toolpath, cell, parameters, progress)
-    beads, tilted = levelled(cell, toolpath) if cell.external else ([bead for _, _, bead in toolpath], [])
+    beads, tilted = levelled(cell, toolpath) if cell.external else (
+        [bead for _, _, bead in toolpath], standing(cell, toolpath))
     if parameters.lock != "none":
         raise InputError("NOT_FOR_SETUP", "joints.lock", "robots need all their axes; only machines with rotary axes can do "
                          "with four; use none")
@@ -93,7 +94,7 @@ def plan_joints(
         if planned.feasible:
             break
     assert planned is not None  # there is one way at least
-    return planned
+    return dataclasses.replace(planned, issues=(*out_of_reach(cell, planned.beads), *planned.issues))
 
 
 def _of_robot(

@@ -26,8 +26,10 @@ from ..parameters.external import externals
 from ..parameters.joints import OF_CELL, JointParameters
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
+from . import external_remedies
 from .arm_kept import Rods
 from .joint_path import JointPath
+from .level import levelled
 from .motion import assemble
 from .plan import Progress, best_branches, plan_joints
 from .speeds import share_of_speed
@@ -148,7 +150,7 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
         yield from _slower(job, path)
     if all(code.startswith("RAPID") for code in codes):
         yield from _lifts(job)
-    if arrangement.redundant:
+    if arrangement.redundant and codes != {external_remedies.NOT_LEVEL}:  # which no turn about the tool mends
         yield from _branches(job)
         yield from _rotations(job)
     if job.fixed is not None:
@@ -158,6 +160,8 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
             yield _with_cell(fixed, f"{fixed.told} and `cell.branch: auto`", branch="auto")
     if not left_out and arrangement.redundant:
         yield from _points(job)
+    if arrangement.redundant:
+        yield from _beside_robot(job, codes)
 
 
 def _with_cell(job: Tried, told: str, **values: object) -> Tried:
@@ -200,7 +204,8 @@ def _branches(job: Tried) -> Iterator[Tried]:
         return
     toolpath = job.toolpath()
     cell = cells.resolve(dataclasses.replace(job.settings, branch="auto"), toolpath.frame, toolpath.family, job.folders)
-    for branch in best_branches([bead for _, _, bead in toolpath], cell, job.joints, toolpath.family != "revolution"):
+    beads = levelled(cell, toolpath)[0] if cell.external else [bead for _, _, bead in toolpath]
+    for branch in best_branches(beads, cell, job.joints, toolpath.family != "revolution"):
         words = opw.branch_name(branch)
         if words != job.settings.branch:
             yield _with_cell(job, f"`cell.branch: [{', '.join(words)}]`", branch=words)
@@ -229,6 +234,14 @@ def _points(job: Tried) -> Iterator[Tried]:
                          deposition_point=best.deposition_point, branch=best.branch)
     for point in _before(job) if not of_setup(job.settings.setup).carries_part else _beside(job.settings.deposition_point):
         yield _with_cell(job, f"{_shown(point)} and `cell.branch: auto`", deposition_point=point, branch="auto")
+
+
+def _beside_robot(job: Tried, codes: set[str]) -> Iterator[Tried]:
+    """A positioner elsewhere, or axes beside a robot that has none."""
+    for told, settings in external_remedies.moved(job.settings, job.folders):
+        yield dataclasses.replace(job, settings=settings, told=told)
+    for told, settings in external_remedies.added(job.settings, job.folders, job.toolpath(), codes):
+        yield dataclasses.replace(job, settings=settings, told=told)
 
 
 def _beside(point: Pose) -> list[Pose]:

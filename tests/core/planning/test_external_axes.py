@@ -205,16 +205,68 @@ def test_what_cannot_be_brought_upright_is_told(hemisphere, skew, tmp_path):
     assert {"NOT_LEVEL", "LIMIT"} & {issue.code for issue in planned.issues}
 
 
+@pytest.mark.parametrize(("setup", "holds"), [("tool-on-robot", False), ("part-on-robot", True)])
+def test_what_leans_is_told_where_nothing_turns_the_part(hemisphere, setup, holds):
+    """With the tool on the robot its axis leans as the wall does, on a slanted platform by as much less or more; a part on
+    the robot is always brought under the torch as it stands."""
+    stands = (1300.0, 0.0, 300.0, 0.0, *np.radians([25.0, 0.0]))
+    cell = cells.resolve(CellParameters(
+        machine=ROBOT, setup=setup, branch="auto", deposition_point=stands, world_up="0 0 2",
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0)),
+    ), hemisphere.frame)
+    planned = plan_joints(levelled_to(hemisphere, 40.0), cell, JointParameters(method="constant"))
+    told = {(one.layer, one.bead): one for one in planned.issues if one.code == "NOT_LEVEL"}
+    slant = np.array(math.sin(math.radians(25.0)) * np.array([1.0, 0.0, 0.0]) + math.cos(math.radians(25.0)) * UP)
+    for layer, number, bead in hemisphere:
+        turned = np.array([[math.cos(math.radians(25.0)), 0.0, math.sin(math.radians(25.0))], [0.0, 1.0, 0.0],
+                           [-math.sin(math.radians(25.0)), 0.0, math.cos(math.radians(25.0))]])
+        axes = slant[None] if holds else bead.tool @ hemisphere.frame[:3, :3] @ turned.T
+        leans = math.degrees(math.acos(float(np.clip((axes @ UP).min(), -1.0, 1.0))))
+        assert ((layer, number) in told) == (leans > 40.0)
+        if leans > 40.0:
+            assert f"would be {leans:.3g} deg from the vertical" in told[layer, number].message
+            assert "nothing turns the part; put it on a positioner" in told[layer, number].message
+    assert bool(told) != holds
+
+
 @pytest.mark.parametrize(("changed", "code"), [
     ({"external": "no-such-table at 0 0 0 0 0 0 carries part"}, "UNKNOWN_MACHINE"),
     ({"external": f"{POSITIONER} at 0 0 0 0 0 0 carries robot"}, "NOT_YET"),
-    ({"external": f"{ROBOT} at 0 0 0 0 0 0 carries part"}, "NOT_YET"),
+    ({"external": "kuka-kr16-2 at 0 0 0 0 0 0 carries part"}, "NOT_YET"),
+    ({"external": f"{ROBOT} at 0 0 0 0 0 0 carries part"}, "BAD_VALUE"),
+    ({"external": f"{ROBOT} at 0 0 0 0 0 0 carries robot"}, "BAD_VALUE"),
     ({"setup": "part-on-robot"}, "WRONG_SETUP"),
 ])
 def test_refused_with_a_reason(hemisphere, changed, code):
     with pytest.raises(InputError) as error:
         cell_for(hemisphere, **changed)
     assert error.value.code == code
+
+
+def test_two_mechanisms_of_one_name(hemisphere, skew, tmp_path):
+    told = json.loads(Path(skew).read_text(encoding="utf-8"))
+    one_axis = {**told, "joints": told["joints"][:1], "limits": {"maker": {"axes": [[-90, 90]], "source": "made up"}},
+                "controller": {"matrix": [[1]], "offset": [0], "remark": "as it is"}}
+    chain = PyKDL.Chain()
+    joint = told["joints"][0]
+    chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(joint["origin"], joint["rpy"])))
+    chain.addSegment(PyKDL.Segment(
+        PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.RotAxis), PyKDL.Frame()))
+    chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(told["flange"]["origin"], told["flange"]["rpy"])))
+    one_axis["check_poses"] = [
+        {"q": [degrees], "origin": list(at.p), "rotation": [[at.M[i, k] for k in range(3)] for i in range(3)]}
+        for degrees in (0.0, 30.0, -80.0) for at in [driven(chain, [math.radians(degrees)])]
+    ]
+    other = tmp_path / "other.json"
+    other.write_text(json.dumps(one_axis), encoding="utf-8")
+    at = " ".join(map(str, STANDS))
+    with pytest.raises(InputError, match="are two mechanisms of one name, 'skew'; give one of the files another id"):
+        cell_for(hemisphere, external=f"{other} at {at} carries part; {skew} at 1400 0 300 0 0 0 carries part")
+    twice = f"{other} at {at} carries part"
+    with pytest.raises(InputError, match="'skew' stands there twice"):
+        cell_for(hemisphere, external=f"{twice}; {twice}")
+    # two of a kind, one on the other, are no mistake
+    assert cell_for(hemisphere, external=f"{twice}; {other} at 1400 0 400 0 0 90 carries part").machine.chain.axes == 8
 
 
 @pytest.mark.parametrize("text", [

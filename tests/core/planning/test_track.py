@@ -17,6 +17,7 @@ from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.planning import external_remedies, remedies
 from freecad_am.core.planning.level import figures
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
@@ -114,6 +115,30 @@ def test_a_part_of_two_metres_is_met_at_every_point(track, planned):
     # the arm alone cannot
     alone = plan_joints(wall(), cell_for(track, external="none"), JointParameters())
     assert not alone.feasible
+
+
+def test_a_long_part_without_a_track_is_told_of_one(track):
+    """What is proposed is planned here, by another call than the one that proposes it."""
+    settings = CellParameters(
+        machine=ROBOT, setup="tool-on-robot", branch=("front", "up", "noflip"), mount="part", platform_diameter=0.0,
+        deposition_point=(*PLATFORM[:3], *np.radians(PLATFORM[3:])),
+        nozzle=NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))),
+    )
+    long, short = wall(1800.0, 1, 100.0), wall(500.0, 1, 100.0)
+    assert not list(external_remedies.added(settings, (), short, {"UNREACHABLE"}))
+    ((told, changed),) = external_remedies.added(settings, (), long, {"UNREACHABLE"})
+    assert told == ("`cell.external: [{machine: kuka-kl100-2, pose: [0, 0, -356, 0, 0, 90], carries: robot}]` and "
+                    "`cell.branch: auto`")
+    assert not plan_joints(long, cells.resolve(settings, np.eye(4), "curves"), JointParameters(method="constant")).feasible
+    found = plan_joints(long, cells.resolve(changed, np.eye(4), "curves"), JointParameters())
+    assert found.feasible, [issue.message for issue in found.issues]
+    issues = plan_joints(long, cells.resolve(settings, np.eye(4), "curves"), JointParameters()).issues
+    asked = remedies.Tried(lambda: long, settings, (), ProcessParameters(), JointParameters())
+    (note,) = remedies.remedies(asked, found, issues, lambda *_: None)
+    assert note.code == "REMEDY" and told in note.message
+    # one that has a track already is moved to no other, and a positioner is not in the way
+    assert not list(external_remedies.added(changed, (), long, {"UNREACHABLE"}))
+    assert not list(external_remedies.moved(changed, ()))
 
 
 def test_between_the_points_too(planned):
