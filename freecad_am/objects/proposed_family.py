@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..brep import hub as hubs
 from ..brep import kernel, part_depths
+from ..brep.lies_on import lies_on_bend
 from ..brep.revolution import find_wall
 from ..brep.standing import stand
 from ..brep.wall_on import named_faces
@@ -67,10 +69,11 @@ class Proposal:
 
 
 class _Planes(NamedTuple):
-    """How planes would be stacked: the direction, None for the best, and how far apart, mm."""
+    """How planes would be stacked: the direction, None for the best, and how far apart, mm; and what the part stands on."""
 
     way: Sequence[float] | None
     apart: float
+    ground: Taken | None
 
 
 def proposed(
@@ -82,7 +85,7 @@ def proposed(
     is known, which can tilt; base: faces of the substrate; clicked: a face by which the whole part was chosen, maybe its
     hub; direction: in which planes are stacked, layer_height mm apart, None for the best. A part that nothing serves as a
     whole gets the nearest, told with what that leaves out. InputError FAULTY, NO_FACES."""
-    planes = _Planes(direction, layer_height)
+    planes = _Planes(direction, layer_height, substrate)
     shape = part.shape
     if shape is not None and (not shape.Faces or any(name.startswith("Edge") for name in names)):
         what = f"edges of {part.label} are chosen" if names else f"{part.label} has edges and no faces"
@@ -141,9 +144,7 @@ def proposed(
     return _solid(part, f"{part.label} is a solid{left}", tilts, planes)
 
 
-def _of_mesh(
-    part: Taken, substrate: Taken | None, edges: bool, tilts: bool, planes: _Planes
-) -> Proposal:
+def _of_mesh(part: Taken, substrate: Taken | None, edges: bool, tilts: bool, planes: _Planes) -> Proposal:
     """A wall where it is wide open, else filled; so is what cuts itself, as pieces of a model for display that are pushed
     into one another do: no wall of one bead is that."""
     body = part.body()
@@ -200,7 +201,9 @@ def _lying(corners: Array) -> float:
 
 
 def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
-    """Filled in plane layers, or in ones that need no support where much hangs over and the machine can tilt."""
+    """In planes, or in layers without support where the machine can tilt and much hangs over, or it stands on a bend."""
+    if tilts and planes.ground is not None and _on_bend(part, planes.ground):
+        return Proposal("solid", GEODESIC, f"{reason}, and layers have the bend of {planes.ground.label} where it stands")
     bodies = [part.body()]
     least = best(bodies, SolidParameters(max_overhang=STEEP, layer_height=planes.apart))[0].way
     way = least if planes.way is None else np.array(planes.way) / np.linalg.norm(planes.way)
@@ -219,6 +222,12 @@ def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
         return Proposal("solid", GEODESIC, f"{why}, which layers along the way through it carry{hint}")
     what = f"a machine that tilts could lay layers: {GEODESIC}, which need no support"
     return Proposal("solid", PLANES, f"{why}; {what}{hint}")
+
+
+def _on_bend(part: Taken, ground: Taken) -> bool:
+    with contextlib.suppress(*kernel.FAULTS):
+        return part.shape is not None and ground.shape is not None and lies_on_bend(part.shape, ground.shape)
+    return False
 
 
 def _overhang(body: Body, way: Array) -> float:

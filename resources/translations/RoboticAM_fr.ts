@@ -13363,6 +13363,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and layers have the bend of {1} where it stands</source>
+        <translation>{0}, et les couches ont la courbure de {1} là où elle repose</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0}, and less than 1% of its surface hangs over by more than 45 deg</source>
         <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg</translation>
     </message>

@@ -71,6 +71,21 @@ def test_a_part_on_another():
     assert whole.kind == "developable" and "another of them" in whole.reason
 
 
+def test_what_stands_on_something_bent_gets_layers_of_its_shape():
+    """A blade on a hub that is neither cylinder nor cone, a round boss on a ball; where nothing tilts they get planes, as
+    what stands on the flat end of the hub does, or touches it from beside."""
+    arc = Part.Arc(Vector(20, 0, 0), Vector(30, 0, 30), Vector(20, 0, 60)).toShape()
+    ends = Part.makePolygon([Vector(20, 0, 60), Vector(0, 0, 60), Vector(0, 0, 0), Vector(20, 0, 0)]).Edges
+    hub, ball = Part.Face(Part.Wire([arc, *ends])).revolve(Vector(), UP, 360), Part.makeSphere(40)
+    blade = Part.makeBox(40, 20, 24, Vector(5, -10, 18)).cut(hub)
+    for part, ground in ((blade, hub), (Part.makeCylinder(12, 60).cut(ball), ball)):
+        found = of(part, ground, width=4.0)
+        assert (found.kind, found.layers) == ("solid", "geodesic") and "the bend of ground where it stands" in found.reason
+        assert of(part, ground, width=4.0, tilts=False).layers == "planes"
+    assert of(Part.makeCylinder(12, 20, Vector(0, 0, 60)), hub).layers == "planes"
+    assert of(Part.makeBox(20, 20, 20, Vector(30, -10, 20)), hub).layers == "planes"
+
+
 def test_what_nothing_serves_gets_the_nearest():
     bent = Part.makeSphere(30).Faces[0].toNurbs().Faces[0].Surface.toShape(0.1, 2.0, 0.1, 0.9)
     bent = bent.transformGeometry(FreeCAD.Matrix(1, 0.3, 0, 0, 0, 0.7, 0.2, 0, 0, 0, 1, 0, 0, 0, 0, 1))

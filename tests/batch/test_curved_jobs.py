@@ -20,7 +20,13 @@ name: part
 part: {{file: part.step}}
 strategy: {{kind: solid, layers: {layers}, layer_height: {height} mm, chord_error: 0.2 mm, bead_spacing: 4 mm{more}}}
 process: {{bead_width: 4 mm}}
-build_direction: {{clearance: none{mode}}}
+build_direction: {{clearance: {clearance}{mode}}}
+"""
+HALF_ANGLE, TIP, LENGTH = np.radians(30.0), 2.0, 60.0  # of the nozzle
+CELL = """\
+cell:
+  {machine: fanuc-arcmate120ic, mount: feature, branch: auto, nozzle: {diameter: 4 mm, half_angle: 30 deg, length: 60 mm}}
+program: {post: fanuc}
 """
 UP = FreeCAD.Vector(0, 0, 1)
 
@@ -42,9 +48,10 @@ def mushroom():
 
 @pytest.fixture
 def planned(workshop):
-    def run(shape, layers="geodesic", height=HEIGHT, more="", mode=""):
+    def run(shape, layers="geodesic", height=HEIGHT, more="", mode="", clearance="none", cell=""):
         shape.exportStep(str(workshop.folder / "part.step"))
-        job = workshop.write_job(JOB.format(layers=layers, height=height, more=more, mode=mode))
+        job = JOB.format(layers=layers, height=height, more=more, mode=mode, clearance=clearance)
+        job = workshop.write_job(job + cell)
         done = workshop.run("plan", job.name, "-o", "out", "--no-page")
         if done.status:
             return done, None, None
@@ -77,12 +84,34 @@ def places(rows, step=0.5):
     return whole[:, :3], whole[:, 3:6], whole[:, 6].astype(int)
 
 
+def deepest(rows, half_angle):
+    """Mm that a cone on the tool axis, as wide as the nozzle at its tip, reaches into the core of beads laid before: a round
+    bar half a layer height in radius in the middle of each, those beside the tip left out."""
+    points, build, tool = (column(rows, *(f"{name}{axis}" for axis in axes)) for name, axes in (
+        ("", ("x_mm", "y_mm", "z_mm")), ("b", "xyz"), ("t", "xyz")))
+    layer, middle, worst = np.array([int(row["layer"]) for row in rows]), points + 0.5 * HEIGHT * build, -np.inf
+    for k in range(1, len(rows)):
+        off = middle[:k] - points[k]
+        up = off @ tool[k]
+        aside = np.linalg.norm(off - up[:, None] * tool[k], axis=1)
+        beside = (layer[:k] == layer[k]) & (np.linalg.norm(points[:k] - points[k], axis=1) < 1.5 * SPACING)
+        asked = ~beside & (up > 0.5 * HEIGHT) & (up < LENGTH)
+        into = 0.5 * HEIGHT - (aside - TIP - up * np.tan(half_angle)) * np.cos(half_angle)
+        worst = max(worst, into[asked].max(initial=-np.inf))
+    return worst
+
+
 @pytest.mark.parametrize("shape", [tee, wye, mushroom])
 def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(planned, shape):
+    """To a program: nothing over nothing, and the nozzle is clear of what stands; one of 80 deg would not be, but for the
+    mushroom, where nothing ever stands higher than the tip."""
     part = shape()
-    done, report, rows = planned(part)
+    done, report, rows = planned(part, clearance="nozzle", cell=CELL)
     assert done.status == 0, done.err
+    assert report["programs"] and report["unsupported_mm"] == 0.0
     assert not [issue for issue in report["issues"] if issue["code"] in ("UNSUPPORTED", "OFF_PART", "OPEN_GAP")]
+    assert deepest(rows, HALF_ANGLE) < 0.1
+    assert shape is mushroom or deepest(rows, np.radians(80.0)) > 0.1
     points, build, layer = places(rows)
     assert np.abs(points[layer == 0][:, 2]).max() < 0.01
     for number in range(1, layer.max() + 1):
@@ -125,6 +154,28 @@ def test_offset_layers_have_the_shape_of_what_they_stand_on(planned, workshop):
     assert np.abs(np.linalg.norm(points, axis=1) - 40.0 - 2.0 * layer).max() < 0.25
     lean = (column(rows, "bx", "by", "bz") * points).sum(axis=1) / np.linalg.norm(points, axis=1)
     assert np.degrees(np.arccos(np.clip(lean, -1.0, 1.0))).max() < 5.0
+
+
+def barrel():
+    """A hub that is neither cylinder nor cone: an arc of 50 mm about (-20, 30) turned about Z, 20 to 30 mm from it."""
+    arc = Part.Arc(FreeCAD.Vector(20, 0, 0), FreeCAD.Vector(30, 0, 30), FreeCAD.Vector(20, 0, 60)).toShape()
+    ends = [FreeCAD.Vector(20, 0, 60), FreeCAD.Vector(0, 0, 60), FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(20, 0, 0)]
+    return Part.Face(Part.Wire([arc, *Part.makePolygon(ends).Edges])).revolve(FreeCAD.Vector(), UP, 360)
+
+
+@pytest.mark.parametrize("layers", ["offset", "geodesic"])
+def test_layers_of_a_blade_have_the_shape_of_its_hub(planned, workshop, layers):
+    """It stands on the hub alone: its flat underside, 18 mm up, lies on nothing."""
+    hub = barrel()
+    hub.exportStep(str(workshop.folder / "hub.step"))
+    blade = Part.makeBox(40, 8, 24, FreeCAD.Vector(5, -4, 18)).cut(hub)
+    done, report, rows = planned(blade, layers, 2.0, more="}\nsubstrate: {file: hub.step")
+    assert done.status == 0, done.err
+    points, layer = column(rows, "x_mm", "y_mm", "z_mm"), np.array([int(row["layer"]) for row in rows])
+    off = np.hypot(np.hypot(points[:, 0], points[:, 1]) + 20.0, points[:, 2] - 30.0) - 50.0
+    assert np.abs(off - 2.0 * layer).max() < 0.25 and layer.max() >= 7
+    assert report["deposit"]["left_out_cm3"] < 5e-5 * blade.Volume
+    assert report["unsupported_mm"] == 0.0
 
 
 @pytest.mark.parametrize(("make", "height", "mode", "code", "word"), [

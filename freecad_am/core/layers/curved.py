@@ -67,7 +67,10 @@ def _field(
     step = _step(sum(one.volume for one in solids), name, strategy)
     near = STANDING * strategy.layer_height
     if chosen is None:
-        start = np.concatenate([_standing(one, ground, near) for one in solids])
+        below = [triangles for triangles in ground if triangles[:, :, 2].min() < -near]
+        # what is carried by something that reaches below it has its lowest place in the air, not on the platform
+        held = any(len(_standing(one, below, near, plane=False)) for one in solids)
+        start = np.concatenate([_standing(one, ground, near, plane=not held) for one in solids])
     else:
         near = max(near, FACETS * strategy.chord_error)
         start = np.concatenate([_standing(one, [chosen], near, plane=False) for one in solids])

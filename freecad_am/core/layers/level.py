@@ -54,11 +54,12 @@ class Cubes:
         corners = (cubes[:, None, None] + TETRAHEDRA @ self._strides).reshape(-1, 4)
         high = self.field[corners] >= value
         count = high.sum(axis=1)
-        pairs = np.concatenate([
-            _single(corners, high, count == 1), _single(corners, ~high, count == 3), _double(corners, high, count == 2),
-        ])
+        kinds = [_single(corners, high, count == 1), _single(corners, ~high, count == 3), _double(corners, high, count == 2)]
+        pairs = np.concatenate(kinds)
+        # every pair of a triangle begins on the same side: that of the higher values, but for those about a low corner
+        sign = np.repeat([1.0, -1.0, 1.0], [len(one) for one in kinds])
         edges, of = np.unique(np.sort(pairs.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
-        return self._oriented(self._crossed(edges, value), of.reshape(-1, 3).astype(np.intp), value)
+        return self._oriented(self._crossed(edges, value), of.reshape(-1, 3).astype(np.intp), pairs[:, 0, 0], sign)
 
     def _crossed(self, edges: Index, value: float) -> Array:
         a, b = self.field[edges[:, 0]], self.field[edges[:, 1]]
@@ -67,13 +68,12 @@ class Cubes:
         at: Array = self.origin + self.step * (one + share * (other - one))
         return at
 
-    def _oriented(self, vertices: Array, faces: Index, value: float) -> Mesh:
-        if not len(faces):
-            return Mesh(vertices, faces)
+    def _oriented(self, vertices: Array, faces: Index, beside: Index, sign: Array) -> Mesh:
+        """beside: a node (n,) of each triangle's tetrahedron, on the side of the higher values where sign is 1. The slope of
+        the field does not tell the side where it has a ridge."""
         a, b, c = (vertices[faces[:, k]] for k in range(3))
-        middle = (a + b + c) / 3.0
-        slope = self.sampled(middle)[1]
-        back = (np.cross(b - a, c - a) * slope).sum(axis=1) < 0.0
+        node = self.origin + self.step * np.stack(np.unravel_index(beside, self.shape), axis=1)
+        back = sign * (np.cross(b - a, c - a) * (node - a)).sum(axis=1) < 0.0
         faces[back] = faces[back][:, ::-1]
         return Mesh(vertices, faces)
 
@@ -104,7 +104,7 @@ def _single(corners: Index, apart: Mask, which: Mask) -> Index:
 
 
 def _double(corners: Index, high: Mask, which: Mask) -> Index:
-    """Pairs (2 k, 3, 2): the four edges between two corners on one side and two on the other, as two triangles."""
+    """Pairs (2 k, 3, 2): the four edges from two corners that are high to two that are not, as two triangles."""
     corners, high = corners[which], high[which]
     row = np.arange(len(corners))[:, None]
     order = np.argsort(~high, axis=1, kind="stable")

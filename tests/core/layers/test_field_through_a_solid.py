@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import ndimage
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.transform import Rotation
@@ -98,6 +99,25 @@ def test_levels_are_closed_surfaces_of_the_right_area(seed):
     a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
     assert 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() == pytest.approx(4.0 * np.pi * 81.0, rel=0.01)
     assert (np.cross(b - a, c - a) * (a - middle)).sum() / 6.0 == pytest.approx(4.0 / 3.0 * np.pi * 729.0, rel=0.01)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_levels_of_a_rough_field_have_one_side_everywhere(seed):
+    """Where fronts meet, the field has ridges, and its slope says nothing. Neighbours run along their edge opposite ways;
+    the surface goes once round every node above it, against its normals, and round none below."""
+    rng = np.random.default_rng(seed)
+    field = ndimage.gaussian_filter(rng.normal(size=(24, 24, 24)), 0.8)
+    field[[0, -1]] = field[:, [0, -1]] = field[:, :, [0, -1]] = -1.0  # closed within the grid
+    mesh = Cubes(field, np.zeros(3), 1.0).level(0.1)
+    ways = np.vstack([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
+    assert len(np.unique(ways, axis=0)) == len(ways)
+    for node in rng.integers(0, 24, size=(60, 3)):
+        a, b, c = (mesh.vertices[mesh.faces[:, k]] - node for k in range(3))
+        la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+        over = (np.cross(b, c) * a).sum(axis=1)
+        under = la * lb * lc + (a * b).sum(axis=1) * lc + (b * c).sum(axis=1) * la + (c * a).sum(axis=1) * lb
+        turns = 2.0 * np.arctan2(over, under).sum() / (4.0 * np.pi)
+        assert turns == pytest.approx(-1.0 if field[tuple(node)] >= 0.1 else 0.0, abs=1e-6)
 
 
 def test_a_field_is_carried_on_as_it_goes():
