@@ -31,6 +31,7 @@ T = TypeVar("T")
 
 SECONDS, SECONDS_A_MB = 4.0, 10.0  # of the processor, for any file and for each MB of it
 MEMORY, MEMORY_A_MB = 600.0, 100.0  # MB, likewise, beside what this process has
+LARGEST = 2000  # MB of a file
 LONGER = 10.0  # times as long on the clock: the processor may have others to serve, but a file that keeps us waiting ends
 MB = 1e6
 NO_MEMORY = 77  # exit status of a copy that has come to its limit
@@ -44,13 +45,16 @@ def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, pati
     times the limit of time.
 
     Raises InputError BAD_FILE, naming the file, where reading crashes or takes more time or memory than a file of its size
-    may.
+    may, and for one larger than LARGEST.
     """
+    size = _size(path) / MB
+    where = os.path.basename(os.fspath(path)) or os.fspath(path)
+    if size > LARGEST:
+        message = f"the file is larger than {LARGEST} MB, the most that is read; is it the right one?"
+        raise InputError("BAD_FILE", where, message)
     if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
         return read(path, *rest)
-    size = _size(path) / MB
     seconds, memory = patience * (SECONDS + SECONDS_A_MB * size), patience**0.5 * (MEMORY + MEMORY_A_MB * size)
-    where = os.path.basename(os.fspath(path)) or os.fspath(path)
     with _beside_a_window() if FreeCAD.GuiUp else _in_memory() as (told, geometry):
         if FreeCAD.GuiUp:
             question = (told, geometry, read.__module__, read.__qualname__, path, rest, seconds, memory)

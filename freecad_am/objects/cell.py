@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import hashlib
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..core.geometry.file_content import digest
 from ..core.kinematics import cell as cells
+from ..core.kinematics.urdf_xml import LARGEST
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.external import externals
 from . import cell_obstacles, user_machines
@@ -37,6 +37,7 @@ class Cell(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         named = [obj.Machine, *(one.machine for one in externals(obj.External))]
         files = [
-            hashlib.sha256(Path(path).read_bytes()).hexdigest() for name in named for path in user_machines.files_of(name)
+            digest(path, LARGEST, "BAD_MACHINE", f"{obj.Label}.Machine")
+            for name in named for path in user_machines.files_of(name)
         ]
         return [*files, *cell_obstacles.hashes_of(obj.Obstacles)]

@@ -4,18 +4,19 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
+from ..brep.apart import LARGEST
 from ..brep.read import read_mesh, read_shape
 from ..brep.tessellate import body
 from ..core.collision.nozzle import depositing
 from ..core.collision.scene import scene
 from ..core.geometry import frames
+from ..core.geometry.file_content import digest
 from ..core.geometry.mesh.file_unit import MESHES
 from ..core.geometry.surroundings import Body, box
 from ..core.issues import InputError
@@ -46,9 +47,9 @@ def bodies_of(settings: CellParameters) -> tuple[Body, ...]:
 
 
 def hashes_of(text: str) -> list[str]:
-    """Of the files that a text of obstacles names, those that are there."""
-    files = [Path(one.file) for one in obstacles(text) if one.file]
-    return [hashlib.sha256(file.read_bytes()).hexdigest() for file in files if file.is_file()]
+    """Of the files that a text of obstacles names, those that are there. InputError of one that is too large."""
+    files = [(Path(one.file), f"{WHERE} {one.name}") for one in obstacles(text) if one.file]
+    return [digest(file, LARGEST, "BAD_FILE", where) for file, where in files if file.is_file()]
 
 
 def _body(one: Obstacle) -> Body:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import json
 import os
 from collections.abc import Callable
@@ -12,7 +11,7 @@ from typing import Any
 
 from ..brep.distance import skin
 from ..core.geometry.curves.profile import RevolvedWall
-from ..core.geometry.file_content import content
+from ..core.geometry.file_content import digest
 from ..core.inspection import inspect, point_file, surfaces, table
 from ..core.inspection.planned import Planned, of_triangles
 from ..core.issues import InputError
@@ -84,9 +83,9 @@ class Inspection(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         path = file_of(obj)
         # a file that is gone is taken to be what it was: the result has its points
-        digest = _digest(path, f"{obj.Label}.File") if os.path.isfile(path) else obj.FileDigest
+        known = _digest(path, f"{obj.Label}.File") if os.path.isfile(path) else obj.FileDigest
         shape = [] if stage_of(obj.Planned) is not None else [fingerprint(obj.Planned)]
-        return [os.path.basename(path), digest, *shape]
+        return [os.path.basename(path), known, *shape]
 
 
 def file_of(obj: Any) -> str:
@@ -98,7 +97,7 @@ def file_of(obj: Any) -> str:
 
 def _digest(path: str, where: str) -> str:
     try:
-        return hashlib.sha256(content(path, point_file.LARGEST, "BAD_FILE", where)).hexdigest()
+        return digest(path, point_file.LARGEST, "BAD_FILE", where)
     except (OSError, ValueError) as error:
         why = (getattr(error, "strerror", None) or str(error)).lower()
         raise InputError("NO_FILE", where, f"{path} cannot be read ({why}); choose the file again") from None

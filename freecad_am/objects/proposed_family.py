@@ -211,7 +211,7 @@ def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
     along = "" if np.array_equal(way, UP) else f", stacked along {_told(way)}"
     if over < HARDLY:
         return Proposal("solid", PLANES, f"{reason}, and less than 1% of its surface hangs over by more than 45 deg{along}")
-    why = f"{reason}, and {over:.0%} of its surface hang over by more than 45 deg{along}"
+    why = f"{reason}, and {over:.0%} of its surface hangs over by more than 45 deg{along}"
     if over <= OVER:
         return Proposal("solid", PLANES, why)
     other = _overhang(bodies[0], least)

@@ -14,11 +14,12 @@ import Part
 
 from ..core.geometry.curves import ada3dp, curve_table, gcode
 from ..core.geometry.curves.bead_curves import POINT_FILES, BeadCurve
+from ..core.geometry.file_content import content
 from ..core.issues import InputError
 
 CSV, GCODE, ADA = "csv", "gcode", "ada3dp"
 _PROPERTY, _FORM = "Table", "TableForm"
-_LARGEST = 200_000_000  # bytes
+_LARGEST = 200  # MB
 _DRAWN = 0.1  # mm, chord error of arcs as they are seen
 
 
@@ -56,10 +57,7 @@ def open_points(document: Any, path: str) -> Any:
 
 def _read(path: str, name: str, form: str) -> Points:
     try:
-        if os.path.getsize(path) > _LARGEST:
-            raise InputError("BAD_FILE", name, f"it is larger than {_LARGEST // 1_000_000} MB; split it")
-        with open(path, "rb") as stream:
-            data = stream.read()
+        data = content(path, _LARGEST, "BAD_FILE", name)
         return Points(form, base64.encodebytes(data).decode() if form == ADA else data.decode())
     except UnicodeDecodeError:
         what = "G-code" if form == GCODE else "a table of points as CSV"

@@ -8297,11 +8297,6 @@
         <translation>il est en pouces ; faites écrire des mm au trancheur (G21)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/table_part.py"/>
-        <source>it is larger than {0} MB; split it</source>
-        <translation>il dépasse {0} Mo ; divisez-le</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/simulation/run.py"/>
         <source>it is neither a joint path nor a program; select one of them</source>
         <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
@@ -10402,7 +10397,7 @@
         <translation>l&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/file_content.py"/>
+        <location filename="../../freecad_am/brep/apart.py"/>
         <source>the file is larger than {0} MB, the most that is read; is it the right one?</source>
         <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; est-ce le bon ?</translation>
     </message>
@@ -13378,72 +13373,72 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}, which layers along the way through it carry</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}, which layers along the way through it carry</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}, which layers along the way through it carry; stacked along {3} it would be {4}</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}, which layers along the way through it carry; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline pourrait déposer des couches : {3}, qui se passent de support</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support; stacked along {4} it would be {5}</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support; stacked along {4} it would be {5}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline pourrait déposer des couches : {3}, qui se passent de support ; empilé suivant {4}, ce serait {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not</source>
         <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg, empilée suivant {2} ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not; stacked along {3} it would be {4}</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg, empilée suivant {2} ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas ; empilée suivant {3} ce serait {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg, which layers along the way through it carry</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg, which layers along the way through it carry</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg, which layers along the way through it carry; stacked along {2} it would be {3}</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg, which layers along the way through it carry; stacked along {2} it would be {3}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle ; empilé suivant {2}, ce serait {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline pourrait déposer des couches : {2}, qui se passent de support</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support; stacked along {3} it would be {4}</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline pourrait déposer des couches : {2}, qui se passent de support ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg; curved layers need a flat face that it stands on, which it has not</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg; curved layers need a flat face that it stands on, which it has not</source>
         <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0}, and {1} of its surface hang over by more than 45 deg; curved layers need a flat face that it stands on, which it has not; stacked along {2} it would be {3}</source>
+        <source>{0}, and {1} of its surface hangs over by more than 45 deg; curved layers need a flat face that it stands on, which it has not; stacked along {2} it would be {3}</source>
         <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas ; empilée suivant {2} ce serait {3}</translation>
     </message>
     <message>
@@ -13722,7 +13717,7 @@
         <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cell.py"/>
+        <location filename="../../freecad_am/gui/panels/at_rest.py"/>
         <source>{} at rest, its turning axes at 0</source>
         <translation>{} au repos, ses axes rotatifs à 0</translation>
     </message>
@@ -13762,7 +13757,7 @@
         <translation>{} courbes, {:.4g} mm en tout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cell.py"/>
+        <location filename="../../freecad_am/gui/panels/at_rest.py"/>
         <source>{} does not reach the part with the nozzle upright: all its axes are drawn at 0</source>
         <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
     </message>
@@ -13942,12 +13937,12 @@
         <translation>{} a été écrit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cell.py"/>
+        <location filename="../../freecad_am/gui/panels/at_rest.py"/>
         <source>{} with the nozzle upright: {} is {:.0f}° from its limit</source>
         <translation>{} avec la buse droite sur la pièce : {} est à {:.0f}° de sa limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cell.py"/>
+        <location filename="../../freecad_am/gui/panels/at_rest.py"/>
         <source>{} with the nozzle upright: {} is {:.0f}° past its limit</source>
         <translation>{} avec la buse droite sur la pièce : {} dépasse sa limite de {:.0f}°</translation>
     </message>

@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Cladding by clicks: faces are picked, previewed and covered."""
 
+import math
+
 import FreeCAD as App
+import numpy as np
 import Part
 import pytest
+from pivy import coin
 
 from freecad_am import api
+from freecad_am.gui.nodes.wall import drawn
+from freecad_am.objects.shapes import taken
 
 pytestmark = pytest.mark.usefixtures("person")
 
@@ -28,3 +34,33 @@ def test_the_panel_previews_and_covers_a_face(person):
     assert (feature.Status, feature.Source, feature.Layers) == ("up to date", (block, ["Face6"]), 2)
     assert feature.ViewObject.Proxy.icon == "cladding"
     assert len(api.result(api.make_toolpath(doc, feature)).layers) == 2
+
+
+def on_screen(obj):
+    """The triangles of an object as FreeCAD draws it: (m, 3, 3), each with its corners in order of their numbers."""
+    search = coin.SoSearchAction()
+    search.setType(coin.SoCoordinate3.getClassTypeId())
+    search.apply(obj.ViewObject.RootNode)
+    points = np.array([tuple(one) for one in search.getPath().getTail().point.getValues()])
+    search.reset()
+    search.setType(coin.SoIndexedFaceSet.getClassTypeId())
+    search.setSearchingAll(True)
+    search.apply(obj.ViewObject.RootNode)
+    corners = np.array(list(search.getPath().getTail().coordIndex.getValues())).reshape(-1, 4)[:, :3]
+    return points[corners]
+
+
+def test_a_bent_face_is_tinted_by_the_triangles_that_are_on_screen(person):
+    """Others would lie in front of them in some places and behind them in others."""
+    doc = App.newDocument("Cladding")
+    part = doc.addObject("Part::Feature", "Part")
+    part.Shape = Part.makeTorus(60, 25).cut(Part.makeBox(200, 200, 100, App.Vector(-100, -100, -100)))
+    doc.recompute()
+    person.look()
+    face = max(range(len(part.Shape.Faces)), key=lambda k: part.Shape.Faces[k].Area)
+    points, corners = drawn(taken(part), [f"Face{face + 1}"])
+    assert len(corners) > 100
+    seen = {tuple(sorted(map(tuple, np.round(one, 3)))) for one in on_screen(part)}
+    assert {tuple(sorted(map(tuple, np.round(one, 3)))) for one in points[corners]} <= seen
+    area = 0.5 * np.linalg.norm(np.cross(*np.diff(points[corners], axis=1).transpose(1, 0, 2)), axis=1).sum()
+    assert math.isclose(area, part.Shape.Faces[face].Area, rel_tol=0.02)  # all of it

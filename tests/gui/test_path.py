@@ -303,9 +303,9 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
     hand.at(where(view, hand, aim[top]))
     person.idle(0.3)
     assert proxy.shown == (0, 2, None)
-    # nor anything once the dock is closed
+    # nor anything once the dock is closed, with which all is to be seen again
     panel.close()
-    proxy.show(None)
+    assert proxy.shown is None
     hand.at(where(view, hand, aim[facing[0]]))
     person.idle(0.3)
     assert proxy.shown is None

@@ -47,6 +47,8 @@ def test_the_best_pose_is_entered_and_planned(person, hand, no_remedies, path):
     assert path.Status == "infeasible"
     before = node_count(person)
     panel, one = opened(person, path)
+    told = {label.text() for label in panel.findChildren(person.widgets.QLabel)}
+    assert {"± X", "± Y", "± Z", "± RX", "Step"} <= told  # lengths to either side, no coordinates
     entered(person, panel, X="0 mm", Y="0 mm", Z="1500 mm", Step="500 mm")
     hand.click(person.field(panel, "compute"))
     person.until(lambda: one.found is not None and not one.work.runs, "the poses", LONG)

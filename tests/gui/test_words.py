@@ -45,6 +45,25 @@ def test_machines_have_their_full_names(person, hemisphere):
     assert hemisphere.Document.Cell.Machine == "kuka-kr16-2"
 
 
+def test_any_part_of_a_machine_s_name_offers_it(person, hand, hemisphere):
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    machine = person.field(person.panel("RoboticAM_NewJob"), "Machine")
+    assert machine.itemText(machine.currentIndex()) == machine.currentText()  # the list opens at the one that is chosen
+    hand.click(machine.lineEdit())
+    hand.do("key", "ctrl+a")
+    hand.do("type", "--delay", "20", "4600")
+    offered = machine.completer().popup()
+    person.until(offered.isVisible, "what is offered", 5)
+    person.screenshot("machines_offered")
+    rows = [str(offered.model().index(row, 0).data()) for row in range(offered.model().rowCount())]
+    assert len(rows) == 3 and all(row.startswith("ABB IRB 4600-") for row in rows)
+    hand.do("key", "Down", "Down", "Return")
+    assert machine.currentText() == rows[1] and machine.currentData() == "abb-irb4600-40-255"
+    person.press("Cancel")
+    person.panel_closed()
+
+
 def test_a_joint_path_has_the_fields_of_its_machine(person, cells):
     toolpath, _, table = cells
     person.select(toolpath)
@@ -59,6 +78,25 @@ def test_a_joint_path_has_the_fields_of_its_machine(person, cells):
     person.choose(panel, "InputCell", table.Label)
     assert shown(person, panel, OF_TABLES) == set(OF_TABLES)
     assert shown(person, panel, OF_ROBOTS) == {"Method"}  # it holds another one than at first: it stays to be seen
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_a_cell_has_the_fields_of_its_set_up(person, cells):
+    """A tool on the robot has a pose on it, and axes beside it; a platform has one where robot or positioner carries it."""
+    _, robot, table = cells
+    names = ("Tool", "External", "Platform")
+    person.double_click(robot)
+    panel = person.panel("RoboticAM_Cell")
+    assert shown(person, panel, names) == {"Platform"}
+    person.choose(panel, "Setup", "tool on robot")
+    assert shown(person, panel, names) == {"Tool", "External"}
+    person.type(panel, "External", "motoman-motopos-d500 at 1500 0 0 0 0 0 carries part")
+    person.until(lambda: shown(person, panel, names) == set(names), "the platform of the positioner", 5)
+    person.press("Cancel")
+    person.panel_closed()
+    person.double_click(table)
+    assert shown(person, person.panel("RoboticAM_Cell"), names) == {"Platform"}
     person.press("Cancel")
     person.panel_closed()
 

@@ -79,7 +79,8 @@ def inspect(measured: Measured, planned: Planned, parameters: InspectionParamete
     issues = [
         *measured.issues, *_unlike(measured.points, planned), *_told(found, planned, counted, fitted, ball is not None),
     ]
-    levels = parameters.levels() or figures.default_heights(planned, kept)
+    # without a wall nothing says that it is round
+    levels = parameters.levels() or (() if planned.wall is None else figures.default_heights(planned, kept))
     circles = []
     for height in levels:
         try:
@@ -87,8 +88,6 @@ def inspect(measured: Measured, planned: Planned, parameters: InspectionParamete
         except InputError as error:
             if parameters.heights:
                 issues.append(Issue(WARNING, error.code, error.message))
-    if planned.wall is None and not parameters.heights:
-        circles = []  # nothing says that it is round
     issues += [Issue(WARNING, "NOT_ALL_ROUND", text) for text in figures.warnings_of(circles)]
     report(0.8, "figures")
     return Inspected(

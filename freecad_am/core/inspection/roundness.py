@@ -50,7 +50,7 @@ def least(points: Array, where: str) -> Round:
 
     def slopes(unknown: Array) -> Array:
         away = points - unknown[:-1]
-        return np.column_stack([-away / np.linalg.norm(away, axis=1, keepdims=True), np.full(len(points), -1.0)])
+        return np.column_stack([-_along(away), np.full(len(points), -1.0)])
 
     found = least_squares(residuals, start, slopes, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15, x_scale=scale).x
     return _round(points, found[:-1], float(found[-1]))
@@ -68,8 +68,7 @@ def narrowest(points: Array, where: str) -> Round:
     dimension = points.shape[1]
     for _ in range(ROUNDS):
         away = points - best.centre
-        distance = np.linalg.norm(away, axis=1)
-        slope = -away / distance[:, None]
+        distance, slope = np.linalg.norm(away, axis=1), -_along(away)
         # unknown: change of the centre, inner and outer radius; inner <= distance + slope . change <= outer
         none, one = np.zeros((len(points), 1)), np.ones((len(points), 1))
         rows = np.block([[-slope, one, none], [slope, none, -one]])
@@ -88,6 +87,11 @@ def narrowest(points: Array, where: str) -> Round:
         if reach <= STILL * best.outer or promised <= STILL * best.outer:
             break
     return Round(best.centre, 0.5 * (best.inner + best.outer), best.inner, best.outer)
+
+
+def _along(away: Array) -> Array:
+    """Unit vectors; nothing of a point at the centre itself, which may go anywhere."""
+    return np.asarray(away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny))
 
 
 def _round(points: Array, centre: Array, radius: float) -> Round:

@@ -16,7 +16,7 @@ from .cell import Pose
 AUTO, POINT, PLATFORM, POSITIONER = "auto", "deposition-point", "platform", "positioner"
 MARGIN, TIME, CLEARANCE = "margin", "time", "clearance"
 MOST = 20_000  # poses
-_SIDES = ("x", "y", "z", "rx", "ry", "rz")
+SIDES = ("x", "y", "z", "rx", "ry", "rz")
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class PlaceParameters:
     def _values(self) -> list[NDArray[np.float64]]:
         """What is added to each of the six numbers of a pose."""
         found = []
-        for number, name in enumerate(_SIDES):
+        for number, name in enumerate(SIDES):
             step = self.step if number < 3 else self.angle_step
             most = math.floor(getattr(self, name) / step + 1e-9)
             found.append(step * np.arange(-most, most + 1))

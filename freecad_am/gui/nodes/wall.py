@@ -15,7 +15,7 @@ from .lines import DASHED, Array, Faces, Lines
 
 COLOUR = (0.96, 0.47, 0.0)
 TINT = (1.0, 0.62, 0.2)
-_COARSE = 0.004  # chord error of the tinted faces as a share of their size
+_COARSE = 0.004  # chord error of the tinted faces as a share of the shape's size: FreeCAD's own, on screen, is less
 _NOTHING = np.zeros((0, 3))
 NONE = (_NOTHING, np.zeros((0, 3), dtype=np.int32))  # points and triangles
 
@@ -82,20 +82,21 @@ def first_curves(wall: Any) -> list[Array]:
 def drawn(part: Taken, names: Sequence[str]) -> tuple[Array, Array]:
     """Points (n, 3) and triangles (m, 3) of a mesh, or of faces of a shape, all where none are named. NO_FACES."""
     if part.shape is not None:
-        return triangles_of(part.shape.copy(False), names)
+        return triangles_of(part.shape.copy(False, True), names)
     body = part.body()
     return body.vertices, body.triangles.astype(np.int32)
 
 
 def triangles_of(shape: Any, names: Sequence[str]) -> tuple[Array, Array]:
-    """Points (n, 3) and triangles (m, 3) of faces of a shape, all where none are named; NONE where it has none such."""
+    """Points (n, 3) and triangles (m, 3) of faces of a shape, all where none are named; NONE where it has none such. Those
+    that the shape has, as it has on screen, are taken: others would lie in front of them here and behind them there."""
     try:
         faces = [shape.getElement(name.rsplit(".", maxsplit=1)[-1]) for name in names] or shape.Faces
     except (ValueError, IndexError, RuntimeError):  # the shape has changed
         return NONE
     points, corners, count = [_NOTHING], [NONE[1]], 0
     for face in faces:
-        vertices, triangles = face.tessellate(max(1e-3, _COARSE * face.BoundBox.DiagonalLength))
+        vertices, triangles = face.tessellate(max(1e-3, _COARSE * shape.BoundBox.DiagonalLength))
         points.append(np.array([tuple(vertex) for vertex in vertices]).reshape(-1, 3))
         corners.append(np.array(triangles, dtype=np.int32).reshape(-1, 3) + count)
         count += len(vertices)

@@ -17,6 +17,7 @@ from ...core.kinematics.arrangement import of_setup
 from ...core.kinematics.machine import Machine
 from ...core.kinematics.proposed_cell import cell_of
 from ...core.parameters.cell import CellParameters
+from ...core.parameters.external import NONE
 from ...objects import user_machines
 from ...objects.cell import Cell
 from ...objects.progress import Cancelled
@@ -25,18 +26,20 @@ from ...objects.stage_parts import Outcome
 from ..background.busy import carry_out
 from ..background.later import Background, Later
 from ..background.worker import Worker
-from ..nodes.cell import CellNodes, Rest, Scenery, at_the_end, with_machine
+from ..nodes.cell import CellNodes, Scenery, at_the_end, with_machine
 from ..picking.selection import meant
 from ..texts.translation import tr, translated
 from ..views.cell import toolpath_of
 from ..views.preview import Aside, Draft
 from ..widgets import suggestions
+from . import at_rest
 from .preview import PreviewPanel
 
 MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
-ARM, OBSTACLES = "cell_arm_clearance", "cell_obstacles"
-TOOL = "cell_nozzle_tool"
-_OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, ARM, OBSTACLES)
+ARM, OBSTACLES, EXTERNAL = "cell_arm_clearance", "cell_obstacles", "cell_external"
+TOOL, PLATFORM = "cell_nozzle_tool", "cell_platform"
+_OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, ARM, OBSTACLES, EXTERNAL)
+_OF_TOOLS = (TOOL, EXTERNAL)  # that a robot carries
 
 
 class CellPanel(PreviewPanel):
@@ -64,6 +67,7 @@ class CellPanel(PreviewPanel):
         self.later = Later(self.form, self._follow)
         self._widget(MACHINE).editTextChanged.connect(self.later.ask)
         self._widget(SETUP).currentIndexChanged.connect(self._follow)
+        self._widget(EXTERNAL).textChanged.connect(self.later.ask)
         self._follow()
 
     def _add_machine_box(self) -> None:
@@ -96,9 +100,14 @@ class CellPanel(PreviewPanel):
         self._ask_proposal(name, machine)
 
     def _fit(self, machine: Machine) -> None:
-        """Leave out what has no meaning for the machine, or with what the robot carries."""
-        held = of_setup(self._widget(SETUP).currentData()).carries_part
-        without = _OF_ROBOTS if not machine.redundant else (TOOL,) if held else ()
+        """Leave out what has no meaning for the machine, or with what the robot carries: beside it a part stands on its
+        deposition point, or on the platform of a positioner."""
+        if not machine.redundant:
+            without: tuple[str, ...] = _OF_ROBOTS
+        elif of_setup(self._widget(SETUP).currentData()).carries_part:
+            without = _OF_TOOLS
+        else:
+            without = (PLATFORM,) if self._holds(EXTERNAL) in (NONE, "") else ()
         self.leave_out(without, also_entered=True)
 
     def _tell_of_machine(self, text: str) -> None:
@@ -257,7 +266,7 @@ class CellPanel(PreviewPanel):
     def _draw(self, made: Outcome, drawing: Scenery) -> str:
         self.nodes.set(drawing)
         without = suggestions.no_post(self.places[MACHINE][0].value)
-        return "\n".join(filter(None, ("" if drawing.rest is None else _stands(drawing.rest), without)))
+        return "\n".join(filter(None, ("" if drawing.rest is None else at_rest.stands(drawing.rest), without)))
 
     def _placed(self, error: AmError) -> tuple[str, str]:
         """What is wrong with the file of a machine is told under its name."""
@@ -281,17 +290,3 @@ def _alike(one: Any, other: Any) -> bool:
 
 def _told(value: Any) -> str:
     return value if isinstance(value, str) else " ".join(f"{number:g}" for number in value)
-
-
-def _stands(rest: Rest) -> str:
-    """How the machine stands at rest."""
-    if not rest.machine.redundant:
-        return tr("{} at rest, its turning axes at 0").format(rest.machine.title)
-    if not rest.reached:
-        told = tr("{} does not reach the part with the nozzle upright: all its axes are drawn at 0")
-        return told.format(rest.machine.title)
-    margin, label = rest.limits.smallest(rest.joints)
-    left, axis = float(np.degrees(margin)), rest.limits.labels[int(label)]
-    told = tr("{} with the nozzle upright: {} is {:.0f}° from its limit") if left >= 0.0 else tr(
-        "{} with the nozzle upright: {} is {:.0f}° past its limit")
-    return told.format(rest.machine.title, axis, abs(left))

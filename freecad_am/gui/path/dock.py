@@ -32,7 +32,7 @@ class PathDock(Follower):
         self.filling = False
         self.dock = places.dock(NAME, places.BELOW)
         self._build()
-        self.dock.seen = self.fill
+        self.dock.seen, self.dock.closed = self.fill, self._closed
         path_view.listen(lambda view: self.fill())
         path_view.listen_to_clicks(self.dock.isVisible, self._picked)
         watch.listen_to_language(self._speak)
@@ -172,6 +172,14 @@ class PathDock(Follower):
         if view is not None:
             self.form.single.setChecked(False)
             self._show(view, None)
+
+    def _closed(self) -> None:
+        """All paths are whole again: nothing would tell what is left out of them."""
+        self.form.single.setChecked(False)
+        for document in App.listDocuments().values():
+            for view in (obj.ViewObject.Proxy for obj in _paths(document)):
+                if view.shown is not None:
+                    view.show(None)
 
     def _picked(self, view: PathView, row: int) -> None:
         """A point of a path was clicked in the 3D view: all up to it is shown."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
-from ...core.parameters.place import PlaceParameters
+from ...core.parameters.place import SIDES, PlaceParameters
 from ...core.placement.place import Placed
 from ...objects.placed import given
 from ...objects.rows import flat, rows
@@ -32,7 +32,8 @@ class Form(QtGui.QWidget):
         for row in rows(PlaceParameters):
             field = fields.make(row, current[row.key], None, "", SECTION)
             self.fields[row.key] = field
-            (more if row.spec.advanced else box).add(field.heading, field.widget)
+            heading = f"± {field.heading}" if row.key in SIDES else field.heading
+            (more if row.spec.advanced else box).add(heading, field.widget)
         column.addWidget(box.widget)
         column.addWidget(more.widget)
         self.compute = _button("compute", tr("Compute"), tr("Try all poses beside the window; it can be cancelled"))
@@ -46,8 +47,10 @@ class Form(QtGui.QWidget):
         self.key, self.told = QtGui.QLabel(), QtGui.QLabel()
         self.key.setObjectName("key")
         self.told.setObjectName("told")
-        for label in (self.key, self.told):
+        for label, most in ((self.key, 1), (self.told, 2)):  # lines, with which what is below stays where it is
             label.setWordWrap(True)
+            label.setMinimumHeight(most * label.fontMetrics().lineSpacing())
+            label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
         self.table = _table()
         buttons = QtGui.QHBoxLayout()
         buttons.addWidget(self.compute)

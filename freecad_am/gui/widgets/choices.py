@@ -60,10 +60,14 @@ def machines() -> list[tuple[str, str]]:
 
 
 def offer(combo: Any, pairs: Iterable[tuple[str, str]]) -> None:
-    """Fill a list with keys and what is shown of them; it opens as wide as its longest entry."""
+    """Fill a list with keys and what is shown of them; it opens as wide as its longest entry. Where it can be typed into any
+    part of an entry offers it."""
     for key, text in pairs:
         combo.addItem(text, key)
         combo.setItemData(combo.count() - 1, text, QtCore.Qt.ToolTipRole)
+    if combo.isEditable():
+        combo.completer().setFilterMode(QtCore.Qt.MatchContains)
+        combo.completer().setCompletionMode(QtGui.QCompleter.PopupCompletion)
     shrink(combo)
     combo.view().setMinimumWidth(combo.view().sizeHintForColumn(0) + combo.view().verticalScrollBar().sizeHint().width())
 
@@ -76,8 +80,9 @@ def entered(combo: Any) -> str:
 
 
 def enter(combo: Any, key: str) -> None:
-    """Show a key in a list that can be typed into, in words where it has any."""
+    """Show a key in a list that can be typed into, in words where it has any; the list then opens there."""
     at = combo.findData(key)
+    combo.setCurrentIndex(at)
     combo.setEditText(combo.itemText(at) if at >= 0 else key)
     combo.lineEdit().setCursorPosition(0)
 

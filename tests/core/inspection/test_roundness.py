@@ -73,6 +73,19 @@ def test_least_squares_is_stationary_and_beats_its_neighbours(make, seed):
     assert found.zone >= narrowest(points, "scan").zone
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_point_at_the_centre_itself_is_one_as_others(dimension):
+    """As in a scan of a plate row by row, which is looked at for how round it is."""
+    axes = np.meshgrid(*[np.arange(-3.0, 4.0)] * dimension)
+    points = np.stack([axis.ravel() for axis in axes], axis=1)
+    with np.errstate(all="raise"):
+        fitted, found = least(points, "scan"), narrowest(points, "scan")
+    for one in (fitted, found):
+        distance = np.linalg.norm(points - one.centre, axis=1)
+        assert (one.inner, one.outer) == pytest.approx((distance.min(), distance.max()), abs=1e-12)
+    assert found.zone <= fitted.zone
+
+
 def test_an_arc_of_thirty_degrees_has_the_right_radius():
     angle = np.radians(np.linspace(10.0, 40.0, 50))
     points = np.column_stack([np.cos(angle), np.sin(angle)]) * 250.0 + [3.0, -7.0]

@@ -73,6 +73,18 @@ def planned(*bodies, build=None, process=None, **values):
     return plan(solids, strategy, build or BuildDirectionParameters(), process or ProcessParameters(), None)
 
 
+@pytest.mark.parametrize("order", ["feature", "around-axis"])
+def test_progress_goes_on_layer_by_layer(order):
+    """Of one solid of twenty layers, and of two that lie apart."""
+    for bodies in ([box((0, 0, 0), (20, 20, 40))], [box((0, 0, 0), (20, 20, 40)), box((40, 0, 0), (60, 20, 40), "other")]):
+        strategy = SolidParameters(layer_height=2.0, chord_error=ERROR, bead_spacing=8.0, order=order, fuse="none")
+        told = []
+        plan(stacked(bodies, strategy, "part"), strategy, BuildDirectionParameters(), ProcessParameters(), None,
+             lambda share, text, told=told: told.append(share))
+        assert len(told) == 20 * len(bodies)
+        assert told == pytest.approx(np.arange(len(told)) / len(told), abs=0.02)
+
+
 def dense(bead, step=0.02):
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     count = np.maximum(np.ceil(length / step).astype(int), 1)

@@ -46,8 +46,7 @@ def plan(
     """
     _refuse_mode(solids, strategy, build)
     strategy = spaced(strategy, process)
-    width = None if strategy.bead_overlap is None else process.bead_width
-    size.refuse_absurd(size.of_solids(solids, strategy, strategy.bead_spacing), strategy, width)
+    expected = _layers_of_a_piece(solids, strategy, process)
     counted = bead_width(strategy, process, model)
     pictures = Pictures(strategy, process, counted)
     laid: list[Laid] = []
@@ -61,9 +60,9 @@ def plan(
     for done, (group, base, number, piece) in enumerate(found):
         below: Array | None = None  # middles of the islands of the layer before
         before: Counter[int] = Counter()  # beads of the pieces that a curved layer has had
-        for layer in piece.slices:
+        for count, layer in enumerate(piece.slices):
             mended += layer.issues
-            progress(done / len(found), f"{piece.name} layer {layer.layer}")
+            progress((done + min(1.0, count / expected)) / len(found), f"{piece.name} layer {layer.layer}")
             beads = _filled(layer, piece, base, pictures)
             mended += beads.issues
             share = 1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
@@ -97,6 +96,14 @@ def plan(
         volumes=volumes(solids, strategy, covers), twice=twice(made, strategy, covers, counted),
         uneven=np.array([(layer, *uneven[layer]) for layer in sorted(uneven)]) if uneven else None,
     )
+
+
+def _layers_of_a_piece(solids: SolidsOnHub, strategy: FilledParameters, process: ProcessParameters) -> float:
+    """About how many layers a piece has, at least one. InputError TOO_MANY."""
+    found = size.of_solids(solids, strategy, strategy.bead_spacing)
+    size.refuse_absurd(found, strategy, None if strategy.bead_overlap is None else process.bead_width)
+    together = sum(len(one.bodies) for one in solids.groups) if strategy.order == "feature" else 1
+    return max(1.0, found.layers / together)
 
 
 def _both(known: tuple[float, float] | None, heights: tuple[float, float, float]) -> tuple[float, float]:

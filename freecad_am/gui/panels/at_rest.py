@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How a machine stands at rest, as the panel of a cell tells it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..nodes.cell import Rest
+from ..texts.translation import tr
+
+
+def stands(rest: Rest) -> str:
+    """What is told of a machine at rest: its title, and what is nearest to its limit."""
+    if not rest.machine.redundant:
+        return tr("{} at rest, its turning axes at 0").format(rest.machine.title)
+    if not rest.reached:
+        told = tr("{} does not reach the part with the nozzle upright: all its axes are drawn at 0")
+        return told.format(rest.machine.title)
+    margin, label = rest.limits.smallest(rest.joints)
+    left, axis = float(np.degrees(margin)), rest.limits.labels[int(label)]
+    told = tr("{} with the nozzle upright: {} is {:.0f}° from its limit") if left >= 0.0 else tr(
+        "{} with the nozzle upright: {} is {:.0f}° past its limit")
+    return told.format(rest.machine.title, axis, abs(left))

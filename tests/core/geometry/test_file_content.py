@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Files from outside: all of their bytes or a refusal, without the memory that a hostile one asks for."""
+
+import hashlib
+import os
+import tracemalloc
+
+import pytest
+
+from freecad_am.core.geometry.file_content import MB, content, digest
+from freecad_am.core.issues import InputError
+
+
+@pytest.mark.parametrize("size", [0, 1, MB - 1, MB, MB + 1, 2 * MB])
+def test_all_bytes_and_their_digest(tmp_path, size):
+    data = os.urandom(size)
+    path = tmp_path / "data"
+    path.write_bytes(data)
+    assert content(path, 2, "BAD_FILE", "it") == data
+    assert digest(path, 2, "BAD_FILE", "it") == hashlib.sha256(data).hexdigest()
+
+
+@pytest.mark.parametrize("read", [content, digest])
+def test_larger_files_are_refused_unread(tmp_path, read):
+    path = tmp_path / "data"
+    with path.open("wb") as stream:
+        stream.truncate(100_000 * MB)  # of blocks that take no room
+    tracemalloc.start()
+    with pytest.raises(InputError, match="larger than 2 MB") as told:
+        read(path, 2, "BAD_FILE", "it")
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert (told.value.code, told.value.where) == ("BAD_FILE", "it") and most < MB
+
+
+@pytest.mark.parametrize("read", [content, digest])
+def test_what_tells_no_size_is_read_up_to_the_limit(read, monkeypatch, tmp_path):
+    """As files of the kernel do: what is read counts."""
+    path = tmp_path / "data"
+    path.write_bytes(b"x" * (3 * MB))
+    known = os.fstat
+
+    def without_size(descriptor):
+        found = list(known(descriptor))
+        found[6] = 0
+        return os.stat_result(found)
+
+    monkeypatch.setattr(os, "fstat", without_size)
+    with pytest.raises(InputError, match="larger than 2 MB"):
+        read(path, 2, "BAD_FILE", "it")
+    monkeypatch.undo()
+    assert content(path, 3, "BAD_FILE", "it") == b"x" * (3 * MB)
+
+
+@pytest.mark.parametrize("read", [content, digest])
+def test_devices_pipes_and_folders_are_refused(tmp_path, read):
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", tmp_path, "/dev/zero"):
+        with pytest.raises((InputError, IsADirectoryError)):
+            read(path, 2, "BAD_FILE", "it")

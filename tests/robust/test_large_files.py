@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Files far larger than what they are to be, and devices and pipes in their place, of every kind that jobs and documents
+name: refused in seconds and without their size of memory."""
+
+import os
+
+import FreeCAD
+import pytest
+
+from freecad_am import api
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.objects import cell_obstacles, table_part
+from tests.robust.test_damaged import assert_refused, refused
+
+HUGE = 5 << 30  # bytes of blocks that take no room: more than the commands may use of memory
+ROBOT = "cell: {machine: abb-irb4600-40-255, setup: tool-on-robot"
+
+
+def huge(path):
+    with path.open("wb") as stream:
+        stream.truncate(HUGE)
+    return path
+
+
+@pytest.mark.parametrize("ending", ["step", "stl", "obj"])
+def test_parts(workshop, ending):
+    huge(workshop.folder / f"huge.{ending}")
+    workshop.write_job(f"part: {{file: huge.{ending}}}\nstrategy: {{kind: solid}}\n")
+    assert_refused(workshop, "plan", "cup.yaml", says="larger than 2000 MB")
+
+
+@pytest.mark.parametrize("text", [
+    "cell: {machine: huge.json}\n", ROBOT + ", obstacles: [{file: huge.step}]}\n",
+    ROBOT + ", obstacles: [{file: huge.obj}]}\n",
+    "cell: huge.yaml\n", "process: {material: ./huge.yaml}\n", "process: {bead_model: ./huge.csv}\n",
+    "cell: {machine: {name: ur-ur10e, calibration: huge.yaml}}\n",
+    "substrate: {file: cup.step, scan: huge.csv}\n",
+], ids=["machine", "obstacle", "mesh as obstacle", "cell", "material", "beads", "calibration", "scan"])  # fmt: skip
+def test_what_a_job_names(workshop, text):
+    for ending in ("json", "step", "obj", "yaml", "csv"):
+        huge(workshop.folder / f"huge.{ending}")
+    workshop.write_job(f"part: {{file: cup.step}}\nstrategy: {{kind: solid, layer_height: 8 mm}}\n{text}")
+    assert_refused(workshop, "plan", "cup.yaml", says="larger than")
+
+
+@pytest.mark.parametrize("ending", ["csv", "gcode", "ada3dp"])
+def test_tables_of_points(tmp_path, ending):
+    """By the window and by macros, which look at no name before."""
+    document = FreeCAD.newDocument("Table")
+    try:
+        os.mkfifo(tmp_path / f"pipe.{ending}")
+        (tmp_path / f"zero.{ending}").symlink_to("/dev/zero")
+        for path in (huge(tmp_path / f"huge.{ending}"), tmp_path / f"pipe.{ending}", tmp_path / f"zero.{ending}"):
+            assert refused(table_part.open_points, document, str(path)).code == "BAD_FILE"
+    finally:
+        FreeCAD.closeDocument(document.Name)
+
+
+@pytest.mark.parametrize("name", ["huge.step", "pipe.step", "zero.step"])
+def test_obstacles_of_a_document(tmp_path, name):
+    """A document of somebody else may name what it likes: looking whether it is up to date reads no more than it may."""
+    huge(tmp_path / "huge.step")
+    os.mkfifo(tmp_path / "pipe.step")
+    (tmp_path / "zero.step").symlink_to("/dev/zero")
+    text = f"post = {tmp_path / name} at 0 0 0 0 0 0"
+    assert refused(cell_obstacles.bodies_of, CellParameters(obstacles=text)).where == "cell.obstacles post"
+    if name == "huge.step":
+        assert refused(cell_obstacles.hashes_of, text).code == "BAD_FILE"
+    else:
+        assert cell_obstacles.hashes_of(text) == []
+
+
+@pytest.mark.parametrize("name", ["huge.json", "pipe.json", "zero.json"])
+def test_machines_of_a_document(tmp_path, name):
+    huge(tmp_path / "huge.json")
+    os.mkfifo(tmp_path / "pipe.json")
+    (tmp_path / "zero.json").symlink_to("/dev/zero")
+    document = FreeCAD.newDocument("Cell")
+    try:
+        cell = api.make_cell(document)
+        cell.Machine = str(tmp_path / name)
+        error = refused(api.recompute, cell)
+        assert name in f"{error.where} {error.message}" or error.where.endswith("Machine")
+    finally:
+        FreeCAD.closeDocument(document.Name)
+
+
+def test_measured_points_of_a_document(tmp_path):
+    document = FreeCAD.newDocument("Inspection")
+    try:
+        part = document.addObject("Part::Sphere", "Sphere")
+        document.recompute()
+        error = refused(api.inspect, document, part, str(huge(tmp_path / "huge.csv")))
+        assert "larger than 1000 MB" in error.message
+    finally:
+        FreeCAD.closeDocument(document.Name)
