@@ -85,12 +85,12 @@ def test_a_joint_path_has_the_fields_of_its_machine(person, cells):
 def test_a_cell_has_the_fields_of_its_set_up(person, cells):
     """A tool on the robot has a pose on it, and axes beside it; a platform has one where robot or positioner carries it."""
     _, robot, table = cells
-    names = ("Tool", "External", "Platform")
+    names = ("NozzleTool", "External", "Platform")
     person.double_click(robot)
     panel = person.panel("RoboticAM_Cell")
     assert shown(person, panel, names) == {"Platform"}
     person.choose(panel, "Setup", "tool on robot")
-    assert shown(person, panel, names) == {"Tool", "External"}
+    assert shown(person, panel, names) == {"NozzleTool", "External"}
     person.type(panel, "External", "motoman-motopos-d500 at 1500 0 0 0 0 0 carries part")
     person.until(lambda: shown(person, panel, names) == set(names), "the platform of the positioner", 5)
     person.press("Cancel")

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..geometry.curves.profile import Array, RevolvedWall
 from ..geometry.mesh.solid import spread
@@ -89,11 +90,19 @@ def refuse_below(label: str, points: Array, frame: Array, diameter: float, remed
 
 def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> None:
     """The same of solids on a hub, of what is outside of the surfaces that they stand on."""
+    def over(corners: Array) -> NDArray[np.bool_]:
+        """Which triangles (n, 3, 3) may come over the disc, or below it."""
+        flat = (corners - frame[:3, 3]) @ frame[:3, :2]
+        middle = flat.mean(axis=1)
+        reach = np.linalg.norm(flat - middle[:, None], axis=2).max(axis=1)
+        return np.asarray(np.linalg.norm(middle, axis=1) - reach < 0.5 * diameter)
+
     for group in solids.groups:
         for body in group.bodies:
             corners = body.corners()
             low = ((corners - frame[:3, 3]) @ frame[:3, 2]).min(axis=1) < -DEEP
-            points = np.vstack([corners[low].reshape(-1, 3), spread(corners[low], max(GRAIN * 0.5 * diameter, 1.0))[0]])
+            middles, _ = spread(corners[low], max(GRAIN * 0.5 * diameter, 1.0), over)  # of a large part most is beside it
+            points = np.vstack([corners[low].reshape(-1, 3), middles])
             outside = group.base.surface.distance(group.base.inside(points)) > DEEP
             refuse_below(body.name, points[outside], frame, diameter, MOUNT)
 

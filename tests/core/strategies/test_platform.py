@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A wall that does not stand on the platform, and the platform's place under one that does."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -56,6 +58,26 @@ def test_a_base_that_reaches_over_the_edge_is_deposited_with_a_warning(diameter,
     found = platform.overhanging(WALL, platform.under(WALL, diameter, frame))
     assert [(issue.level, issue.code) for issue in found] == ([("warning", "OVER_PLATFORM")] if over else [])
     assert all("Cup has a diameter of 40 mm" in issue.message for issue in found)
+
+
+@pytest.mark.parametrize("depth", [0.0, 7.5])
+def test_of_a_part_far_larger_than_the_platform_only_what_is_over_it_is_looked_at(depth):
+    """A plate of 6 m, whose underside would be 70 million places, reaches below the disc with the middle of its underside
+    alone: no corner of a triangle is near."""
+    corner = np.array([[x, y, z] for x in (-3000.0, 3000.0) for y in (-3000.0, 3000.0) for z in (-depth, 50.0)])
+    sides = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+             [1, 5, 7], [1, 7, 3]]
+    base = Base("hub", Developable(1.0), upright(np.array([0.0, 4000.0, 0.0]), np.array([0.0, 0.0, 1.0])))
+    solids = SolidsOnHub("plate", (Group(base, (Body("plate", corner, np.array(sides, dtype=np.int64)),)),), 0.01)
+    tracemalloc.start()
+    if depth:
+        with pytest.raises(InputError, match=r"plate reaches 7\.5 mm below the platform"):
+            platform.refuse_solids_below(solids, np.eye(4), 40.0)
+    else:
+        platform.refuse_solids_below(solids, np.eye(4), 40.0)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 10e6
 
 
 @pytest.mark.parametrize(("drop", "diameter", "refused"), [

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -175,15 +176,21 @@ class Search:
         return at_vertex, at_edge, edges.of
 
 
-def spread(corners: Array, longest: float) -> tuple[Array, Index]:
-    """Middles (k, 3) of the parts of triangles (m, 3, 3), none with a side beyond `longest` mm; the triangle of each."""
-    return _spread(corners, longest) if len(corners) else (np.zeros((0, 3)), np.zeros(0, dtype=np.intp))
+def spread(corners: Array, longest: float, kept: Callable[[Array], NDArray[np.bool_]] | None = None) -> tuple[Array, Index]:
+    """Middles (k, 3) of the parts of triangles (m, 3, 3), none with a side beyond `longest` mm; the triangle of each.
+    kept: says of triangles (n, 3, 3), whole ones and parts, which (n,) are parted further; the others are left out."""
+    return _spread(corners, longest, kept) if len(corners) else (np.zeros((0, 3)), np.zeros(0, dtype=np.intp))
 
 
-def _spread(corner: Array, longest: float) -> tuple[Array, Index]:
+def _spread(
+    corner: Array, longest: float, kept: Callable[[Array], NDArray[np.bool_]] | None = None
+) -> tuple[Array, Index]:
     """Middles (k, 3) of the parts of triangles (m, 3, 3) with no side longer than `longest`, and the triangle of each."""
     of, done = np.arange(len(corner)), []
     while len(corner):
+        if kept is not None:
+            here = kept(corner)
+            corner, of = corner[here], of[here]
         side = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
         top = np.argmax(side, axis=1)
         small = side[np.arange(len(top)), top] <= longest
