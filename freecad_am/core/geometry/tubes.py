@@ -99,7 +99,8 @@ def _triangles(ends: NDArray[np.bool_], sides: int) -> NDArray[np.int32]:
     fan = np.stack([np.zeros(sides - 2, dtype=np.intp), number[1:-1], number[2:]], axis=-1)
     front = (first[:, None, None] * sides + fan[:, ::-1]).reshape(-1, 3)
     back = (last[:, None, None] * sides + fan).reshape(-1, 3)
-    return np.concatenate([skin, front, back]).astype(np.int32)
+    triangles: NDArray[np.int32] = np.concatenate([skin, front, back]).astype(np.int32)
+    return triangles
 
 
 def _unit(vectors: Array) -> Array:

@@ -39,7 +39,8 @@ def bands(tolerance: float) -> tuple[Band, ...]:
 def band_of(deviation: Array, tolerance: float) -> NDArray[np.int64]:
     """The number in `bands` (n,) of deviations (n,)."""
     step = np.clip(np.ceil(np.abs(deviation) / tolerance - 1e-12) - 1.0, 0.0, STEPS)
-    return (STEPS + np.sign(deviation) * step).astype(np.int64)
+    band: NDArray[np.int64] = (STEPS + np.sign(deviation) * step).astype(np.int64)
+    return band
 
 
 def colours(deviation: Array, counted: NDArray[np.bool_], tolerance: float) -> Array:

@@ -32,7 +32,8 @@ def stl(data: bytes, where: str) -> Array:
     points = points[np.lexsort(points.T[::-1])]  # as np.unique of rows has them, which holds up other threads meanwhile
     other: NDArray[np.bool_] = np.ones(len(points), dtype=bool)
     other[1:] = (points[1:] != points[:-1]).any(axis=1)
-    return points[other]
+    kept: NDArray[np.float64] = points[other]
+    return kept
 
 
 def obj(data: bytes, where: str) -> Array:

@@ -242,4 +242,5 @@ def _square(distance: Array, trim: float) -> float:
 
 
 def _moved(points: Array, motion: Array) -> Array:
-    return points @ motion[:3, :3].T + motion[:3, 3]
+    moved: Array = points @ motion[:3, :3].T + motion[:3, 3]
+    return moved

@@ -61,7 +61,7 @@ def _of_surface(wall: SurfaceWall) -> Planned:
     around = np.linspace(0.0, period, COLUMNS, endpoint=False)
     start = np.interp(around, np.remainder(v, period)[order], u[order], period=period)
     share = np.linspace(0.0, 1.0, ROWS)[:, None]
-    up = start[None] + share * (wall.end - start)[None]
+    up = np.asarray(start[None] + share * (wall.end - start)[None], float)
     grid = surface.point(up, np.broadcast_to(around, up.shape))
     row, column = np.meshgrid(np.arange(ROWS - 1), np.arange(COLUMNS), indexing="ij")
     a, b = row * COLUMNS + column, row * COLUMNS + (column + 1) % COLUMNS

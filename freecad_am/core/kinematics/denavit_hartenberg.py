@@ -141,12 +141,12 @@ def _normal(first: Axis, second: Axis, before: Array) -> tuple[tuple[Array, Arra
     cross = np.cross(z1, z2)
     size = float(np.linalg.norm(cross))
     if size < PARALLEL:
-        start = p1 + z1 * float(z1 @ (before[:3, 3] - p1))
+        start: Array = p1 + z1 * float(z1 @ (before[:3, 3] - p1))
         between = (p2 - start) - z1 * float(z1 @ (p2 - start))
         length = float(np.linalg.norm(between))
         # parallel axes without a distance are one: any normal will do, best the one before
-        normal = between / length if length > 1e-9 else before[:3, 0] - z1 * float(z1 @ before[:3, 0])
-        return (start, start + between), normal / np.linalg.norm(normal)
+        normal: Array = between / length if length > 1e-9 else before[:3, 0] - z1 * float(z1 @ before[:3, 0])
+        return (start, start + between), np.asarray(normal / np.linalg.norm(normal))
     across = p2 - p1
     t1 = float(np.cross(across, z2) @ cross) / size**2
     t2 = float(np.cross(across, z1) @ cross) / size**2

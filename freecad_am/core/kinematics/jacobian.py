@@ -137,7 +137,7 @@ def _in_pieces(function: Callable[..., Array], jacobians: ArrayLike, length: flo
         unknown = np.isnan(np.einsum("ijn->n", scaled))
         if unknown.any():
             # LAPACK takes no NaN: anything stands in for it
-            scaled[:, :, unknown] = np.eye(*scaled.shape[:2])[:, :, None]
+            scaled[:, :, unknown] = np.eye(scaled.shape[0], scaled.shape[1])[:, :, None]
         result[piece] = function(scaled, piece) if with_slice else function(scaled)
         result[piece][unknown] = np.nan
     return result
@@ -169,7 +169,7 @@ def _frobenius(matrices: Array) -> Array:
         squares = [_squared_norm(block) for block in (arm, right, left, wrist)]
         bound = 1.0 / np.sqrt(_squared_norm(matrices) * sum(squares))
     bound[np.isnan(bound)] = 0.0
-    return bound
+    return np.asarray(bound)
 
 
 def _squared_norm(matrices: Array) -> Array:

@@ -50,7 +50,8 @@ class Limits:
     @property
     def endless(self) -> NDArray[np.bool_]:
         """Which axes (axes,) turn without end."""
-        return ~np.isfinite(self.upper - self.lower)
+        without: NDArray[np.bool_] = ~np.isfinite(self.upper - self.lower)
+        return without
 
     def margin(self, q: ArrayLike) -> Array:
         """The distance (..., axes + m) of joint vectors `q` (..., axes) to the nearer end of every limit, rad.

@@ -129,7 +129,8 @@ def _heights(vectors: Array, axis: Array, other: Array, angles: Array) -> Array:
     """(n, k) other . Rot(axis, angle) vector for vectors (n, 3) and angles (k,), by Rodrigues' formula."""
     along = (vectors @ axis) * float(axis @ other)
     straight, sideways = vectors @ other - along, vectors @ np.cross(other, axis)
-    return along[:, None] + straight[:, None] * np.cos(angles) + sideways[:, None] * np.sin(angles)
+    turned: Array = along[:, None] + straight[:, None] * np.cos(angles) + sideways[:, None] * np.sin(angles)
+    return turned
 
 
 def nearest(axis: Array, source: Array, target: Array) -> Locked:

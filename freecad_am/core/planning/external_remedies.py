@@ -42,9 +42,9 @@ def moved(settings: CellParameters, folders: Sequence[str]) -> Cells:
     for place in _before(robot, face[:2], float(face[2])):
         others = list(named)
         for k in carriers:
-            x, y, z, *angles = named[k].pose
-            by = place - face
-            others[k] = dataclasses.replace(named[k], pose=(*(float(v) for v in np.round((x, y, z) + by)), *angles))
+            x, y, z, a, b, c = named[k].pose
+            moved = np.round((x, y, z) + (place - face))
+            others[k] = dataclasses.replace(named[k], pose=(float(moved[0]), float(moved[1]), float(moved[2]), a, b, c))
         told = " and ".join(f"`{WHERE}[{k}].pose: {_shown(others[k].pose)}`" for k in carriers)
         yield told, dataclasses.replace(settings, external=_text(others))
 

@@ -130,7 +130,7 @@ def thinned(bead: Bead, most: int | None) -> NDArray[np.int64]:
     most = max(most, int(np.ceil((most - 1) * turns)) + 1)
     if len(bead) <= most:
         return np.arange(len(bead))
-    return np.unique(np.round(np.linspace(0, len(bead) - 1, most)).astype(np.int64))
+    return np.asarray(np.unique(np.round(np.linspace(0, len(bead) - 1, most)).astype(np.int64)))
 
 
 def steps(joints: Array, points: Points) -> Array:

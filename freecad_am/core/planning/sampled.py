@@ -88,4 +88,4 @@ def _kept(bead: Bead, points: int) -> NDArray[np.intp]:
     step = max(1, min(points, last // LEAST))
     share = np.abs(np.diff(bead.parameter)) * (FEWEST_PER_TURN / TURN)
     passed = np.floor(np.cumsum(np.maximum(1.0, step * share)) / step)
-    return np.unique(np.r_[0, np.flatnonzero(np.diff(passed, prepend=0.0) >= 1.0) + 1, last])
+    return np.asarray(np.unique(np.r_[0, np.flatnonzero(np.diff(passed, prepend=0.0) >= 1.0) + 1, last]))

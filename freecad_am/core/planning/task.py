@@ -108,7 +108,7 @@ class Task:
     @cached_property
     def endless(self) -> NDArray[np.bool_]:
         """(axes,) bool, axes without limits."""
-        return ~(np.isfinite(self.cell.limits.lower) & np.isfinite(self.cell.limits.upper))
+        return self.cell.limits.endless
 
     @cached_property
     def unturned(self) -> NDArray[np.bool_]:

@@ -53,7 +53,8 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
     contact, beside = np.zeros(len(seats)), np.zeros(len(seats))
     away = np.zeros((len(seats), 2))
     for k, seat in enumerate(seats):
-        facets = Facets(seat.base.surface, seat.base.inside(body.vertices), body.triangles, body.name)
+        # seats are on cylinders and cones
+        facets = Facets(seat.base.surface, seat.base.inside(body.vertices), body.triangles, body.name)  # type: ignore[arg-type]
         away[k] = facets.away.min(), facets.away.max()
         for loop in cut(facets, 0.0, chord_error):
             step = np.linalg.norm(np.roll(loop.points, -1, axis=0) - loop.points, axis=1)

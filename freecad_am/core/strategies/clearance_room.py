@@ -95,7 +95,7 @@ def beads_of(toolpath: Toolpath, feature: int | None) -> Mask:
 def _turn_before(angle: Array) -> Index:
     """(n,) the first point of a bead that is a turn or less before each of its points, of angles rising or falling."""
     turned = np.abs(angle - angle[0])
-    return np.searchsorted(turned, turned - 2.0 * np.pi - SEAM)
+    return np.asarray(np.searchsorted(turned, turned - 2.0 * np.pi - SEAM))
 
 
 def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:

@@ -116,7 +116,8 @@ class Mesh:
         count, label = csgraph.connected_components(links, directed=False)
         linked = np.zeros(count, dtype=bool)
         linked[label[seeds]] = True
-        return inside & linked[label]
+        reached: NDArray[np.bool_] = inside & linked[label]
+        return reached
 
     def part(self, faces: Index) -> tuple[Mesh, Index]:
         """The mesh of some faces (k,) alone, and the numbers (m,) that its vertices have here."""
@@ -184,4 +185,5 @@ def thinned(points: Array, closed: bool, least: float) -> Array:
         keep[-1] = True
     elif length[-1] > least and np.linalg.norm(points[-1] - points[0]) < least:
         keep[-1] = False
-    return points[keep]
+    kept: Array = points[keep]
+    return kept

@@ -216,7 +216,7 @@ def _sampled(curves: Curves, loops: Loops, which: Index, t: Array, alike: bool) 
     pose, side, elbow, middle, half = (
         column[which][:, None] for column in (loops.pose, loops.side, loops.elbow, loops.middle, loops.half))
     whole = elbow != 0.0
-    plane = plane_of(curves, pose, np.where(whole, middle + t, middle - half * course), side)
+    plane = plane_of(curves, pose, np.where(whole, middle + t, middle - half * course), side)  # type: ignore[arg-type]
     squared = plane.ahead * plane.ahead + plane.above * plane.above
     bend = (squared - (curves.upper**2 + curves.fore**2)) / (2.0 * curves.upper * curves.fore)
     bent = np.where(whole, elbow, rising) * np.sqrt(np.maximum(1.0 - bend * bend, 0.0))
@@ -256,8 +256,7 @@ def _steps(curves: Curves, loops: Loops, which: Index, t: Array, level: int) -> 
 
 def _turned(cosine: Array, sine: Array) -> Array:
     """The cosine (m, s - 1) of the turn between neighbours of directions (m, s)."""
-    result: Array = cosine[:, :-1] * cosine[:, 1:] + sine[:, :-1] * sine[:, 1:]
-    return result
+    return np.asarray(cosine[:, :-1] * cosine[:, 1:] + sine[:, :-1] * sine[:, 1:])
 
 
 def _touching(

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Lint and types, as CONTRIBUTING asks: ruff and mypy of the package index, in an environment of their own (.lint-env) that
+sees the distribution's numpy."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+ENVIRONMENT = ROOT / ".lint-env"
+TOOLS = ("ruff==0.17.6", "mypy==2.4.1")
+
+
+def done(*command):
+    words = [str(word) for word in command]
+    env = {**os.environ, "PYTHONPATH": ""}
+    return subprocess.run(words, cwd=ROOT, env=env, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+
+
+@pytest.fixture(scope="module")
+def tools():
+    """The folder of their programs; skipped where they cannot be installed, as without a network or in another FreeCAD."""
+    if os.environ.get("FREECAD_AM_VERSION"):
+        pytest.skip("the same files are looked at once, beside the FreeCAD of this machine")
+    noted = ENVIRONMENT / "tools.txt"
+    if not noted.exists() or noted.read_text(encoding="utf-8").split() != list(TOOLS):
+        made = done(sys.executable, "-m", "venv", "--system-site-packages", ENVIRONMENT)
+        made = made if made.returncode else done(ENVIRONMENT / "bin" / "pip", "install", "-q", *TOOLS)
+        if made.returncode:
+            pytest.skip(f"{' and '.join(TOOLS)} cannot be installed: {made.stderr.strip()[-200:]}")
+        noted.write_text("\n".join(TOOLS) + "\n", encoding="utf-8")
+    return ENVIRONMENT / "bin"
+
+
+def test_ruff_has_nothing_to_say(tools):
+    found = done(tools / "ruff", "check", "--no-cache", "--output-format", "concise", ".")
+    assert found.returncode == 0, found.stdout
+
+
+def test_mypy_has_nothing_to_say(tools):
+    found = done(tools / "mypy")
+    assert found.returncode == 0, found.stdout[-3000:]
