@@ -17,6 +17,7 @@ from freecad_am.core.issues import ERROR, Issue
 SAME = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
 FIRST = ("REMEDY", "NO_REMEDY")  # codes of what would make a job feasible
 _MOST_ISSUES = 12  # told on stderr; the report has them all
+LONGEST = 4000  # signs of a line: a value that it tells may be as long as a file
 # signs that move the cursor, end a line or turn the direction of writing: in a name they could forge what we say
 _UNSEEN = re.compile(
     "[\\x00-\\x1f\\x7f-\\x9f\\u061c\\u200e\\u200f\\u2028\\u2029\\u202a-\\u202e\\u2066-\\u2069\\ufeff\\ud800-\\udfff]"
@@ -69,9 +70,12 @@ class Session:
         _write(self._saved[0], "\n".join(lines))
 
     def say(self, line: str) -> None:
-        """Write a line to stderr, one whatever is in it."""
+        """Write a line to stderr, one whatever is in it; of a very long one its beginning and its end."""
         self._clear()
-        _write(self._saved[1], escaped(line) + "\n")
+        text = escaped(line)
+        if len(text) > LONGEST:
+            text = f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2:]}"
+        _write(self._saved[1], text + "\n")
 
     def issues(self, found: Iterable[Issue]) -> None:
         """Tell findings, first what would make the job feasible, then errors, on stderr; of many only some."""

@@ -113,7 +113,7 @@ class Toolpath(Stage):
         for text in texts:
             try:
                 own = json.loads(text) if text else {}
-            except ValueError:
+            except (ValueError, RecursionError):
                 own = None
             if not isinstance(own, dict) or not set(own) <= set(OF_FEATURE):
                 raise InputError(

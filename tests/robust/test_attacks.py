@@ -215,6 +215,15 @@ def test_no_message_is_forged(workshop, place):
     assert "Traceback" not in done.err and "INTERNAL" not in done.err
 
 
+def test_of_a_value_as_long_as_a_file_a_message_tells_beginning_and_end(workshop):
+    workshop.change("chord_error: 0.1 mm", f"chord_error: 0.1 mm\n  max_turn: [{', '.join(['7'] * 40_000)}]")
+    done = workshop.run("plan", "cup.yaml")
+    assert done.status == 2 and len(done.err) < 4200 and done.err.count("\n") == 1
+    workshop.change("chord_error: 0.1 mm", f"chord_error: {'7' * 200_000} mm")
+    done = workshop.run("plan", "cup.yaml")
+    assert done.status == 2 and len(done.err) < 4200 and done.err.startswith("error[") and "cup.yaml" in done.err
+
+
 def test_paths_and_cells_that_are_told_stay_on_their_lines(workshop):
     folder = FORGED.replace("/", "")
     done = workshop.run("plan", "cup.yaml", "--no-page", "-o", folder)

@@ -14,6 +14,7 @@ import FreeCAD
 import Part
 import pytest
 
+from freecad_am import api
 from freecad_am.brep import apart, three_mf
 from freecad_am.brep.read import read_mesh, read_shape
 from freecad_am.core.issues import InputError
@@ -295,6 +296,28 @@ def test_a_document_of_entities_in_each_command(workshop, sound):
     assert_refused(workshop, "plan", "cup.yaml", says="document type")
     (workshop.folder / "points.csv").write_text("1,2,3\n")
     assert_refused(workshop, "inspect", path, "--measured", "points.csv", says="document type")
+
+
+@pytest.mark.parametrize(("stage", "name"), [
+    ("Toolpath", "FeatureProcess"), ("JointPath", "Given"), ("Cell", "Obstacles"), ("Cell", "External"),
+    ("Toolpath", "Classes"),
+])  # fmt: skip
+def test_texts_of_a_document(workshop, stage, name):
+    """What stages keep as text, nested or long beyond reason."""
+    document = FreeCAD.newDocument("Texts")
+    try:
+        cup = document.addObject("Part::Feature", "Cup")
+        cup.Shape = Part.makeSphere(40.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 60, 360)
+        cell = api.make_cell(document, limits="paper")
+        toolpath = api.make_toolpath(document, api.make_feature(document, cup, layer_height=20, chord_error=1), cell)
+        api.make_program(document, api.make_joint_path(document, toolpath, cell), name="cup")
+        hostile = "[" * 200_000 + "]" * 200_000
+        known = getattr(document.getObject(stage), name)
+        setattr(document.getObject(stage), name, [hostile] if isinstance(known, list) else hostile)
+        document.saveAs(str(workshop.folder / "texts.FCStd"))
+    finally:
+        FreeCAD.closeDocument(document.Name)
+    assert len(assert_refused(workshop, "export", "texts.FCStd", says="error[BAD_VALUE]")) < 4200
 
 
 def test_a_part_on_which_the_kernel_crashes(workshop, sound):
