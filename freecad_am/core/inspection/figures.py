@@ -82,7 +82,7 @@ class Thickness:
 def spread(deviation: Array, tolerance: float) -> Spread:
     """The figures of deviations (n,), n >= 1."""
     low, high = float(deviation.min()), float(deviation.max())
-    step = _nice(max(high - low, 1e-9) / BARS)
+    step = _nice(max(high - low, 1e-9, 1e-12 * max(-low, high)) / BARS)  # so that its multiples are apart
     first, last = np.floor(low / step), max(np.floor(low / step) + 1, np.ceil(high / step))
     edges = step * np.arange(first, last + 1)
     edges[0], edges[-1] = min(edges[0], low), max(edges[-1], high)

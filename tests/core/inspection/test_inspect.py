@@ -233,6 +233,9 @@ def test_figures_of_deviations_are_those_of_their_definitions():
     assert found.within == (np.abs(deviation) <= 0.1).mean()
     assert found.counts.sum() == 5000 and (np.diff(found.edges) > 0.0).all()
     assert figures.spread(np.full(7, 0.3), 0.1).counts.sum() == 7
+    for far in (1e6, -1e6, 1e12):  # a scan in another place altogether, as far everywhere
+        alike = figures.spread(np.full(7, far), 0.1)
+        assert alike.counts.sum() == 7 and (np.diff(alike.edges) > 0.0).all() and alike.edges[0] <= far <= alike.edges[-1]
 
 
 def test_bands_are_alike_on_both_sides_and_green_within():
