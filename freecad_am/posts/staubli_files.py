@@ -76,6 +76,8 @@ def _application(file: str, files: dict[str, bytes]) -> Application:
 def _parsed(file: str, files: dict[str, bytes]) -> ElementTree.Element:
     if file not in files:
         raise unreadable(file, "the file is missing")
+    if b"\0" in files[file]:  # UTF-16, in which the next would not be seen
+        raise unreadable(file, "it is not text in UTF-8")
     if b"<!DOCTYPE" in files[file]:
         raise unreadable(file, "it declares a document type, which no controller writes")
     try:

@@ -8412,6 +8412,11 @@
         <translation>il n&apos;est pas dit de quels axes l&apos;avance est la vitesse</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>it is not text in UTF-8</source>
+        <translation>ce n&apos;est pas un texte en UTF-8</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
         <source>it is not text; give G-code</source>
         <translation>ce n&apos;est pas du texte ; donnez du G-code</translation>

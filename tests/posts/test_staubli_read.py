@@ -247,6 +247,9 @@ def test_files_that_hide_something_are_refused():
     entity = by_hand("<Database", '<!DOCTYPE a [<!ENTITY b "c">]><Database')
     with pytest.raises(InputError, match="document type"):
         staubli.read(entity)
+    project = next(name for name in entity if name.endswith(".pjx"))
+    with pytest.raises(InputError, match="UTF-8"):  # the same in signs of two bytes
+        staubli.read({**entity, project: entity[project].decode().replace("utf-8", "utf-16").encode("utf-16")})
     with pytest.raises(InputError, match="no moves"):
         staubli.read(by_hand(START, "  delay(1)"))
 
