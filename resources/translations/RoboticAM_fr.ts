@@ -1372,6 +1372,11 @@
         <translation>Accélération</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>Across</source>
+        <translation>En travers</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Add</source>
         <translation>Ajouter</translation>
@@ -5342,6 +5347,11 @@
         <translation>La pièce sur laquelle ils reposent ; aucune n&apos;est nécessaire sur un plateau.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>The path, or an external axis at the point that was clicked last, the other axes as planned there</source>
+        <translation>La trajectoire, ou un axe externe au dernier point cliqué, les autres axes comme prévu à cet endroit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>The pendant&apos;s tool frame on the flange (mm, deg); zeros for the flange itself</source>
         <translation>Le repère outil du pupitre sur la bride (mm, deg) ; des zéros pour la bride elle-même</translation>
@@ -8562,11 +8572,6 @@
         <translation>ses cordons remplissent des solides, la plupart sont à l&apos;intérieur ; comparez les points à l&apos;élément à déposer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/source.py"/>
-        <source>its cell has external axes, along which the map is not drawn yet; the curves of Plot show all axes</source>
-        <translation>sa cellule a des axes externes, pour lesquels la carte n&apos;est pas encore tracée ; les courbes de Tracer montrent tous les axes</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
         <source>its cell is gone</source>
         <translation>sa cellule a disparu</translation>
@@ -10805,6 +10810,11 @@
         <location filename="../../freecad_am/core/simulation/payload.py"/>
         <source>the part weighs more than {0} kg from here on, {1} kg when it is finished, {2} kg of which it grows on, and {3} carries no more; {4}</source>
         <translation>la pièce pèse plus de {0} kg à partir d&apos;ici, {1} kg une fois finie, dont {2} kg de ce sur quoi elle pousse, et {3} ne porte pas plus ; {4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>the path</source>
+        <translation>la trajectoire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/verify.py"/>
@@ -13720,6 +13730,11 @@
         <location filename="../../freecad_am/gui/panels/pick.py"/>
         <source>{} are missing: click them in the tree or the 3D view.</source>
         <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/board.py"/>
+        <source>{} at layer {} bead {} point {}</source>
+        <translation>{} à la couche {} cordon {} point {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/at_rest.py"/>

@@ -7,11 +7,12 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.parameters.joints import given_polynomials
-from freecad_am.core.planning import spin_curve, spin_map
+from freecad_am.core.planning import spin_across, spin_curve, spin_map
 from freecad_am.gui.path.colouring import NONE, TOO_NEAR
 from freecad_am.gui.spin_map import dock as docks
 from freecad_am.gui.spin_map.canvas import TURN
 from freecad_am.gui.spin_map.cells import FINE
+from freecad_am.objects.staleness import UP_TO_DATE
 
 ROBOT = {"limits": "paper"}
 LONG = 30  # s
@@ -363,3 +364,51 @@ def test_a_table_has_no_map(person, hemisphere):
     person.select(path)
     person.click("RoboticAM_SpinMap")
     assert docks._open == [] and "rotary axes" in person.window.statusBar().currentMessage()
+
+
+def test_external_axes_go_along_or_stand_across(person, hand, hemisphere):
+    """Along the path they are as planned; across is one of them at the point that was clicked, where the plan is marked."""
+    doc = hemisphere.Document
+    feature = api.make_feature(doc, hemisphere, layer_height=12, max_from_vertical=10)
+    cell = api.make_cell(
+        doc, machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto", platform=20,
+        external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part", nozzle_tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0),
+    )
+    path = api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
+    assert path.Status == UP_TO_DATE, api.issues(path)
+    panel, one = opened(person, path)
+    assert one.board.across is None and len(one.source.beads) == len(one.source.planned.beads)
+    board = one.board
+    np.testing.assert_allclose(
+        board.columns.points.external,
+        [one.source.planned.beads[k].joints[n, 6:] for k, n in zip(board.columns.bead, board.columns.point)], atol=1e-9,
+    )
+    column = int(np.flatnonzero(board.columns.bead == 1)[5])
+    free = float(values_of(one)[column]) + 0.9  # beside the curve
+    hand.at(on_screen(one.canvas, column, free if free < one.canvas.high else free - 1.8))
+    person.until(lambda: one.clicked.get(1) is not None, "the click")
+    point = one.clicked[1]
+    assert point in board.columns.point[column - 1 : column + 2]  # a column is a pixel or two wide
+    person.choose(panel, "across", "e2")
+    box = person.field(panel, "across")
+    box.activated.emit(box.currentIndex())
+    person.until(lambda: one.board.across == 1 and one.canvas.painted is not None, "e2 across", LONG)
+    person.until(lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG)
+    planned = one.source.planned.beads[1].joints[point]
+    assert one.board.place(0) == (*one.source.places[1], point)
+    here = one.board.marks[1]
+    assert abs(one.board.beside[here] - planned[7]) < 2.0 * np.pi / 100.0
+    assert np.ptp(one.board.columns.points.external[:, 0]) == 0.0
+    # where the plan is, the map has the plan's joints
+    phi = one.source.planned.beads[1].phi[point]
+    at = spin_across.across(one.source.beads, one.source.cell, (1, point), 1, planned[[7]])
+    found = spin_map.joints_at(one.source.task(one.source.branch), at, 0, float(phi))[one.source.branch]
+    turns = (found - planned) / TURN
+    np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
+    person.screenshot("map_e2_across")
+    assert one.board.title.startswith("e2 at layer ")
+    hand.do("mousemove", *on_screen(one.canvas, here, float(board.values(np.full(len(board.columns), phi))[column])))
+    person.until(lambda: "   e2 " in one.form.readout.text(), "the axes under the mouse")
+    person.choose(panel, "across", "the path")
+    box.activated.emit(box.currentIndex())
+    person.until(lambda: one.board.across is None, "the path across", LONG)

@@ -24,7 +24,7 @@ from ..kinematics.cell import Cell
 from ..toolpath import Bead
 from .findings import ROUNDING
 from .points import TURN, Points
-from .task import UNREACHABLE, LimitRows, Task
+from .task import UNREACHABLE, LimitRows, Task, beside
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -126,10 +126,33 @@ def columns(beads: Sequence[Bead], cell: Cell, most: int = MOST) -> Columns:
         np.concatenate([getattr(beads[k], name)[index] for k, index in zip(shown, kept)])
         for name in ("points", "tool", "parameter")
     )
-    alone = np.arange(len(position))
-    return Columns(np.repeat(np.array(shown), [len(index) for index in kept]), np.concatenate(kept), Points(
-        position, tool, parameter, alone, alone, np.zeros(len(alone), dtype=bool), cell.pose_frames(position, tool),
-    ))
+    return Columns(
+        np.repeat(np.array(shown), [len(index) for index in kept]), np.concatenate(kept),
+        alone(cell, position, tool, parameter, external_of(cell, [beads[k] for k in shown], kept)),
+    )
+
+
+def external_of(cell: Cell, beads: Sequence[Bead], kept: Sequence[Index]) -> Array | None:
+    """(T, k) values of the external axes at so many points of beads, None of a cell without."""
+    if cell.external is None:
+        return None
+    found: Array = np.concatenate([planned_external(bead)[index] for bead, index in zip(beads, kept, strict=True)])
+    return found
+
+
+def planned_external(bead: Bead) -> Array:
+    """(n, k) values of the external axes at the points of a bead of a plan that has some."""
+    assert bead.external is not None  # beads of a plan with external axes tell where these are
+    return bead.external
+
+
+def alone(cell: Cell, position: Array, tool: Array, parameter: Array, external: Array | None) -> Points:
+    """Points each standing for itself."""
+    number, slides = np.arange(len(position)), cell.machine.chain.sliding
+    return Points(
+        position, tool, parameter, number, number, np.zeros(len(number), dtype=bool),
+        cell.pose_frames(position, tool, external), external, slides if slides.any() else None,
+    )
 
 
 def spin_map(
@@ -141,10 +164,8 @@ def spin_map(
     """
     values = np.linspace(-np.pi, np.pi, ROWS) if values is None else values
     phi = rotation_of(task.cell, at.points.tool, values[:, None], axis)
-    arm = task.cell.machine.arm
-    assert arm is not None  # resolve() refuses other machines
-    joints = arm.inverse(at.points.frames.at(phi).reshape(-1, 4, 4))[:8]
-    margin = _margin(task, task.given_rows, joints).reshape(-1, *phi.shape)
+    joints = _of_all_branches(task, at.points, phi)
+    margin = _margin(task, task.given_rows, joints)
     low, high = task.parameters.rotation_range
     outside = np.zeros(phi.shape, dtype=bool)
     if high - low < TURN - 1e-9:
@@ -157,7 +178,7 @@ def picture(task: Task, of: SpinMap, branch: int) -> Picture:
     own = dataclasses.replace(task, branch=branch)
     points = of.columns.points
     flange = points.frames.at(of.phi).reshape(-1, 4, 4)
-    condition = own.condition_at(flange, own.inverse(flange)).reshape(of.phi.shape)
+    condition = own.condition_at(flange, own.arm.inverse_branch(flange, branch)).reshape(of.phi.shape)
     return Picture(
         branch, of.margin[branch], condition, own.thresholds(points), of.outside, of.outside | of.touching,
     )
@@ -174,7 +195,10 @@ def arm_touched(
     count = len(of.values)
     rows = np.arange(min(every // 2, count - 1), count, every)
     own = dataclasses.replace(task, branch=branch)
-    joints = own.inverse(of.columns.points.frames.at(of.phi[rows]).reshape(-1, 4, 4))
+    points = of.columns.points
+    joints = own.arm.inverse_branch(points.frames.at(of.phi[rows]).reshape(-1, 4, 4), branch)
+    if points.external is not None:
+        joints = beside(joints, np.tile(points.external, (len(rows), 1)))
     looked = (of.margin[branch] >= -ROUNDING) & ~of.outside & ~of.touching
     joints[~looked[rows].ravel()] = np.nan
     found = arm.touches(joints, np.tile(moment, len(rows))).any.reshape(len(rows), -1)
@@ -212,11 +236,19 @@ def in_turns(values: Array, starts: Mask) -> Array:
 
 def joints_at(task: Task, at: Columns, column: int, phi: float) -> Array:
     """(8, axes) joints of all branches at one cell, in the turn that the map counts with; NaN out of reach."""
-    arm = task.cell.machine.arm
-    assert arm is not None
-    joints = arm.inverse(at.points.each(np.array([column])).frames.at(np.array([phi])))[:8, 0]
+    joints = _of_all_branches(task, at.points.each(np.array([column])), np.array([[phi]]))[:, 0, 0]
     turns = np.where(task.endless, 0.0, np.round((task.middle - joints) / TURN))
+    turns[:, task.cell.robot.chain.axes :] = 0.0  # external axes are where they are said to be
     return np.asarray(joints + TURN * turns)
+
+
+def _of_all_branches(task: Task, points: Points, phi: Array) -> Array:
+    """(8, R, C, axes) joints of all branches for rotations phi (R, C) of C points; NaN out of reach."""
+    arm = task.cell.machine.arm
+    assert arm is not None  # resolve() refuses other machines
+    joints = arm.inverse(points.frames.at(phi).reshape(-1, 4, 4))[:8]
+    joints = joints.reshape(len(joints), *phi.shape, -1)
+    return joints if points.external is None else beside(joints, points.external)
 
 
 def _margin(task: Task, rows: LimitRows, joints: Array) -> Array:
@@ -224,7 +256,7 @@ def _margin(task: Task, rows: LimitRows, joints: Array) -> Array:
     angle = []
     for axis in range(joints.shape[-1]):
         value = joints[..., axis]
-        if not task.endless[axis]:
+        if axis < task.cell.robot.chain.axes and not task.endless[axis]:
             turns = np.round((task.middle[axis] - value) / TURN)
             value = value + TURN * turns if np.nan_to_num(turns).any() else value
         angle.append(value)

@@ -162,14 +162,14 @@ class Task:
             joints = following.along_beads(self.arm, rows, self.branch, points).reshape(*phi.shape, -1)
         else:
             joints = self.arm.inverse_branch(flange.reshape(-1, 4, 4), self.branch).reshape(*phi.shape, -1)
-        return joints if points.external is None else _beside(joints, points.external)
+        return joints if points.external is None else beside(joints, points.external)
 
     def _raw_joints_of_all(self, points: Points, phi: Array) -> Array:
         """The same of one phi (T,) for all points: their poses together would take much memory."""
         joints = np.empty((self.cell.machine.chain.axes, len(points))).T
         for some in in_pieces(len(points)):
             own = self.arm.inverse_branch(points.frames.of(some).at(phi[some]), self.branch)
-            joints[some] = own if points.external is None else _beside(own, points.external[some])
+            joints[some] = own if points.external is None else beside(own, points.external[some])
         return joints
 
     def inverse(self, flange: Array, near: Array | None = None) -> Array:
@@ -183,7 +183,7 @@ class Task:
         else:
             joints = self.arm.inverse_branch(flange, self.branch)
         external = None if near is None else self.cell.external_of(near)
-        return joints if external is None else _beside(joints, external)
+        return joints if external is None else beside(joints, external)
 
     def _own(self, joints: Array) -> Array:
         """(..., axes of the robot) joints without those of external axes."""
@@ -268,7 +268,7 @@ def in_pieces(count: int) -> list[slice]:
     return [slice(start, start + PIECE) for start in range(0, count, PIECE)]
 
 
-def _beside(joints: Array, external: Array) -> Array:
+def beside(joints: Array, external: Array) -> Array:
     """(..., N, axes) joints (..., N, 6) of the robot with the values of external axes (N, k) beside them; NaN where the
     robot does not reach, so that nothing is known of any axis."""
     values = np.broadcast_to(external, (*joints.shape[:-1], external.shape[-1]))

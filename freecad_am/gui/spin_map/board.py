@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.planning import spin_map
+from ...core.planning import spin_across, spin_map
 from ...core.planning.joint_path import BeadPath
 from ...core.planning.spin_curve import Followed
 from ...core.planning.spin_map import RZ, Columns, Picture, SpinMap
@@ -20,6 +20,7 @@ from .source import Source
 
 TURN = 2.0 * np.pi
 MOST_LABELS = 14
+ACROSS = 121  # columns of the values of an external axis
 
 
 @dataclass(frozen=True)
@@ -40,13 +41,24 @@ class Cell:
 
 
 class Board:
-    """The columns of a job, or of one layer of it, and what was computed for them."""
+    """The columns of a job, or of one layer of it, or the values of an external axis (`across`) at a point (bead, point) of
+    it, the middle of the bead where none is named, and what was computed for them."""
 
-    def __init__(self, source: Source, layer: int | None, axis: str) -> None:
-        self.source, self.layer, self.axis = source, layer, axis
+    def __init__(
+        self, source: Source, layer: int | None, axis: str, across: int | None = None,
+        at: tuple[int, int | None] | None = None,
+    ) -> None:
+        self.source, self.layer, self.axis, self.across = source, layer, axis, across
         self.beads = [k for k, (of, _) in enumerate(source.places) if layer is None or of == layer]
-        found = spin_map.columns([source.beads[k] for k in self.beads], source.cell)
-        self.columns: Columns = dataclasses.replace(found, bead=np.array(self.beads)[found.bead])
+        self.beside: Array | None = None
+        if across is None or at is None:
+            found = spin_map.columns([source.beads[k] for k in self.beads], source.cell)
+            self.columns: Columns = dataclasses.replace(found, bead=np.array(self.beads)[found.bead])
+        else:
+            bead = source.beads[at[0]]
+            point = len(bead) // 2 if at[1] is None else at[1]
+            self.beside = spin_across.span(source.task(source.branch), bead, point, across, ACROSS)
+            self.columns = spin_across.across(source.beads, source.cell, (at[0], point), across, self.beside)
         self.map: SpinMap | None = None
         self.pictures: dict[int, Picture] = {}
         self.looked: dict[int, int] = {}  # branches whose links were looked at, one of so many rows
@@ -81,12 +93,15 @@ class Board:
         self.pictures[branch] = dataclasses.replace(self.pictures[branch], arm=touched)
 
     def shows(self, bead: int) -> bool:
-        """Whether a bead is among the columns: of many, some are."""
-        return bool((self.columns.bead == bead).any())
+        """Whether a bead is among the columns: of many, some are; none where they are values of an axis."""
+        return self.beside is None and bool((self.columns.bead == bead).any())
 
     @property
     def title(self) -> str:
         """What the columns are."""
+        if self.beside is not None:
+            layer, bead, point = self.place(0)
+            return tr("{} at layer {} bead {} point {}").format(self._beside_name, layer, bead, point)
         if self.layer is not None:
             return tr("points of layer {}").format(self.layer)
         seen = len(np.unique(self.columns.bead))
@@ -105,9 +120,28 @@ class Board:
         return np.flatnonzero(np.diff(self.columns.bead, prepend=-1) != 0)
 
     @property
+    def marks(self) -> NDArray[np.int64]:
+        """Columns before which a line is drawn, but for the first: where beads begin, or the external axis is planned."""
+        if self.beside is None:
+            return self.seams
+        planned = self.source.beads[int(self.columns.bead[0])].external
+        assert planned is not None and self.across is not None
+        here = float(planned[int(self.columns.point[0]), self.across])
+        return np.array([0, int(np.abs(self.beside - here).argmin())])
+
+    @property
+    def _beside_name(self) -> str:
+        own = self.source.cell.robot.chain.axes
+        return self.source.cell.machine.axes[own + (self.across or 0)]
+
+    @property
     def labels(self) -> list[tuple[float, str]]:
         """Columns and what is written below them: numbers of layers, or of the points of a single layer."""
         count = len(self.columns)
+        if self.beside is not None:
+            unit = float(self.source.cell.machine.unit_values[self.source.cell.robot.chain.axes + (self.across or 0)])
+            shown = np.unique(np.round(np.linspace(0, count - 1, MOST_LABELS // 2)).astype(int))
+            return [(float(k), f"{self.beside[k] / unit:.0f}") for k in shown]
         if self.layer is None:
             layer = np.array([self.source.places[k][0] for k in self.columns.bead])
             first = np.flatnonzero(np.diff(layer, prepend=-1) != 0)
@@ -168,6 +202,8 @@ class Board:
 
     def bad(self, draft: Draft, followed: Followed, values: Array) -> Array:
         """(k, 2) columns and values of the points of the curve that the planner objects to."""
+        if self.beside is not None:
+            return np.zeros((0, 2))
         row = draft.live.row[~followed.good]
         known = draft.starts[self.columns.bead] + self.columns.point
         row = row[np.isin(np.searchsorted(draft.starts, row, side="right") - 1, self.columns.bead)]

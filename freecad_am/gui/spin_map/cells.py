@@ -34,7 +34,7 @@ class Cells:
             self._draw()
             self._go_on()
             return
-        self.canvas.set_map(None, board.seams, board.labels)
+        self.canvas.set_map(None, board.marks, board.labels)
 
         def take(worker: Worker) -> None:
             board.take(worker.result())
@@ -63,5 +63,5 @@ class Cells:
     def _draw(self) -> None:
         board = self.board
         self.canvas.title = board.title
-        self.canvas.set_map(painted(board.pictures[self.branch], self.kind), board.seams, board.labels)
+        self.canvas.set_map(painted(board.pictures[self.branch], self.kind), board.marks, board.labels)
         self.drawn()

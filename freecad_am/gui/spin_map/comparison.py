@@ -38,8 +38,9 @@ class Comparison:
         return self.background.worker is not None
 
     def start(self, source: Source, task: Task) -> None:
-        """Plan the beads of the toolpath, from their own seams, by all methods."""
-        beads = tuple(bead for _, _, bead in source.toolpath)
+        """Plan the beads of the toolpath, from their own seams, by all methods; with external axes those of the plan, which
+        tell where these axes are."""
+        beads = source.beads if source.cell.external else tuple(bead for _, _, bead in source.toolpath)
         self.background.start(
             lambda: spin_curve.compared(task, beads, source.places, progress.report), self._show
         )

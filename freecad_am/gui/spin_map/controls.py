@@ -46,6 +46,7 @@ class Controls(QtGui.QWidget):
         self.axis = self._combo("axis", tr("Upwards"), tr("RZ as in Chalvin 2020, or the true rotation about the tool axis"),
                                 chosen)
         self.axis.addItems([tr("RZ"), tr("rotation")])
+        self.across = self._add_across()
         self.type = self._combo("curve", tr("Curve"), tr("One polynomial per bead, or one RZ for the whole job"), curve)
         self.type.addItems([tr("polynomials"), tr("constant RZ")])
         self.bead = self._spin("bead", tr("Bead"), tr("The bead whose polynomial is shown; a click on the map chooses one"),
@@ -57,8 +58,7 @@ class Controls(QtGui.QWidget):
         self.together.setToolTip(tr("What is changed of one bead is changed of all"))
         self.together.setChecked(True)
         self.grid.addWidget(self.together, self.grid.rowCount(), 0, 1, 2)
-        self.coefficients = []
-        self.names = []
+        self.coefficients, self.names = [], []
         for number in range(HIGHEST + 1):
             spin = QtGui.QDoubleSpinBox()
             spin.setObjectName(f"c{number}")
@@ -87,6 +87,10 @@ class Controls(QtGui.QWidget):
         combo.activated.connect(lambda *_: None if self.filling else act())
         return self._add(combo, name, text, help)
 
+    def _add_across(self) -> Any:
+        help = tr("The path, or an external axis at the point that was clicked last, the other axes as planned there")
+        return self._combo("across", tr("Across"), help, self.chosen)
+
     def _add(self, widget: Any, name: str, text: str, help: str) -> Any:
         widget.setObjectName(name)
         widget.setToolTip(help)
@@ -99,6 +103,11 @@ class Controls(QtGui.QWidget):
         if not self.filling:
             self.set_value(number, value)
 
+    def wanted(self) -> tuple[int | None, str, int | None]:
+        """Which layer, None for all; what goes upwards; and which external axis across, None for the path."""
+        layer, across = self.layer.value(), self.across.currentIndex()
+        return None if layer < 0 else layer, AXES[self.axis.currentIndex()], across - 1 if across > 0 else None
+
     # ---- what is shown
 
     def fill(self, board: Board, draft: Draft, bead: int) -> None:
@@ -109,6 +118,7 @@ class Controls(QtGui.QWidget):
         self.layer.setValue(-1 if board.layer is None else board.layer)
         self._fill_branches(board, draft.branch)
         self.axis.setCurrentIndex(AXES.index(board.axis))
+        self._fill_across(board)
         self.type.setCurrentIndex(CURVES.index(draft.kind))
         constant = draft.kind == CONSTANT
         self.bead.setRange(board.beads[0], board.beads[-1])
@@ -126,6 +136,15 @@ class Controls(QtGui.QWidget):
             if there and not (spin.hasFocus() and abs(spin.value() - np.degrees(values[number])) < 6e-4):
                 spin.setValue(float(np.degrees(values[number])))
         self.filling = False
+
+    def _fill_across(self, board: Board) -> None:
+        machine = board.source.cell.machine
+        names = [tr("the path"), *machine.axes[len(machine.axes) - machine.external :]]
+        if [self.across.itemText(k) for k in range(self.across.count())] != names:
+            self.across.clear()
+            self.across.addItems(names)
+        self.across.setCurrentIndex(0 if board.across is None else board.across + 1)
+        self.across.setEnabled(len(names) > 1)
 
     def _fill_branches(self, board: Board, branch: int) -> None:
         served = None if board.map is None else board.served()

@@ -108,6 +108,7 @@ class SpinMapDock:
         layer = board.layer if board is not None and board.layer in layers else None
         self.board = Board(source, layer, AXES[0] if board is None else board.axis)
         self.bead = self.board.beads[0]
+        self.clicked: dict[int, int] = {}  # the point of a bead that was clicked last
         self.compared: tuple[Compared, ...] = ()
         self.comparison.cancel()
         self._name_compare()
@@ -137,14 +138,13 @@ class SpinMapDock:
 
     def _chosen(self) -> None:
         """Another layer, branch, axis, or other colours."""
-        layer = None if self.controls.layer.value() < 0 else self.controls.layer.value()
-        axis = AXES[self.controls.axis.currentIndex()]
+        layer, axis, across = wanted = self.controls.wanted()
         branch = self.controls.branch.currentIndex()
-        if (layer, axis) != (self.board.layer, self.board.axis):
+        if wanted != (self.board.layer, self.board.axis, self.board.across):
             if layer is not None and layer not in {of for of, _ in self.source.places}:
                 self._fill_controls()
                 return
-            self.board = Board(self.source, layer, axis)
+            self.board = Board(self.source, layer, axis, across, (self.bead, self.clicked.get(self.bead)))
             shown = self.board.columns.bead
             self.bead = int(shown[np.abs(shown - self.bead).argmin()])
         if branch != self.draft.branch:
@@ -227,10 +227,11 @@ class SpinMapDock:
     # ---- what the mouse is over
 
     def _hovered(self, column: int, value: float) -> None:
-        self.form.readout.setText(readout(self.board.cell(self.draft.branch, column, value), self.source.cell.machine.axes))
+        self.form.readout.setText(readout(self.board.cell(self.draft.branch, column, value), self.source.cell.machine))
 
     def _clicked(self, column: int, value: float) -> None:
         self.bead = int(self.board.columns.bead[column])
+        self.clicked[self.bead] = int(self.board.columns.point[column])
         self._fill_controls()
         self._show_curves()
         with contextlib.suppress(ReferenceError, RuntimeError):  # the view is closed

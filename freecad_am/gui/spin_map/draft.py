@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
 from ...core.parameters.joints import OF_CELL, given_text
-from ...core.planning import spin_curve
+from ...core.planning import spin_curve, spin_map
 from ...core.planning.given import METHOD
 from ...core.planning.joint_path import BeadPath
 from ...core.planning.planned_rotation import rotation_along
@@ -217,10 +217,11 @@ class Draft:
             np.concatenate([getattr(bead, name)[index] for bead, index in zip(source.beads, kept)])
             for name in ("points", "tool", "parameter")
         )
+        external, slides = spin_map.external_of(source.cell, source.beads, kept), source.cell.machine.chain.sliding
         points = Points(
             position, tool, parameter, np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
             np.repeat(np.arange(len(kept)), counts), np.array([bead.closed for bead in source.beads], dtype=bool),
-            source.cell.pose_frames(position, tool),
+            source.cell.pose_frames(position, tool, external), external, slides if slides.any() else None,
         )
         wanted = {k: bead.parameter[index] for k, (bead, index) in enumerate(zip(source.beads, kept))}
         planned = list(rotation_along(source.planned.beads, source.beads, source.places, wanted).values())

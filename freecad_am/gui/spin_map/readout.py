@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ...core.kinematics.cell import Cell as Station
+from ...core.kinematics.machine import Machine
 from ..nodes.lines import Array
 from ..texts.touching import link_touches
 from ..texts.translation import tr
@@ -16,7 +15,7 @@ from .board import Cell
 PAST = 1e-9  # rad, of rounding
 
 
-def readout(cell: Cell, axes: Sequence[str]) -> str:
+def readout(cell: Cell, machine: Machine) -> str:
     """Two lines: place and rotation, margins; and the joints."""
     layer, bead, point = cell.place
     where = tr("Layer {} bead {} point {}").format(layer, bead, point)
@@ -36,7 +35,8 @@ def readout(cell: Cell, axes: Sequence[str]) -> str:
         notes.append(link_touches(*cell.arm))
     margin = tr("margin {:.1f} % ({})").format(100.0 * cell.margin, cell.nearest)
     condition = tr("condition {:.4f}, least {:.4f}").format(cell.condition, cell.threshold)
-    joints = "   ".join(f"{name} {value:.2f}°" for name, value in zip(axes, np.degrees(cell.joints), strict=False))
+    joints = "   ".join(f"{name} {value:.2f}{unit}" for name, value, unit in zip(
+        machine.axes, cell.joints / machine.unit_values, _units(machine), strict=True))
     return f"{where}   {turned}   {margin}   {condition}   {', '.join(notes)}\n{joints}"
 
 
@@ -46,8 +46,15 @@ def joint_ranges(joints: Array, station: Station) -> list[tuple[str, bool]]:
     if not len(reached):
         return []
     low, high = reached.min(axis=0), reached.max(axis=0)
+    units = station.machine.unit_values
     past = (low < station.limits.lower - PAST) | (high > station.limits.upper + PAST)
     return [
-        (f"{name} {np.degrees(a):.1f}…{np.degrees(b):.1f}°", bool(wrong))
-        for name, a, b, wrong in zip(station.machine.axes, low, high, past, strict=True)
+        (f"{name} {a:.1f}…{b:.1f}{unit}", bool(wrong))
+        for name, a, b, wrong, unit in zip(
+            station.machine.axes, low / units, high / units, past, _units(station.machine), strict=True)
     ]
+
+
+def _units(machine: Machine) -> list[str]:
+    """What stands behind the values of the axes."""
+    return [" mm" if unit == "mm" else "°" for unit in machine.units]

@@ -62,7 +62,7 @@ class Source:
     def arm(self) -> ArmContact:
         """The robot with what is around it and, in the order of the beads, the deposit; made in the background."""
         laid = Beads.of(self.beads, self.width, self.toolpath.layer_height).solid(LINK_GRAIN)
-        rods = link_rods.of_robot(self.cell.machine.chain, self.shapes)
+        rods = link_rods.of_robot(self.cell.robot.chain, self.shapes)
         return ArmContact(self.cell, rods, self.toolpath.surroundings, laid)
 
     @property
@@ -87,17 +87,12 @@ def source_of(obj: Any) -> Source:
             "NO_MAP", obj.Label, "its machine has two rotary axes, which leave no rotation about the tool to choose; a map "
             "is for robots",
         )
-    if cell.external is not None:
-        raise InputError(
-            "NO_MAP", obj.Label, "its cell has external axes, along which the map is not drawn yet; the curves of Plot show "
-            "all axes",
-        )
     return Source(
         document=obj.Document.Name, name=obj.Name, title=obj.Label,
         objects=tuple(dict.fromkeys((obj.Name, obj.Toolpath.Name, obj.Cell.Name))), cell=cell,
         parameters=obj.Proxy.parameters(obj, JointParameters), toolpath=toolpath, planned=value.joint_path,
-        beads=_as_run(toolpath, value.joint_path), places=tuple((layer, index) for layer, index, _ in toolpath),
-        width=obj.Toolpath.Proxy.parameters(obj.Toolpath, ProcessParameters).bead_width, shapes=meshes_of(cell.machine),
+        beads=_as_run(toolpath, value.joint_path, cell), places=_places(toolpath, value.joint_path, cell),
+        width=obj.Toolpath.Proxy.parameters(obj.Toolpath, ProcessParameters).bead_width, shapes=meshes_of(cell.robot),
     )
 
 
@@ -110,9 +105,18 @@ def status_of(obj: Any) -> tuple[str, bool]:
     return "", False
 
 
-def _as_run(toolpath: Toolpath, planned: JointPath) -> tuple[Bead, ...]:
+def _places(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[tuple[int, int], ...]:
+    if cell.external is not None:
+        return tuple((path.layer, path.index) for path in planned.beads)
+    return tuple((layer, index) for layer, index, _ in toolpath)
+
+
+def _as_run(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[Bead, ...]:
     """The beads of a toolpath from the seams of the plan: it may start a closed one elsewhere, where an axis then has the
-    room for it that it has not from its own seam. Layers with beads that it runs in pieces are as they are."""
+    room for it that it has not from its own seam. Layers with beads that it runs in pieces are as they are. With external
+    axes they are those of the plan itself, which tell where these axes are."""
+    if cell.external is not None:
+        return tuple(path.bead for path in planned.beads)
     run = {(path.layer, path.index): path.bead for path in planned.beads}
     pieces, beads = Counter(path.layer for path in planned.beads), Counter(layer for layer, _, _ in toolpath)
     found = []

@@ -13,9 +13,9 @@ from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import link_rods, opw, robot_links
 from freecad_am.core.kinematics.arm_contact import ArmContact
-from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import BRANCHES, JointParameters, given_polynomials, given_text
-from freecad_am.core.planning import plan, spin_curve, spin_map
+from freecad_am.core.planning import plan, spin_across, spin_curve, spin_map
 from freecad_am.core.planning.points import TURN, gather
 from freecad_am.core.planning.task import Task
 from freecad_am.kdl.chain import KdlArm
@@ -359,3 +359,69 @@ def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setu
     assert (shown.hatched == (picture.forbidden | touched)).all() and (picture.hatched == picture.forbidden).all()
     rough = spin_map.arm_touched(task, found, FLIP, contact, moment, 4)
     assert (rough[2::4] == touched[2::4]).all() and (rough != touched).mean() < 0.1
+
+
+# ---- with external axes
+
+ON_POSITIONER = {
+    "machine": "kuka-kr8-r2100-2-arc-hw", "setup": "tool-on-robot", "branch": "auto", "limits": "maker",
+    "external": "kuka-kl100-2 at 0 0 -356 0 0 90 carries robot; motoman-motopos-d500 at 1400 120 -50 0 0 30 carries part",
+    "nozzle": NozzleParameters(tool=(20.0, 0.0, 300.0, 0.0, 0.6, 0.0)),
+}
+
+
+@pytest.fixture(scope="module")
+def on_positioner(dome):
+    """A plan with e1 to e3, of which e3 turns all the time; its task and beads."""
+    toolpath = dataclasses.replace(dome, max_from_vertical=np.radians(10.0))
+    cell = cells.resolve(CellParameters(**ON_POSITIONER), toolpath.frame)
+    planned = plan.plan_joints(toolpath, cell, JointParameters(method="constant", min_condition=0.0))
+    return Task(cell, 0, JointParameters()), [path.bead for path in planned.beads]
+
+
+@pytest.mark.parametrize("across", [None, 0, 1, 2])
+def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, across):
+    """Along the path with the external axes as they are planned, or one of them across at one point."""
+    task, beads = on_positioner
+    cell, own = task.cell, 6
+    if across is None:
+        at = spin_map.columns(beads, cell, 40)
+        expected = np.array([beads[k].external[n] for k, n in zip(at.bead, at.point)])
+        assert np.ptp(expected[:, 2]) > 1.0
+    else:
+        values = spin_across.span(task, beads[1], 7, across, 21)
+        lower, upper = cell.limits.lower[own + across], cell.limits.upper[own + across]
+        assert values[0] >= lower - 1e-12 and values[-1] <= upper + 1e-12
+        assert np.ptp(values) == pytest.approx(min(upper - lower, np.inf if across == 0 else TURN), rel=0.5)
+        at = spin_across.across(beads, cell, (1, 7), across, values)
+        expected = np.tile(beads[1].external[7], (21, 1))
+        expected[:, across] = values
+        assert (at.bead == 1).all() and (at.point == 7).all()
+    found = spin_map.spin_map(task, at, spin_map.ROTATION, values=np.linspace(-np.pi, np.pi, 25))
+    whole, reached = KdlArm(cell.machine), 0
+    for row, column in np.random.default_rng(3).integers(0, (25, len(at)), (60, 2)):
+        flange = at.points.each(np.array([column])).frames.at(found.phi[row, [column]])
+        for branch, q in enumerate(spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))):
+            margin = found.margin[branch, row, column]
+            assert (margin > -np.inf) == np.isfinite(q).all()
+            if not np.isfinite(q).all():
+                continue
+            reached += 1
+            np.testing.assert_allclose(q[own:], expected[column], atol=1e-12)
+            np.testing.assert_allclose(KdlArm(cell.robot).forward([q[:own]]), flange, atol=1e-6)
+            tip, tool = cell.tip_in_part(whole.forward([q]))
+            assert np.abs(tip[0] - beads[at.bead[column]].points[at.point[column]]).max() < 1e-6
+            assert np.abs(tool[0] - beads[at.bead[column]].tool[at.point[column]]).max() < 1e-9
+            low, high = cell.limits.lower, cell.limits.upper
+            share = [2 * min(v - a, b - v) / (b - a) for v, a, b in zip(q, low, high) if np.isfinite(b - a)]
+            share += [2 * min(v - a, b - v) / (b - a) for v, a, b in zip(
+                cell.limits.coefficients @ q, cell.limits.coupled_lower, cell.limits.coupled_upper)]
+            assert margin == pytest.approx(min(share), abs=1e-9)
+    assert reached > 60
+    shown = spin_map.picture(task, found, 0)
+    there = np.argwhere(shown.reachable)
+    for row, column in there[:: max(1, len(there) // 20)]:
+        part = at.points.each(np.array([column]))
+        q = spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))[0]
+        assert shown.condition[row, column] == pytest.approx(
+            float(task.condition(part, found.phi[row, [column]], q[None])[0]), abs=1e-9)
