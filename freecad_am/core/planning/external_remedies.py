@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ..geometry import frames
 from ..kinematics import external
 from ..kinematics import machine as machines
+from ..kinematics.arrangement import of_setup
 from ..kinematics.machine import Machine
 from ..parameters.cell import CellParameters
 from ..parameters.external import MORE, PART, ROBOT, WHERE, External, Pose, externals
@@ -53,7 +54,7 @@ def added(settings: CellParameters, folders: Sequence[str], toolpath: Toolpath, 
     """A positioner under a part whose tool axes may not lean, a track along one that is long; nothing of a cell with
     external axes, or a robot that holds the part."""
     robot = machines.load(settings.machine, tuple(folders))
-    if externals(settings.external) or settings.setup != "tool-on-robot" or robot.arm is None:
+    if externals(settings.external) or of_setup(settings.setup).carries_part or robot.arm is None:
         return
     platform = np.array(settings.deposition_point[:3])
     if NOT_LEVEL in codes:
