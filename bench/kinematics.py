@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Kinematics against eaik and PyKDL, each as a ratio measured in the same run.
+"""Kinematics against eaik, ssik and PyKDL, each as a ratio measured in the same run.
 
 Peers take turns with ours, round by round, and medians are compared. One thread each. All answers are checked
 against each other before anything is timed.
@@ -24,6 +24,14 @@ from rows import Row
 POSES, FEW, ROUNDS = 2000, 200, 15
 MACHINE = "fanuc-arcmate120ic"
 LENGTH = 1000.0
+METRES = np.ones((4, 4))
+METRES[:3, 3] = 1e-3
+# who judges which class of wrist, and how many poses
+JUDGED = (
+    ("eaik", "fanuc-arcmate120ic", 10_000), ("eaik", "ur-ur10e", 10_000), ("ssik", "fanuc-crx10ia", 10_000),
+    ("ssik", "motoman-hc10", 1000),
+)
+OF_SSIK = {"fanuc-crx10ia": "fanuc_crx10ia", "motoman-hc10": "hc10"}
 OTHER_WRISTS = {"ur-ur10e": 2.0, "fanuc-crx10ia": 60.0}  # machines, and us a pose
 
 
@@ -37,6 +45,7 @@ def run() -> list[Row]:
     return [
         _all_branches(arm, poses),
         *_other_wrists(),
+        *_found_by_peers(),
         *_one_branch(arm, q, poses),
         _condition(arm, q, poses),
     ]
@@ -60,12 +69,7 @@ def _all_branches(arm: machine.Machine, poses: np.ndarray) -> Row:
         from eaik.IK_Homogeneous import HomogeneousRobot
     except ImportError:
         return Row(f"{name}: peer not installed", 1e6 * _time(ours) / POSES, None, "us/pose", required)
-    zero = arm.chain.frames(np.zeros(6))
-    upright = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), zero.directions), zero.origins)
-    scale = np.ones((4, 4))
-    scale[:3, 3] = 1e-3  # eaik's tolerances are made for metres
-    robot = HomogeneousRobot(np.concatenate((upright, zero.flange[None])) * scale)
-    given = list(poses * scale)
+    robot, given = _of_eaik(HomogeneousRobot, arm), list(poses * METRES)
     closed = arm.opw.inverse(poses[:50])
     for index, answer in enumerate(robot.IK_batched(given[:50], 1)):
         for found in np.asarray(answer.Q)[~np.asarray(answer.is_LS, bool)]:
@@ -73,6 +77,78 @@ def _all_branches(arm: machine.Machine, poses: np.ndarray) -> Row:
             if not np.nanmin(off) < 1e-6:
                 raise AssertionError(f"eaik and the closed form differ at pose {index}")
     return _row(name, ours, lambda: robot.IK_batched(given, 1), POSES, POSES, required)
+
+
+def _of_eaik(made: Callable[[np.ndarray], object], arm: machine.Machine) -> object:
+    """The robot as eaik has it, in metres, which its tolerances are made for."""
+    zero = arm.chain.frames(np.zeros(6))
+    upright = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), zero.directions), zero.origins)
+    return made(np.concatenate((upright, zero.flange[None])) * METRES)
+
+
+def _found_by_peers() -> list[Row]:
+    """Whether each solution that eaik or ssik finds of random poses is found, joints over a whole turn, and what it costs;
+    AssertionError where one is not."""
+    rows = []
+    for peer, name, count in JUDGED:
+        arm = machine.load(name)
+        poses = arm.chain.forward(np.random.default_rng(14).uniform(-np.pi, np.pi, (count, 6)))
+        title = f"inverse, every solution of {name} that {peer} finds of {count} poses, against it"
+        ours, took = _timed(partial(arm.arm.inverse, poses))
+        solve = {"eaik": _eaik_solver, "ssik": _ssik_solver}[peer](arm)
+        if solve is None:
+            rows.append(Row(f"{title}: peer not installed", 1e6 * took / count, None, "us/pose", 1.0))
+            continue
+        theirs, of_peer = _timed(partial(solve, poses))
+        for index, found in enumerate(theirs):
+            off = np.abs(arm.chain.forward(found) - poses[index]).max(axis=(1, 2)) if len(found) else np.zeros(0)
+            mine = ours[:, index][np.isfinite(ours[:, index]).all(axis=1)]
+            for angles in found[off < 1e-3]:
+                if not np.abs(np.exp(1j * angles) - np.exp(1j * mine)).max(axis=1, initial=0.0).min(initial=9.0) < 1e-3:
+                    raise AssertionError(f"{name}: {peer} finds {np.degrees(angles)} at pose {index}, and we do not")
+        rows.append(Row(title, 1e6 * took / count, 1e6 * of_peer / count, "us/pose", 1.0))
+    return rows
+
+
+def _eaik_solver(arm: machine.Machine) -> Callable[[np.ndarray], list[np.ndarray]] | None:
+    try:
+        from eaik.IK_Homogeneous import HomogeneousRobot
+    except ImportError:
+        return None
+    robot = _of_eaik(HomogeneousRobot, arm)
+
+    def solve(poses: np.ndarray) -> list[np.ndarray]:
+        answers = robot.IK_batched(list(poses * METRES), 1)
+        return [np.asarray(answer.Q).reshape(-1, 6)[~np.asarray(answer.is_LS, bool)] for answer in answers]
+
+    return solve
+
+
+def _ssik_solver(arm: machine.Machine) -> Callable[[np.ndarray], list[np.ndarray]] | None:
+    """Of one of its own arms, whose joints count as ours; its flange is another, which is found with all joints at zero."""
+    try:
+        import ssik
+    except ImportError:
+        return None
+    robot, unit = ssik.Manipulator.from_prebuilt(OF_SSIK[arm.id]), METRES
+
+    def at(q: np.ndarray) -> np.ndarray:
+        return np.array(robot.fk(q)) / unit
+
+    to_peer = np.linalg.inv(arm.chain.forward(np.zeros((1, 6)))[0]) @ at(np.zeros(6))
+    if not np.abs(arm.chain.forward(np.full((1, 6), 0.7))[0] @ to_peer - at(np.full(6, 0.7))).max() < 1e-6:
+        raise AssertionError(f"{arm.id} is another arm in ssik")
+
+    def solve(poses: np.ndarray) -> list[np.ndarray]:
+        return [np.array([one.q for one in robot.solve(pose @ to_peer * unit)]).reshape(-1, 6) for pose in poses]
+
+    return solve
+
+
+def _timed(work: Callable[[], np.ndarray]) -> tuple[np.ndarray, float]:
+    """What comes of work, and the seconds it takes."""
+    start = perf_counter()
+    return work(), perf_counter() - start
 
 
 def _other_wrists() -> list[Row]:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ENVIRONMENT = HERE.parent / ".bench-env"
-PEERS = ("eaik", "trimesh", "python-fcl")
+PEERS = ("eaik", "trimesh", "python-fcl", "ssik", "sympy", "mpmath", "cython")  # the last three are what ssik asks for
 # compas_slicer, and what it imports: it asks for an older numpy, and works with the distribution's
 SLICER = (
     "compas_slicer", "compas<2", "libigl<2.5", "networkx<3.2", "progressbar2<4.4", "python-utils", "pyclipper", "rdp",
