@@ -60,8 +60,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Beads that close gaps are made no shorter than this; others that are shorter are left out.</source>
-        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté.</translation>
+        <source>Beads that close gaps are made no shorter than this; others that are shorter are left out. auto: 2 mm, or the bead spacing where that is less. (mm)</source>
+        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit. (mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -1628,8 +1628,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Beads that close gaps are made no shorter than this; others that are shorter are left out.</source>
-        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté.</translation>
+        <source>Beads that close gaps are made no shorter than this; others that are shorter are left out. auto: 2 mm, or the bead spacing where that is less.</source>
+        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>

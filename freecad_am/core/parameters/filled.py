@@ -10,6 +10,7 @@ from ..issues import InputError
 from . import field as f
 from .strategy import MEND, LayerParameters
 
+LEAST_BEAD = 2.0  # mm, as short as a bead of usual width is worth a start
 PLANES, GEODESIC = "planes", "geodesic"  # layers that are proposed by themselves
 
 
@@ -129,9 +130,9 @@ class FilledParameters(LayerParameters):
         "longer another zigzag begins.",
         low=1.0, high=100.0, advanced=True,
     )
-    shortest: float = f.parameter(
-        2.0, f.LENGTH, "Beads that close gaps are made no shorter than this; others that are shorter are left out.", low=0.0,
-        advanced=True,
+    shortest: float | str = f.parameter(
+        "auto", f.LENGTH, "Beads that close gaps are made no shorter than this; others that are shorter are left out. auto: "
+        "2 mm, or the bead spacing where that is less.", low=0.0, words=("auto",), advanced=True,
     )
     mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
     narrowest: float = f.parameter(
@@ -157,6 +158,11 @@ class FilledParameters(LayerParameters):
     def rounds(self) -> float:
         """How many contours lie round lines and the like; infinity for contours alone."""
         return 0 if not self.contour else math.inf if self.walls == "inf" else float(self.walls)
+
+    @property
+    def least_bead(self) -> float:
+        """Mm: beads are no shorter than this."""
+        return min(LEAST_BEAD, self.bead_spacing) if self.shortest == "auto" else float(self.shortest)
 
     @property
     def rounds_alone(self) -> bool:

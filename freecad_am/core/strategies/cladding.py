@@ -65,7 +65,7 @@ def plan(
             made += here
     if not laid:
         raise InputError(
-            "NOTHING_TO_DEPOSIT", given.label, f"no bead of {strategy.shortest:g} mm or more finds room on its faces; "
+            "NOTHING_TO_DEPOSIT", given.label, f"no bead of {strategy.least_bead:g} mm or more finds room on its faces; "
             "use a smaller bead spacing, or thin = single",
         )
     layers = waited(ordered(laid, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)

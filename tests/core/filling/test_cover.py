@@ -23,7 +23,7 @@ _spec.loader.exec_module(shapes)
 
 DEFAULT = DevelopableParameters()
 S, GAP = DEFAULT.bead_spacing, DEFAULT.gap * DEFAULT.bead_spacing
-BEADS = Beads(S, GAP, DEFAULT.shortest, DEFAULT.thin, chord_error=0.2 * DEFAULT.chord_error)
+BEADS = Beads(S, GAP, DEFAULT.least_bead, DEFAULT.thin, chord_error=0.2 * DEFAULT.chord_error)
 PITCH, STEP = 0.3, 0.1
 WAYS = [
     ("contours", 0.0), ("spiral", 0.0), ("lines", 0.0), ("lines", 0.52), ("lines", 1.57), ("zigzag", 0.0), ("zigzag", 0.8),
@@ -78,7 +78,7 @@ def test_at_least_99_percent_is_covered_and_no_bead_is_outside(name, pattern, an
     assert open_places(region, curves, BEADS) == []
     for curve in curves:
         line = whole(curve)
-        assert np.hypot(*np.diff(line, axis=0).T).sum() >= DEFAULT.shortest - 1e-9
+        assert np.hypot(*np.diff(line, axis=0).T).sum() >= DEFAULT.least_bead - 1e-9
         if curve.kind == "zigzag":  # no step turns the travel for nothing
             assert np.hypot(*np.diff(line, axis=0).T).min() >= 2.0 * BEADS.chord_error
 

@@ -227,6 +227,20 @@ def test_where_beads_do_not_crowd_all_are_as_wide_as_ever():
         assert all(bead.width is None and np.ptp(bead.speed) == 0.0 for _, _, bead in made)
 
 
+def test_beads_are_as_short_as_their_spacing_where_that_is_less_than_2_mm():
+    """A rod of 2 mm in beads of 0.6: one ring, and what that leaves in the middle is 0.8 mm wide."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 90, endpoint=False)
+    rod = hull(np.array([(np.cos(a), np.sin(a), z) for a in angle for z in (0.0, 2.0)]), "rod")
+    thin = {"layer_height": 0.25, "bead_spacing": 0.6, "chord_error": 0.01}
+    made = planned(rod, **thin)
+    part, left, beside = made.volumes
+    assert part == pytest.approx(2.0 * math.pi, rel=0.01) and left + beside + made.twice < 0.03 * part
+    made = planned(rod, shortest=2.0, **thin)  # it goes on over the ring
+    assert made.volumes[1] + made.twice > 0.1 * part
+    for apart, least in ((0.6, 0.6), (2.0, 2.0), (5.0, 2.0)):
+        assert SolidParameters(bead_spacing=apart).least_bead == least
+
+
 def test_touching_and_overlapping_solids_are_one():
     """Two halves of a block, and one with a third that overlaps both: the beads of the block."""
     whole = planned(box((0, 0, 0), (60, 30, 8)))

@@ -84,7 +84,7 @@ class Pictures:
             return place(base.placed(one.surface.wrap(point[None]).points)[0])
 
         beads = Beads(
-            strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.shortest, strategy.thin,
+            strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.least_bead, strategy.thin,
             process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error, where,
             self._width, one.layer * OVER if strategy.starts == "spread" else None,
         )

@@ -83,7 +83,7 @@ def plan(
             laid += [Laid(group, number, layer.layer, rank, one.bead) for rank, one in zip(ranks, here, strict=True)]
     if not laid:
         raise InputError(
-            "NOTHING_TO_DEPOSIT", solids.label, f"no bead of {strategy.shortest:g} mm or more finds room in any layer; "
+            "NOTHING_TO_DEPOSIT", solids.label, f"no bead of {strategy.least_bead:g} mm or more finds room in any layer; "
             "use a smaller bead spacing, or thin = single",
         )
     course = ordered(laid, strategy.order)
