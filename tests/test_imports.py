@@ -25,7 +25,7 @@ OURS = {
     "core/toolpath": {"core/issues", "core/geometry"},
     "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/layers": {"core/issues", "core/parameters", "core/geometry", "core/collision", "core/slicing"},
-    "core/process": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
+    "core/process": {"core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/motion"},
     "core/inspection": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/collision": {"core/geometry"},
     "core/strategies": {

@@ -165,8 +165,8 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
     if not cell.obstacles or cell.arm_clearance is not None or not cell.arrangement.links_known:
         return []
     names = ", ".join(one.name for one in cell.obstacles)
-    return [Issue(NOTE, "OBSTACLES_NOT_KEPT", f"{names}: looked at for the nozzle on rapids, and in simulation and "
-                  "preflight; give cell.arm_clearance so that links, part and nozzle are kept clear of it while planning")]
+    return [Issue(NOTE, "OBSTACLES_NOT_KEPT", f"{names}: looked at for the nozzle, and for links and part in simulation and "
+                  "preflight alone; give cell.arm_clearance so that these are kept clear of it while planning")]
 
 
 def _drawn_plain(cell: cells.Cell) -> list[Issue]:

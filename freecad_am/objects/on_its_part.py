@@ -44,6 +44,10 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
         off = np.maximum(off_facets(body.vertices, body.triangles, places.points) - of.wall.smoothing, 0.0)
     else:
         off = off_faces(sources[0].shape, of.wall.faces, places.points, limit)
+    if toolpath.fitted is not None:  # those layers lie on what was scanned, no farther off than they were moved
+        from ..core.inspection.fit_layers import moved_most  # jobs without a scan need none of it
+
+        off = np.maximum(off - moved_most(toolpath.fitted, places.layer), 0.0)
     return on_part.judged(toolpath, places, off, limit)
 
 

@@ -85,10 +85,8 @@ class Toolpath(Stage):
         fit = self._fit(obj)
 
         def work() -> Outcome:
-            if fit is None:
-                toolpath = looked_at(planned(given[0]), given[0], sources)
-            else:  # layers that were fitted lie where the part was not planned
-                toolpath = planned(given[0], lambda made: fit(looked_at(made, given[0], sources)))
+            made = planned(given[0]) if fit is None else planned(given[0], fit)
+            toolpath = looked_at(made, given[0], sources)
             told = deposit_balance.issues(
                 deposit_balance.of_toolpath(given[0].wall, toolpath, given[0].process.bead_width)
             )

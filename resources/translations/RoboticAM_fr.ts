@@ -7448,6 +7448,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>distance of {0} places of the beads to the shape itself, less what a scan moved their layers</source>
+        <translation>distance de {0} endroits des cordons à la forme elle-même, moins ce dont un scan a déplacé leurs couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>distance of {0} places of the beads to the shape itself, which slicing does not use</source>
         <translation>distance de {0} endroits des cordons à la forme elle-même, que le tranchage n’emploie pas</translation>
     </message>
@@ -9422,6 +9427,11 @@
         <translation>non vérifié : planifié par une version antérieure</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>not checked: schedules of their own, which nobody here knows, tell the welder to feed {0}</source>
+        <translation>non vérifié : des programmes de soudage propres, que personne ne connaît ici, disent au poste comment alimenter {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: the machine file tells no shapes of its links</source>
         <translation>non vérifié : le fichier machine ne donne pas la forme de ses corps</translation>
@@ -9445,6 +9455,11 @@
         <location filename="../../freecad_am/core/preflight/written.py"/>
         <source>not checked: there is no program that was read back</source>
         <translation>non vérifié : il n’y a pas de programme relu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>not checked: there is no wire, process.wire.feed is 0</source>
+        <translation>non vérifié : il n’y a pas de fil, process.wire.feed est 0</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -9988,8 +10003,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
-        <source>section of the wire times its feed, against width x layer height x travel speed</source>
-        <translation>section du fil fois son dévidage, comparée à largeur x hauteur de couche x vitesse d’avance</translation>
+        <source>section of the wire times its feed, against width x height x speed of beads of each class, their starts and ends</source>
+        <translation>section du fil fois sa vitesse, comparée à largeur x hauteur x vitesse des cordons de chaque classe, de leurs débuts et de leurs fins</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/inputs.py"/>
@@ -10762,6 +10777,16 @@
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/nozzle_beside.py"/>
+        <source>the nozzle touches {0} on {1} move(s) while it deposits; move it in cell.obstacles, or the part</source>
+        <translation>la buse touche {0} sur {1} mouvement(s) pendant le dépôt ; déplacez-le dans cell.obstacles, ou la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/nozzle_beside.py"/>
+        <source>the nozzle touches {0} on {1} rapid(s), which over a positioner are not led around it; move it in cell.obstacles, the part, or the seam</source>
+        <translation>la buse touche {0} sur {1} déplacement(s) rapide(s), qui ne le contournent pas au-dessus d’un positionneur ; déplacez-le dans cell.obstacles, ou la pièce, ou le début des cordons</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/arm_kept.py"/>
         <source>the nozzle touches {0}; move it in cell.obstacles, the part or cell.deposition_point</source>
         <translation>la buse touche {0} ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
@@ -11250,6 +11275,11 @@
         <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>the way of the move, and so its time, is not known</source>
         <translation>le chemin du mouvement, et donc son temps, n&apos;est pas connu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/wire.py"/>
+        <source>the wire feeds {0} mm3/s, but beads of these classes, at their own travel speeds, take {1} mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the travel speed of the others</source>
+        <translation>le fil apporte {0} mm3/s, mais les cordons de ces classes, à leurs propres vitesses d&apos;avance, en demandent {1} mm3/s : il y a là plus ou moins de matière que de place ; donnez-leur un programme de soudage qui alimente ainsi le fil, ou la vitesse d&apos;avance des autres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -13513,8 +13543,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>{0}: looked at for the nozzle on rapids, and in simulation and preflight; give cell.arm_clearance so that links, part and nozzle are kept clear of it while planning</source>
-        <translation>{0} : vérifié pour la buse pendant les déplacements rapides, et dans la simulation et le contrôle préalable ; donnez cell.arm_clearance pour que les segments, la pièce et la buse l&apos;évitent dès la planification</translation>
+        <source>{0}: looked at for the nozzle, and for links and part in simulation and preflight alone; give cell.arm_clearance so that these are kept clear of it while planning</source>
+        <translation>{0} : vérifié pour la buse, et pour les segments et la pièce dans la simulation et le contrôle préalable seulement ; donnez cell.arm_clearance pour que ceux-ci l&apos;évitent dès la planification</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from freecad_am import api
+from freecad_am.core.inspection import fit_layers
 from freecad_am.core.issues import InputError
+from freecad_am.objects import preflight
 from tests.core.inspection.test_scan import bent, points_on
 
 
@@ -41,3 +43,33 @@ def test_a_fitted_toolpath_is_kept_and_follows_its_scan(doc, tmp_path):
     with pytest.raises(InputError, match="compares with") as error:
         api.make_toolpath(doc, feature, scan=api.inspect(doc, feature, str(path), fit="none"))
     assert error.value.code == "BAD_INPUT"
+
+
+def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path, monkeypatch):
+    """By the distance to its faces, less what the scan moved the layer: one that was moved twice as far is found, and the
+    preflight tells what a part with too few layers is still off."""
+    plate, tube = doc.addObject("Part::Box", "Plate"), doc.addObject("Part::Cylinder", "Tube")
+    plate.Length, plate.Width, plate.Height, plate.Placement.Base = 120, 120, 10, App.Vector(-60, -60, -10)
+    tube.Radius, tube.Height = 30, 24
+    doc.recompute()
+    path = tmp_path / "scan.xyz"
+
+    def toolpath(low):
+        np.savetxt(path, points_on(lambda x, y: low + 0.01 * x, (60.0, 60.0), 6000))
+        scan = api.make_scan(doc, plate, str(path))
+        feature = api.make_surface_feature(doc, tube, substrate=plate, faces=["Face1"], layer_height=4, chord_error=0.1)
+        made = api.make_toolpath(doc, feature, scan=scan)
+        promise, = [one for one in preflight.of_stages(made) if one.promise == "What is deposited lies on the part"]
+        return api.result(made), promise
+
+    sound, promise = toolpath(-1.0)
+    lowest = min(bead.points[:, 2].min() for bead in sound.layers[0].beads)
+    assert lowest == pytest.approx(-1.3, abs=0.06) and "OFF_PART" not in {issue.code for issue in sound.issues}
+    assert promise.ok and promise.worst < 0.12 and "less what a scan moved" in promise.how
+    few, promise = toolpath(-4.6)  # 24 mm lead back 4.8 mm, a fifth of them
+    assert "SCAN_REMAINS" in {issue.code for issue in few.issues} and promise.ok is False
+    moved = fit_layers.moved
+    monkeypatch.setattr(fit_layers, "moved", lambda one, share, *more: moved(one, 2.0 * share, *more))
+    wrong, promise = toolpath(-1.0)
+    (issue,) = [issue for issue in wrong.issues if issue.code == "OFF_PART"]
+    assert issue.level == "error" and promise.ok is False and promise.worst == pytest.approx(1.3, abs=0.1)

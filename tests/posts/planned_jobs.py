@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Small planned jobs for every post, motion and set-up: short beads on three sides of a cone, so that every travel has to
-pass it, with waits, an input, a call and several layers between them."""
+pass it, with waits, an input, a call and several layers between them; beads of two sides begin or end at other speeds."""
 
 import dataclasses
 import functools
@@ -25,6 +25,8 @@ from tests.programs import build
 
 CHORD_ERROR, SPEED, SIDES, LIFT = 0.05, 8.0, 3, 20.0
 WIDTH, HEIGHT = 8.0, 3.0  # of beads
+# of each side: mm of a bead at its start, mm/s there, mm at its end, mm/s there
+AT_ENDS = ((4.0, 5.0, 2.5, 11.0), (0.0, 0.0, 3.0, 4.0), ())
 # of which the hub is told to the planner; the beads' first layer lies on the larger one
 STEEP, FLAT, SKIN = Developable(60.0, 270.0), Developable(60.0, 60.0), 2.0
 PROCESS = ProcessParameters(
@@ -185,7 +187,16 @@ def _bead(hub, side, layer):
     points = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
     up = skin.normals(points)
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    return Bead(points, up, up, 2.0 * math.pi * length / length[-1], np.full(len(points), SPEED), False)
+    return Bead(points, up, up, 2.0 * math.pi * length / length[-1], np.full(len(points), SPEED), False, ends=AT_ENDS[side])
+
+
+def wanted_speeds(side, along):
+    """(n,) mm/s of the segments of a bead of a side between places (n + 1,) mm along it."""
+    middle, wanted = 0.5 * (along[1:] + along[:-1]), np.full(len(along) - 1, SPEED)
+    if AT_ENDS[side]:
+        first, slow, last, late = AT_ENDS[side]
+        wanted[middle < first], wanted[middle > along[-1] - last] = slow, late
+    return wanted
 
 
 def body(setup):

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+REMAINS = "SCAN_REMAINS"  # that the last layer is still off the plan
+
 
 @dataclass(frozen=True)
 class Fitted:

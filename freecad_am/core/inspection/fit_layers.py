@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geometry.fitted import Fitted
+from ..geometry.fitted import REMAINS, Fitted
 from ..geometry.told import place
 from ..issues import NOTE, WARNING, InputError, Issue
 from ..parameters.scan import ScanParameters
@@ -89,6 +89,15 @@ def fitted(toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out:
         toolpath, layers=tuple(layers), uneven=np.array(uneven) if uneven else toolpath.uneven, fitted=record,
         issues=(*_told(record, toolpath.layer_height), *toolpath.issues),
     )
+
+
+def moved_most(record: Fitted, layers: NDArray[np.intp]) -> Array:
+    """(n,) mm that points of the layers (n,) were moved at most to fit them to a scan."""
+    most = float(np.abs(record.off).max(initial=0.0))
+    left = 1.0 - (record.remains / most if most else 0.0)  # of the way back, what the last layer has gone
+    count = (record.layers - 1) / left if record.remains and record.layers > 1 else record.layers
+    course = _Course(record.layer, max(1, round(count)))
+    return most * np.array([course.share(layer) for layer in range(int(layers.max(initial=0)) + 1)])[layers]
 
 
 def ways_of(toolpath: Toolpath) -> Ways:
@@ -189,7 +198,7 @@ def _told(record: Fitted, height: float) -> list[Issue]:
     )]
     if record.remains > 0.05 * height:
         issues.append(Issue(
-            WARNING, "SCAN_REMAINS", f"the part has too few layers to lead back to the plan: the last one is up to "
+            WARNING, REMAINS, f"the part has too few layers to lead back to the plan: the last one is up to "
             f"{record.remains:.3f} mm off it; a larger substrate.scan_band leads back in fewer layers"
         ))
     return issues

@@ -16,6 +16,7 @@ from ..motion import DEPOSIT, Motion
 from ..parameters.bead_classes import number_of
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
+from . import nozzle_beside
 from .arm_kept import Rods
 from .joint_path import BeadPath, JointPath
 from .rapid_findings import findings
@@ -73,7 +74,8 @@ def assemble(
     if len(ways.ways[-1].joints):
         last = 2 * len(joint_path.beads) - 1
         parts.append(_retract(joint_path.beads[-1], ways.ways[-1], ways.legs[last]))
-    return _joined(parts, cell, process), findings(ways)
+    motion = _joined(parts, cell, process)
+    return motion, (*findings(ways), *nozzle_beside.findings(motion, cell))
 
 
 def _place(path: BeadPath) -> tuple[int, int, int]:

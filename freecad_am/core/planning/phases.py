@@ -7,6 +7,7 @@ They are put in once seams, overlaps and joints are known, on the way that is dr
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -26,11 +27,13 @@ STEPS = 4  # of which each leaves a small share of what was off before
 NEAR = 1e-3  # mm; a point so near to where a phase ends is where it ends
 CODE = "PHASE_LENGTH"
 _UNIT = ("build", "tool", "tangents")
+Condition = Callable[[Array, Array], Array]
 
 
-def phased(cell: Cell, path: BeadPath) -> tuple[BeadPath, list[Issue]]:
+def phased(cell: Cell, path: BeadPath, condition_at: Condition | None = None) -> tuple[BeadPath, list[Issue]]:
     """The path with points where the phases of its bead begin and end, and their speeds; an error where they are longer
-    than the bead, as that of a piece of one that was divided. Condition and threshold are those between neighbours."""
+    than the bead, as that of a piece of one that was divided. condition_at: (n,) of flange poses (n, 4, 4) and joints
+    (n, axes); None on machines that have none."""
     if not path.bead.ends or not path.reachable:
         return path, []
     first, _, last, _ = path.bead.ends
@@ -44,7 +47,7 @@ def phased(cell: Cell, path: BeadPath) -> tuple[BeadPath, list[Issue]]:
     borders = borders[np.abs(along[:, None] - borders).min(axis=0) > NEAR]
     borders = borders[np.r_[True, np.diff(borders) > NEAR]] if len(borders) else borders
     if len(borders):
-        path = _with_points(cell, path, along, borders)
+        path = _with_points(cell, path, along, borders, condition_at)
         along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
     return dataclasses.replace(path, bead=_timed(path.bead, along)), []
 
@@ -72,7 +75,9 @@ def _shares(cell: Cell, path: BeadPath, segment: Rows, lengths_in: Array) -> Arr
     return np.asarray(share)
 
 
-def _with_points(cell: Cell, path: BeadPath, along: Array, borders: Array) -> BeadPath:
+def _with_points(
+    cell: Cell, path: BeadPath, along: Array, borders: Array, condition_at: Condition | None
+) -> BeadPath:
     """The path with points at `borders` (k,) mm along it, rising, none of which is one of its own."""
     segment = np.searchsorted(along, borders) - 1
     share = _shares(cell, path, segment, borders - along[segment])
@@ -88,7 +93,9 @@ def _with_points(cell: Cell, path: BeadPath, along: Array, borders: Array) -> Be
         field.name: between(getattr(bead, field.name)) for field in dataclasses.fields(bead)
         if isinstance(getattr(bead, field.name), np.ndarray)
     }
-    columns["points"][new], columns["tool"][new] = cell.tip_in_part(cell.machine.chain.forward(joints[new]))
+    flange, condition = cell.machine.chain.forward(joints[new]), between(path.condition)
+    columns["points"][new], columns["tool"][new] = cell.tip_in_part(flange)
+    condition[new] = condition[new] if condition_at is None else condition_at(flange, joints[new])
     columns["speed"][new] = bead.speed[at]
     if bead.tangents is not None:  # a point within a segment is no corner
         columns["tangents"][new] = (bead.tangents[segment, 1] + bead.tangents[at, 0])[:, None]
@@ -97,5 +104,5 @@ def _with_points(cell: Cell, path: BeadPath, along: Array, borders: Array) -> Be
             columns[name] /= np.linalg.norm(columns[name], axis=-1, keepdims=True)
     return dataclasses.replace(
         path, bead=dataclasses.replace(bead, **columns), phi=between(path.phi), joints=joints,
-        condition=between(path.condition), threshold=between(path.threshold),
+        condition=condition, threshold=between(path.threshold),
     )

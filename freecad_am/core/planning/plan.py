@@ -242,7 +242,7 @@ def _finished(
     longer = [run_on(task, path, toolpath.overlap) for path in paths]
     straight = [kept_straight(task, path, toolpath.chord_error) for path in longer]
     paths, notes = turns.counted_on(task, [path for path, _ in straight])
-    paths, told = _phased(task.cell, paths)
+    paths, told = _phased(task.cell, paths, task.condition_at)
     issues = [*notes, *told, *(issue for _, found in straight for issue in found)]
     for path in paths:
         issues += findings(task, path)
@@ -254,9 +254,11 @@ def _finished(
     return paths, issues
 
 
-def _phased(cell: Cell, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
+def _phased(
+    cell: Cell, paths: Sequence[BeadPath], condition_at: phases.Condition | None = None
+) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with the phases at the ends of their beads, and what is wrong with these."""
-    done = [phases.phased(cell, path) for path in paths]
+    done = [phases.phased(cell, path, condition_at) for path in paths]
     return [path for path, _ in done], [issue for _, found in done for issue in found]
 
 

@@ -7,12 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..geometry.fitted import REMAINS
 from ..issues import WARNING, Issue
 from ..parameters.process import ProcessParameters
-from ..process import deposit_balance, layer_heights, on_part, spacing, support, wire
+from ..process import deposit_balance, layer_heights, on_part, spacing, support, wire, wire_taken
 from ..process.deposit_balance import MM3, Balance
 from ..toolpath import Array, Toolpath
-from .promise import PERCENT, Promise, issue_place, of_codes
+from .promise import PERCENT, Place, Promise, issue_place, of_codes
 
 
 def layers(toolpath: Toolpath, issues: Sequence[Issue], known: Sequence[Array] | None = None) -> Promise:
@@ -41,7 +42,10 @@ def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     places, worst, allowed = toolpath.on_part
     found = of_codes(issues, (on_part.CODE,))
     how = f"distance of {places:.0f} places of the beads to the shape itself, which slicing does not use"
-    return Promise(what, how, worst <= allowed, worst, "mm", allowed, issue_place(found))
+    if toolpath.fitted is not None:
+        how = f"distance of {places:.0f} places of the beads to the shape itself, less what a scan moved their layers"
+    off = worst > allowed or bool(of_codes(issues, (REMAINS,), WARNING))
+    return Promise(what, how, not off, worst, "mm", allowed, issue_place(found))
 
 
 def whole(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
@@ -94,11 +98,21 @@ def carried(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
 
 
 def fed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
-    """Of the wire against the section of the beads."""
+    """Of the wire against the section of the beads, at the speeds at which they are run."""
     what = "The wire feeds what the beads take"
-    if toolpath.wire_feed is None or toolpath.bead_width is None or process.bead_model != "none":
+    parts = toolpath.parts
+    if process.bead_model != "none" or any(part.wire_feed is None or part.bead_width is None for part, _ in parts):
         return Promise(what, "not checked: a bead model, or nothing, tells how wide the beads are", None)
-    taken = toolpath.bead_width * toolpath.layer_height * process.travel_speed
-    off = abs(toolpath.wire_feed * process.wire.section / taken - 1.0)
-    how = "section of the wire times its feed, against width x layer height x travel speed"
-    return Promise(what, how, off <= wire.TOLERANCE, PERCENT * off, "%", PERCENT * wire.TOLERANCE)
+    if not any(part.wire_feed for part, _ in parts):
+        return Promise(what, "not checked: there is no wire, process.wire.feed is 0", None)
+    found = [
+        (off, Place(int(numbers[layer]), bead, None))
+        for part, numbers in parts if (most := wire_taken.off_most(part, process)) for off, layer, bead in [most]
+    ]
+    others = sorted({name for part, _ in parts for name in wire_taken.by_schedules(part, process)})
+    off, where = max(found, key=lambda one: one[0], default=(0.0, None))
+    if others and off <= wire.TOLERANCE:
+        how = f"not checked: schedules of their own, which nobody here knows, tell the welder to feed {', '.join(others)}"
+        return Promise(what, how, None)
+    how = "section of the wire times its feed, against width x height x speed of beads of each class, their starts and ends"
+    return Promise(what, how, off <= wire.TOLERANCE, PERCENT * off, "%", PERCENT * wire.TOLERANCE, where)

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from ..issues import WARNING, InputError, Issue
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
@@ -26,7 +28,8 @@ def speeds_told(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
         return toolpath
     worst, where, some = 1.0 + ROUNDING, (0, 0), [float("inf"), 0.0]
     for layer, number, bead in toolpath:
-        low, high = float(bead.speed[1:].min()), float(bead.speed[1:].max())
+        at_ends = [speed for speed in bead.ends[1::2] if speed]
+        low, high = float(min(bead.speed[1:].min(), *at_ends, np.inf)), float(max(bead.speed[1:].max(), *at_ends, 0.0))
         some = [min(some[0], low), max(some[1], high)]
         off = max(slowest / low, 0.0 if fastest is None else high / fastest)
         if off > worst:

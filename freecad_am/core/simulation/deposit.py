@@ -18,7 +18,8 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     """(n,) mm^3 that the segment ending at each row leaves, 0 in rapid moves.
 
     A bead's section is its width, predicted or else as beads of the toolpath count, times the layer height: what is
-    deposited once it has solidified, not what the wire holds. Toolpaths of older documents do not tell how wide beads count;
+    deposited once it has solidified, not what the wire holds. Layers that were fitted to a scan are as high as that made
+    them in the mean. Toolpaths of older documents do not tell how wide beads count;
     there it is `process.bead_width`.
     """
     length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[: len(motion)]
@@ -26,8 +27,24 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     width = np.where(np.isfinite(motion.width), motion.width, counted)
     # the width of a segment is the mean of those at its ends
     mean_width = 0.5 * (width + np.concatenate([width[:1], width[:-1]]))
-    height = toolpath.layer_heights[motion.layer] if toolpath.features else toolpath.layer_height
+    height: Array | float = toolpath.layer_height
+    if toolpath.features or toolpath.fitted is not None:
+        height = (_mean_heights(toolpath) if toolpath.fitted is not None else toolpath.layer_heights)[motion.layer]
     return np.where(motion.deposit & motion.moves, mean_width * length, 0.0) * height
+
+
+def _mean_heights(toolpath: Toolpath) -> Array:
+    """(layers,) mm, how high layers are in the mean of their beads: those that were fitted to a scan are uneven."""
+    found = toolpath.layer_heights
+    for number, layer in enumerate(toolpath.layers):
+        if any(bead.height is not None for bead in layer.beads):
+            sums = np.zeros(2)
+            for bead in layer.beads:
+                length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+                high = np.full(len(bead), found[number]) if bead.height is None else bead.height
+                sums += (0.5 * length @ (high[1:] + high[:-1]), length.sum())
+            found[number] = sums[0] / sums[1]
+    return found
 
 
 def fed(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> float | None:

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.inspection import scan_checks, scan_motion
-from freecad_am.core.inspection.fit_layers import fitted
+from freecad_am.core.inspection.fit_layers import fitted, moved_most
 from freecad_am.core.inspection.scan_heights import Scan
 from freecad_am.core.inspection.scanned_body import facing, scanned
 from freecad_am.core.issues import InputError
@@ -19,6 +19,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.scan import ScanParameters
+from freecad_am.core.simulation import deposit
 from freecad_am.core.strategies.solids.plan import plan
 
 HEIGHT = 2.0
@@ -193,3 +194,29 @@ def test_the_body_to_keep_clear_of_is_where_it_was_scanned():
     assert found.vertices[:, 2].min() == -10.0 and (found.vertices[:, 2] == -10.0).sum() > 100  # its underside stays
     both = np.vstack([points[:500], points[:500] - (0.0, 0.0, 10.0)])
     assert facing(both, PLATE, UP)[:500].mean() > 0.95 and facing(both, PLATE, UP)[500:].mean() < 0.05
+
+
+@pytest.mark.parametrize(("surface", "parameters"), [
+    (bent, {}), (bent, {"scan_band": 0.05}), (lambda x, y: 10.0 - 0.4 + 0.004 * x, {"after_layer": 4}),
+    (lambda x, y: 4.5 + 0.0 * x, {"scan_band": 0.1}),
+])
+def test_how_far_layers_are_moved_at_most_is_known_of_each(block, surface, parameters):
+    made = fit(block, points_on(surface), **parameters)
+    known = moved_most(made.fitted, np.arange(len(made.layers)))
+    far = np.array([
+        max(np.abs(bead.points[:, 2] - number * HEIGHT).max() for bead in layer.beads)
+        for number, layer in enumerate(made.layers)
+    ])
+    assert (far <= known + 0.03).all()  # patches of neighbours lead on a little beyond the first layer
+    assert np.abs(far - known).max() < 0.1 * known.max() + 0.03 and known[made.fitted.layer] > 0.1
+
+
+def test_the_volume_is_that_of_layers_as_high_as_they_were_fitted(block):
+    """A plate that lies 1.2 mm lower takes as much more."""
+    process = ProcessParameters(travel_speed=6.0)
+    low = fit(block, points_on(lambda x, y: -1.2 + 0.0 * x))
+    planned, laid = (
+        deposit.volumes(deposit.alone(path), process, path).sum() for path in (block, low)
+    )
+    total = HEIGHT * len(block.layers)
+    assert laid / planned == pytest.approx((total + 1.2) / total, rel=2e-3)

@@ -13,11 +13,14 @@ from freecad_am.core.geometry.surroundings import box
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import link_rods
+from freecad_am.core.motion import TRAVEL
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.obstacles import Obstacle, obstacles
+from freecad_am.core.planning import nozzle_beside
 from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_arm_clearance import CELL, CLEARANCE, DOWN, SIZE, dome, on_rods, planned
+from tests.posts.planned_jobs import planned as planned_job
 
 __all__ = ["dome"]  # a fixture
 
@@ -194,3 +197,60 @@ def test_an_obstacle_is_a_file_or_a_box():
     for more in ({}, {"file": "a.step", "size": (1.0, 1.0, 1.0)}):
         with pytest.raises(InputError, match="neither a file nor a box"):
             Obstacle("a", (0.0,) * 6, **more)
+
+
+def row_of_beads(dome):
+    """Two straight beads, one over the other, 240 mm long, of a few points each."""
+    bead = dome.layers[0].beads[0]
+    x = np.linspace(-120.0, 120.0, 5)
+    beads = []
+    for high in (0.0, 15.0):
+        points = np.column_stack([x, 0.0 * x, high + 0.0 * x])
+        up = np.tile([0.0, 0.0, 1.0], (5, 1))
+        beads.append(dataclasses.replace(
+            bead, points=points, build=up, tool=up, parameter=np.linspace(0.0, 6.0, 5), speed=np.full(5, 8.0), tangents=None,
+            closed=False))
+    layers = tuple(dataclasses.replace(dome.layers[0], beads=(one,)) for one in beads)
+    return dataclasses.replace(dome, layers=layers, family="surface")
+
+
+@pytest.mark.parametrize("aside", [0.0, 45.0])
+@pytest.mark.parametrize("clearance", [None, CLEARANCE])
+def test_a_nozzle_that_runs_into_an_obstacle_within_a_bead_is_refused(dome, aside, clearance):
+    """Between two points of a bead, its ends far away: seen whether links are kept clear or not."""
+    job = row_of_beads(dome)
+    pose = frames.pose(np.eye(3), np.array([900.0 + 30.0, 20.0 + aside, -60.0]))
+    cell = cell_with(job, pose, size=(8.0, 20.0, 30.0), **{**CELL, "branch": DOWN})
+    free = dataclasses.replace(cell, arm_clearance=clearance)
+    motion, issues = planned(job, free)
+    laid = np.flatnonzero(motion.deposit[1:] & motion.deposit[:-1]) + 1
+    dense = np.concatenate([
+        motion.joints[laid - 1] + share * (motion.joints[laid] - motion.joints[laid - 1])
+        for share in np.linspace(0.0, 1.0, 60)])
+    arm, to_box = KdlArm(cell.machine), np.linalg.inv(cell.machine.base @ pose)
+    cone = np.c_[nozzle_points(cell), np.ones(len(nozzle_points(cell)))]
+    seen = np.einsum("nij,kj->nki", (to_box @ arm.forward(dense))[:, :3], cone)
+    deep = (np.abs(seen) < [4.0, 10.0, 15.0]).all(axis=2).any()
+    told = {issue.code for issue in issues if issue.level == "error"}
+    assert deep == (aside == 0.0)
+    assert ("CLEARANCE" in told) == deep
+    (found,) = [issue for issue in issues if issue.code == "CLEARANCE"] or [None]
+    assert found is None or ("the nozzle touches post on " in found.message and found.layer in (0, 1))
+
+
+def test_rapids_over_a_positioner_that_meet_an_obstacle_are_refused():
+    """The robot stands still beside it: where its nozzle is in the world is told by PyKDL's arm alone."""
+    cell, _, motion = planned_job("fanuc positioner")
+    travels = np.flatnonzero(motion.role == TRAVEL)
+    row = int(travels[len(travels) // 2])
+    own = len(cell.robot.axes)
+    middle = 0.5 * (motion.joints[row - 1] + motion.joints[row])[None, :own]
+    nozzle = np.linalg.inv(cell.robot.base) @ KdlArm(cell.robot).forward(middle)[0] @ cell.carried
+    pose = nozzle @ frames.pose(np.eye(3), np.array([0.0, 0.0, -30.0]))
+    there = dataclasses.replace(cell, obstacles=(box((6.0, 6.0, 6.0), pose, "lamp"),))
+    found = nozzle_beside.findings(motion, there)
+    assert "RAPID_COLLISION" in {issue.code for issue in found} and all("lamp" in issue.message for issue in found)
+    above = np.array(pose)
+    above[2, 3] += 400.0
+    clear = dataclasses.replace(cell, obstacles=(box((6.0, 6.0, 6.0), above, "lamp"),))
+    assert nozzle_beside.findings(motion, clear) == []

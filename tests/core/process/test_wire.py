@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.parameters.process import ProcessParameters, WireParameters
-from freecad_am.core.process import bead_table
+from freecad_am.core.parameters.bead_classes import BeadEnd, BeadStart
+from freecad_am.core.parameters.process import MaterialParameters, ProcessParameters, WireParameters
+from freecad_am.core.preflight import deposit
+from freecad_am.core.process import bead_table, wire_taken
+from freecad_am.core.process.material import speeds_told
 from freecad_am.core.process.wire import fed
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
@@ -58,3 +61,82 @@ def test_a_wire_without_a_section_is_refused(diameter):
     """The square of the thinnest is 0 in floats, by which the feed was divided."""
     with pytest.raises(InputError, match="give at least 0"):
         WireParameters(diameter=diameter)
+
+
+# classes and phases at speeds of their own: 8 x 1 mm at 6 mm/s is 48 mm3/s
+SPEED_OF = {"contour": 9.0, "fill": 6.0}
+
+
+def path_of(phase=None, **more):
+    """A bead of 100 mm of each class, at the speed of its class, with ends of 20 and 5 mm where asked for."""
+    beads = [
+        replace(BEAD, bead_class=name, speed=np.full(2, SPEED_OF[name]), ends=phase or (), **more) for name in SPEED_OF
+    ]
+    return replace(PATH, layers=(Layer((beads[1],)), Layer(tuple(beads))))
+
+
+def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
+    of = replace(process("auto"), classes="contour: travel_speed 9")
+    made = fed(path_of(), of, None)
+    (issue,) = made.issues
+    assert (issue.level, issue.code, issue.layer, issue.bead) == ("warning", "FEED_BALANCE", 1, 0)
+    assert "feeds 48 mm3/s" in issue.message and "take contour 72 mm3/s" in issue.message
+    promise = deposit.fed(made, of)
+    assert promise.ok is False and promise.worst == pytest.approx(100.0 / 3.0) and tuple(promise.place) == (1, 0, None)
+    own = replace(process("auto"), classes="contour: travel_speed 9, schedule 3")
+    made = fed(path_of(), own, None)
+    assert made.issues == ()
+    promise = deposit.fed(made, own)  # what that schedule feeds nobody knows
+    assert promise.ok is None and promise.how.startswith("not checked") and promise.how.endswith("feed contour")
+    near = replace(process("auto"), classes="contour: travel_speed 6.5")
+    bead = replace(BEAD, bead_class="contour", speed=np.full(2, 6.5))
+    made = fed(replace(PATH, layers=(Layer((bead,)),)), near, None)
+    assert made.issues == () and deposit.fed(made, near).worst == pytest.approx(100.0 * (1.0 - 6.0 / 6.5))
+
+
+@pytest.mark.parametrize("planned", [False, True])
+def test_starts_and_ends_at_speeds_of_their_own_are_held_against_the_wire(planned):
+    of = replace(process("auto"), start=BeadStart(20.0, 3.0), end=BeadEnd(5.0, 12.0), classes="contour: travel_speed 9")
+    made = fed(path_of((20.0, 3.0, 5.0, 12.0)), of, None)
+    (issue,) = made.issues
+    told = {"fill.start": 24.0, "contour.start": 24.0, "contour": 72.0, "contour.end": 96.0, "fill.end": 96.0}
+    assert all(f"{name} {rate:g}" in issue.message for name, rate in told.items()) and " fill 48" not in issue.message
+    if planned:  # with the points of the phases, and their speeds
+        at = np.array([0.0, 20.0, 95.0, 100.0])
+        points, up = at[:, None] * [1.0, 0.0, 0.0], np.broadcast_to([0.0, 0.0, 1.0], (4, 3))
+        made = replace(made, layers=tuple(replace(layer, beads=tuple(
+            Bead(points, up, up, at, np.array([3.0, 3.0, bead.speed[0], 12.0]), False, bead_class=bead.bead_class,
+                 ends=bead.ends, phase=np.array([1.0, 1.0, 0.0, 2.0])) for bead in layer.beads)) for layer in made.layers))
+    rates = {one.name: one.rate for one in wire_taken.taken_of(made)}
+    assert rates == pytest.approx(told | {"fill": 48.0})
+    assert deposit.fed(made, of).worst == pytest.approx(100.0)  # twice as much where the torch is half as fast
+
+
+def test_a_schedule_of_a_start_is_not_known_and_no_wire_is_not_checked():
+    own = "contour: travel_speed 9, schedule 3"
+    of = replace(process("auto"), schedule=2, start=BeadStart(20.0, 3.0, 4), classes=own)
+    made = fed(path_of((20.0, 3.0, 0.0, 0.0)), of, None)
+    assert made.issues == ()
+    assert deposit.fed(made, of).how.endswith("feed contour, contour.start, fill.start")
+    none = process(0.0)
+    promise = deposit.fed(fed(PATH, none, None), none)
+    assert promise.ok is None and promise.how.startswith("not checked")
+
+
+def test_beads_of_other_widths_and_heights_at_speeds_that_follow_balance():
+    """What is narrower is laid as much faster; thinner layers too."""
+    bead = replace(BEAD, width=np.full(2, 4.0), height=np.full(2, 0.8), speed=np.full(2, 15.0))
+    path = fed(replace(PATH, layers=(Layer((BEAD,)), Layer((bead,)))), ProcessParameters(), None)
+    assert deposit.fed(path, ProcessParameters()).worst < 1e-9
+    one = replace(path, layer_height=2.0, wire_feed=2.0 * path.wire_feed)
+    slow = replace(bead, speed=np.full(2, 7.5))
+    two = replace(path, layers=(Layer((BEAD,)), Layer((slow,), feature=1)), features=(one, path))
+    assert tuple(deposit.fed(two, ProcessParameters()).place) == (1, 0, None)  # half as much in the second feature
+
+
+def test_starts_and_ends_count_among_the_speeds_of_a_material():
+    of = replace(ProcessParameters(), material=MaterialParameters(name="clay", slowest=4.0, fastest=10.0))
+    assert speeds_told(PATH, of).issues == ()
+    for ends, low, high in (((5.0, 3.0, 0.0, 0.0), "3", "6"), ((0.0, 0.0, 5.0, 11.0), "6", "11")):
+        (issue,) = speeds_told(path_of(ends), of).issues
+        assert issue.code == "MATERIAL_SPEED" and f"at {low} to {high.replace('6', '9')} mm/s" in issue.message
