@@ -11,6 +11,7 @@ from ..core.kinematics.cell import Cell
 from ..core.program import FIRST_SHARE, FIRST_TIME
 from ..core.read_moves import ReadMoves
 from .planned import COMPUTED_AXIS, Planned
+from .text_path import digits
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -85,7 +86,7 @@ def _share_times(cell: Cell, planned: Planned, read: ReadMoves, share: Array) ->
     turned = np.abs(np.diff(shown, axis=0, prepend=shown[:1]))
     times = (turned / cell.machine.max_speed).max(axis=1) / share
     # a move that begins where the text has no joint values is off by the digits of both its ends
-    ends = 2.0 * float(np.max(read.digits)) / cell.machine.max_speed.min() / share
+    ends = 2.0 * float((digits(cell, read) / cell.machine.max_speed).max()) / share
     # the share itself was as much as a half digit less: at few percent that is more of the time than of the share
     least = np.maximum(share - read.share_digits, 0.5 * share)
     return times, times * read.share_digits / least + ends + COMPUTED_AXIS, turned.max(axis=1)

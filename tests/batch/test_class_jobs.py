@@ -84,6 +84,12 @@ def test_classes_of_a_filled_bar(workshop):
     _program(text, deposit)
 
 
+def fed(report):
+    """The line of the preflight about the wire."""
+    (line,) = [line for line in report["preflight"] if line["promise"] == "The wire feeds what the beads take"]
+    return line
+
+
 def _figures(report, rows):
     """Lengths and times of classes, by the rows alone; the total of the job has the lead times of classes."""
     place = numbers(rows, "x_mm", "y_mm", "z_mm")
@@ -98,6 +104,7 @@ def _figures(report, rows):
         begins = {(row["layer"], row["bead"]) for row in rows if row["kind"] == "deposit" and row["class"] == told["class"]}
         assert told["beads"] == len(begins)
     assert [row["schedule"] for row in report["classes"]] == [1, 3, 9]
+    assert fed(report)["ok"] is None and fed(report)["how"].endswith("to feed contour, first_layer")
     count = {row["class"]: row["beads"] for row in report["classes"]}
     assert report["totals"]["wait_s"] == pytest.approx(0.8 * count["contour"] + 1.5 * count["fill"], abs=1e-9)
 
@@ -162,7 +169,10 @@ def beads_of(rows):
 def test_starts_and_ends_of_beads_have_speeds_of_their_own(workshop):
     plain, _, _ = planned(workshop, "  classes: {contour: {travel_speed: 8 mm/s}}\n")
     rows, report, text = planned(workshop, PHASES)
-    assert report["status"] == "ok"
+    assert report["status"] == "ok" and fed(report)["ok"] is False
+    assert fed(report)["worst"] == pytest.approx(200.0, rel=0.02)  # ends of contours at 2 mm/s, the wire feeds for 6
+    (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "FEED_BALANCE"]
+    assert "contour 64, contour.end 16" in told and "fill.start 24" in told and "fill.end 96" in told
     for (mine, along), (before, whole) in zip(beads_of(rows), beads_of(plain), strict=True):
         contour = mine[0]["class"] == "contour"
         first, last, speed = (0.0, 4.0, 8.0) if contour else (5.0, 2.5, 6.0)

@@ -690,7 +690,8 @@ SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
     },
     "siemens": {
         "rotary axis": (r" [ABC]=?(?:DC\()?(-?\d+\.\d+)", 1), "position": (r" [XYZ](-?\d+\.\d+)", 2),
-        "direction": (r" [ABC]3=(-?\d+\.\d+)", 2), "feed": (_FEED, 1), "wait": (_WAIT_NC.format(r"N\d+ G4 F"), 1),
+        # of a number that is nearly all of the direction the last digits are its length
+        "direction": (r" [ABC]3=(-?0\.[0-5]\d+)", 2), "feed": (_FEED, 1), "wait": (_WAIT_NC.format(r"N\d+ G4 F"), 1),
     },
     "linuxcnc": {
         "rotary axis": (r" [ABC](-?\d+\.\d+)", 1), "position": (r" [XYZ](-?\d+\.\d+)", 2), "feed": (_FEED, 1),

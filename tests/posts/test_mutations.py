@@ -4,6 +4,7 @@
 None of these may pass: a program that passes is driven.
 """
 
+import re
 import zlib
 
 import numpy as np
@@ -75,6 +76,19 @@ def test_the_least_change_of_a_number_that_is_more_than_its_digits_explain_is_re
             tried += files is not None
             passed += [kind] if files is not None and not found(way, files, 2000) else []
     assert not passed and tried >= 3 * DRAWS
+
+
+@pytest.mark.parametrize("name", ["yaskawa track", "yaskawa track and positioner"])
+def test_a_share_of_the_axes_speeds_is_known_as_well_with_axes_that_slide_and_turn_beside_the_robot(name):
+    """Digits of the track are millimetres, and its speed is too: neither counts for the axes that turn."""
+    way = ("yaskawa", "joint", "time", name)
+    (file, content), = written(way)[3].items()
+    text = content.decode()
+    shares = list(re.finditer(r"VJ=(\d+\.\d\d)", text))
+    assert len(shares) > 40
+    for share in shares[1:]:  # the first move of all goes at its own
+        other = f"{float(share[1]) + 0.04:.2f}"
+        assert found(way, {file: (text[: share.start(1)] + other + text[share.end(1) :]).encode()}, 2000), share[0]
 
 
 def test_every_kind_of_damage_was_done():

@@ -13,7 +13,7 @@ from freecad_am.core.simulation.rates import rates
 from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.simulation.totals import totals
 
-PATH = SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=None, features=())
+PATH = SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=None, features=(), fitted=None)
 
 
 def of_time(motion, step, function):

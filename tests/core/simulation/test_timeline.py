@@ -111,7 +111,8 @@ def test_layers_begin_where_their_rapids_do(a_motion):
 def test_totals_are_sums_over_the_segments(a_motion):
     motion = a_motion(8)
     line = timeline(motion, PROCESS)
-    sums = totals(motion, line, PROCESS, SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=10.0, features=()))
+    path = SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=10.0, features=(), fitted=None)
+    sums = totals(motion, line, PROCESS, path)
     beads = [np.flatnonzero(motion.deposit & (motion.layer == k) & (motion.bead == b)) for k in range(4) for b in range(2)]
     length = sum(np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1).sum() for rows in beads)
     assert sums.length == pytest.approx(length)
@@ -130,7 +131,7 @@ def test_a_width_that_varies_counts_by_the_trapezoid(a_motion):
     motion = dataclasses.replace(motion, width=width)
     rows = np.flatnonzero(motion.deposit)
     steps = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)
-    path = SimpleNamespace(layer_height=1.5, bead_width=None, wire_feed=None, features=())
+    path = SimpleNamespace(layer_height=1.5, bead_width=None, wire_feed=None, features=(), fitted=None)
     sums = totals(motion, timeline(motion, PROCESS), PROCESS, path)
     assert sums.fed is None
     assert sums.volume == pytest.approx(1.5 * (2.5 * steps[0] + 3.5 * steps[1]))
