@@ -82,7 +82,7 @@ FOREIGN = {
     "api": set(),
     "plots": {"numpy", "matplotlib"},
     "report": {"numpy"},
-    "batch": {"numpy", "yaml", "FreeCAD"},
+    "batch": {"numpy", "scipy", "yaml", "FreeCAD", "Part", "distributed"},
     "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }
 # single files that may use more

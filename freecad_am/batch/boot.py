@@ -15,7 +15,10 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 NOBODY = 2
 WELCOME = ("PyKDL", "shapely", "matplotlib")  # that jobs beyond the demo need: of programs, solids, plots
-SCRIPTS = {"test": os.path.join("tests", "run.py"), "bench": os.path.join("bench", "run.py")}
+SCRIPTS = {
+    "test": os.path.join("tests", "run.py"), "bench": os.path.join("bench", "run.py"),
+    "rows": os.path.join("freecad_am", "batch", "row_host.py"),  # asked for by workers of a cluster, not by users
+}
 
 
 def arguments():

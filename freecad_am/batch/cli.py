@@ -18,7 +18,8 @@ USAGE = """usage: freecad-am COMMAND
   plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
   export DOC.FCStd [-o DIR] [--object NAME ...]     recompute a saved document and write its programs; with
                                                     --wires step|dxf its paths as wires instead
-  batch TABLE.csv --job JOB.yaml [-o DIR] [-j N]    one plan per row of a table of job keys
+  batch TABLE.csv --job JOB.yaml [-o DIR] [-j N]    one plan per row of a table of job keys; --scheduler ADDRESS of a
+                                                    Dask cluster, --resume, --dry-run
   inspect JOB.yaml|DOC.FCStd --measured FILE ...    compare measured points with what is planned; -o DIR,
                                                     --set tolerance=0.3 ..., of a document --object NAME
   check PROGRAM ... --cell JOB.yaml|CELL.yaml       drive a program that was edited, or written elsewhere, in a cell;
@@ -146,10 +147,18 @@ def _parser(command: str) -> Any:
         parser.add_argument("--cell", metavar="FILE", required=True, help="a job, or a cell in a file of its own")
         parser.add_argument("--post", metavar="NAME", help="the post that reads it; else that of the job or of the machine")
     else:
-        parser.add_argument("table", metavar="TABLE.csv")
-        parser.add_argument("--job", metavar="JOB.yaml", required=True)
-        parser.add_argument("-j", "--jobs", metavar="N", type=_count, default=1, help="rows planned at the same time")
+        _choose_rows(parser)
     return parser
+
+
+def _choose_rows(parser: Any) -> None:
+    """The words of `batch`."""
+    parser.add_argument("table", metavar="TABLE.csv")
+    parser.add_argument("--job", metavar="JOB.yaml", required=True)
+    parser.add_argument("-j", "--jobs", metavar="N", type=_count, help="rows planned at the same time, 1 without")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="plan on the workers of this Dask scheduler")
+    parser.add_argument("--resume", action="store_true", help="keep the rows that an earlier run has done")
+    parser.add_argument("--dry-run", action="store_true", help="look whether rows are refused, and plan none")
 
 
 def _choose_machines(parser: Any) -> None:
@@ -200,7 +209,13 @@ def _export(options: Any, session: Any) -> int:
 def _batch(options: Any, session: Any) -> int:
     from freecad_am.batch import rows
 
-    return rows.run(options.table, options.job, options.output, options.jobs, session)
+    if options.scheduler and options.jobs is not None:
+        from freecad_am.core.issues import InputError
+
+        raise InputError("USAGE", "freecad-am batch", "-j is of rows on this machine, and --scheduler of those on a "
+                         "cluster, whose workers have their own number; leave one of them out")
+    how = rows.How(options.jobs or 1, options.scheduler or "", options.resume, options.dry_run)
+    return rows.run(options.table, options.job, options.output, how, session)
 
 
 def _inspect(options: Any, session: Any) -> int:

@@ -8,6 +8,7 @@ import dataclasses
 import os
 from typing import Any
 
+from freecad_am.core.geometry.located import is_there
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import arrangement, calibration, proposed_cell, urdf_cell, urdf_machine, urdf_reference
 from freecad_am.core.parameters import external, obstacles
@@ -148,7 +149,7 @@ def _obstacle(value: Any, key: str, number: int, path: str) -> obstacles.Obstacl
     file, size = "", None
     if section.get("file") is not None:
         file = absolute(fields.text(section["file"], f"{key}.file").strip(), path)
-        if not os.path.isfile(file):
+        if not is_there(file):
             raise InputError("NO_FILE", f"{key}.file", f"there is no file {file}; paths are relative to the job file")
     edges = section.get("box")
     if edges is not None:

@@ -10,6 +10,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+from freecad_am.core.geometry.located import is_there
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import bead_classes
 from freecad_am.core.parameters import field as f
@@ -50,7 +51,7 @@ def filled_in(section: Any, path: str) -> Any:
 def _file(name: str, path: str) -> Path:
     """The file that a name means: one in the job's folder, else one that is built in."""
     own = Path(absolute(name, path))
-    if own.is_file():
+    if is_there(own):
         return own
     known = FOLDER / f"{name.removesuffix(ENDING)}{ENDING}"
     if name.removesuffix(ENDING) in built_in():

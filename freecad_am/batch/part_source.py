@@ -8,6 +8,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any
 
+from freecad_am.core.geometry.located import expanded, is_there, located
 from freecad_am.core.geometry.mesh.file_unit import MESHES, refuse_scale
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
@@ -63,7 +64,7 @@ def part_of(section: dict[str, Any], path: str, key: str = "part") -> PartSource
         if section.get(entry) is not None and not is_document:
             message = f"only an FCStd part has objects, {os.path.basename(file)} has none"
             raise InputError("BAD_VALUE", f"{key}.{entry}", message)
-    if not os.path.isfile(file):
+    if not is_there(file):
         raise InputError("NO_FILE", f"{key}.file", f"there is no file {file}; paths are relative to the job file")
     name, solids = section.get("object"), _names(section.get("solids"), f"{key}.solids", _SOLID)
     if solids and (section.get("faces") or section.get("start_edges")):
@@ -139,4 +140,6 @@ def _settings(section: Any, part: str) -> list[tuple[str, str, str]]:
 
 def absolute(file: str, path: str) -> str:
     """`file` as an absolute path; relative ones start at the folder of the job file `path`."""
-    return os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(path)), os.path.expanduser(file)))
+    found = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(path)), expanded(file)))
+    located(found)  # who collects what a job is made of is told of it
+    return found

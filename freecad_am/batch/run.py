@@ -80,7 +80,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
     paths.require_freecad()
     import FreeCAD
 
-    try:
+    with told_by_keys(job):
         cell = check(job)
         with one_thread(), outputs.Outputs(folder, session) as files:
             document = job_document.made(job)
@@ -97,6 +97,13 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
 
             session.issues(issue for issue in stages.issues if issue.code != LARGE)
             return result
+
+
+@contextlib.contextmanager
+def told_by_keys(job: Job) -> Iterator[None]:
+    """Errors about stages of a document as ones about keys of the job."""
+    try:
+        yield
     except InputError as found:
         error = in_words_of_job(found)
         if error.where.split(".")[0].split("[")[0] in SECTIONS:
@@ -114,6 +121,16 @@ def check(job: Job) -> Any:
 
         post: Any = catalogue.load(job.program.post)
         post.program_name(job.name, "name")
+    resolved = resolved_cell(job)
+    if resolved is not None and job.program is not None:
+        from freecad_am.objects import program
+
+        program.refuse(resolved, job.process, job.program)
+    return resolved
+
+
+def resolved_cell(job: Job) -> Any:
+    """The cell of a job without its feature, or None. InputError as `core.kinematics.cell.resolve`."""
     if job.cell is None:
         return None
     import numpy as np
@@ -121,12 +138,7 @@ def check(job: Job) -> Any:
     from freecad_am.core.kinematics import cell
     from freecad_am.objects import user_machines
 
-    resolved = cell.resolve(job.cell, np.eye(4), folders=user_machines.folders())
-    if job.program is not None:
-        from freecad_am.objects import program
-
-        program.refuse(resolved, job.process, job.program)
-    return resolved
+    return cell.resolve(job.cell, np.eye(4), folders=user_machines.folders())
 
 
 def _curved_in_vain(job: Job, stages: Stages) -> str:

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, fields
 from typing import Any
 
+from freecad_am.core.geometry.located import is_there
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.inspection import AUTO, BEST, NONE, UNITS, InspectionParameters
@@ -50,7 +50,7 @@ def scan_of(given: dict[str, Any], strategy: Any, path: str) -> ScanSource | Non
         key = next(iter(given))
         raise InputError("BAD_VALUE", f"{PREFIX}.{key}", f"there is no scan; give its file as {PREFIX}.scan, or leave it")
     file = absolute(job_fields.text(given["scan"], f"{PREFIX}.scan"), path)
-    if not os.path.isfile(file):
+    if not is_there(file):
         raise InputError("NO_FILE", f"{PREFIX}.scan", f"there is no file {file}; paths are relative to the job file")
     for key, choices in (("scan_unit", (AUTO, *UNITS)), ("scan_fit", FITS)):
         if given.get(key, AUTO) not in choices:

@@ -95,7 +95,7 @@ def _carry_out(work: Callable[[], int], channel: int, passed: list[int]) -> None
     try:
         for number in SIGNALS:
             signal.signal(number, _interrupted)
-        _end_with_parent()
+        end_with_parent()
         status = INTERRUPTED if passed else work()
     except KeyboardInterrupt:
         status = INTERRUPTED
@@ -135,7 +135,8 @@ def _tidied(folder: str, made: list[str]) -> None:
             os.rmdir(path)
 
 
-def _end_with_parent() -> None:
+def end_with_parent() -> None:
+    """Have the system end this process when the one that has made it ends, however that does."""
     import ctypes
 
     parent = os.getppid()

@@ -3,29 +3,43 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import csv
 import io
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from freecad_am.core.geometry import located
 from freecad_am.core.issues import InputError
 
-from . import job, tree
+from . import job, run, tree
 
 SETTING = "part.set."
 
 
 @dataclass(frozen=True)
 class Row:
-    """One row: its number (from 1), the cells by column, the job or why there is none, and its folder's name."""
+    """One row: its number (from 1), the cells by column, its folder's name, why there is no job if there is none, and
+    `files`, the absolute names of the files that the job names. The job itself is made anew where it is planned."""
 
     number: int
     cells: dict[str, str]
     folder: str
-    job: job.Job | None
-    error: InputError | None
+    base: tree.Tree = field(repr=False)
+    path: str
+    label: str
+    error: InputError | None = None
+    files: frozenset[str] = frozenset()
+
+    def tree(self) -> tree.Tree:
+        """The values of the job. Raises InputError for a cell that is not understood."""
+        changed = tree.Tree(self.label, copy.deepcopy(self.base.values))
+        for column, cell in self.cells.items():
+            if cell:
+                _put(changed.values, column, tree.scalar(cell, changed.where(column)), changed)
+        return changed
 
 
 def read(table: str, job_path: str) -> tuple[list[str], list[Row]]:
@@ -34,8 +48,11 @@ def read(table: str, job_path: str) -> tuple[list[str], list[Row]]:
     base = tree.read(job_path)
     columns, cells = _cells(tree.text_of(table, label), label)
     folders = _folders(columns, cells)
-    return columns, [_row(n, columns, row, folder, base, job_path, label)
-                     for n, (row, folder) in enumerate(zip(cells, folders), 1)]
+    known: dict[Any, frozenset[str]] = {}
+    return columns, [
+        _checked(Row(n, dict(zip(columns, row)), folder, base, job_path, f"{label} row {n}"), known)
+        for n, (row, folder) in enumerate(zip(cells, folders), 1)
+    ]
 
 
 def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
@@ -73,15 +90,27 @@ def _folders(columns: list[str], cells: list[list[str]]) -> list[str]:
     return names if usable else numbers
 
 
-def _row(number: int, columns: list[str], cells: list[str], folder: str, base: tree.Tree, path: str, label: str) -> Row:
-    changed = tree.Tree(f"{label} row {number}", copy.deepcopy(base.values))
+def _checked(row: Row, known: dict[Any, frozenset[str]]) -> Row:
+    """The row with its error or files; `known`: files of cells met before."""
     try:
-        for column, cell in zip(columns, cells):
-            if cell:
-                _put(changed.values, column, tree.scalar(cell, changed.where(column)), changed)
-        return Row(number, dict(zip(columns, cells)), folder, job.from_tree(changed, path), None)
+        with located.recorded() as named:
+            found = job.from_tree(row.tree(), row.path)
     except InputError as error:
-        return Row(number, dict(zip(columns, cells)), folder, None, error)
+        return replace(row, error=error)
+    if found.cell not in known:
+        known[found.cell] = _files_of_cell(found)
+    files = named | known[found.cell]
+    return replace(row, files=known.setdefault(frozenset(files), frozenset(files)))  # one set for all rows alike
+
+
+def _files_of_cell(found: job.Job) -> frozenset[str]:
+    """Of its machines, with the shapes of their links. What is wrong with them is told as the row is planned."""
+    with located.recorded() as named, contextlib.suppress(InputError):
+        cell = run.resolved_cell(found)
+        for shape in () if cell is None else cell.machine.shapes:
+            if shape is not None:
+                located.located(shape.path)
+    return frozenset(named)
 
 
 def _put(values: dict[str, Any], column: str, value: Any, changed: tree.Tree) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.geometry.located import located
 from ..core.geometry.mesh.file_unit import MESHES
 from .apart import apart
 from .read import read_mesh, read_shape
@@ -25,6 +26,7 @@ def triangles(path: Path) -> tuple[Array, NDArray[np.int64]]:
     A file is read again only where it has changed. Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or
     'BAD_FILE' naming the file.
     """
+    path = located(path)
     try:
         now = path.stat()
     except OSError:

@@ -15,6 +15,7 @@ import Mesh
 import numpy as np
 import Part
 
+from ..core.geometry.located import located
 from ..core.geometry.mesh.file_unit import MESHES
 from ..core.issues import InputError
 from . import obj_polygons, three_mf
@@ -29,7 +30,7 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
 
     Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or 'BAD_FILE' naming the file.
     """
-    file = Path(path)
+    file = located(path)
     where = file.name or str(path)
     suffix = file.suffix.lower()
     if not file.exists():
@@ -57,7 +58,7 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
 def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
     """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. scale: mm of one unit of an STL or OBJ file,
     which tells none; a 3MF file tells its own. InputErrors as `read_shape`."""
-    file = Path(path)
+    file = located(path)
     where = file.name or str(path)
     if not file.is_file():
         raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")

@@ -17,6 +17,7 @@ from ..core.collision.nozzle import depositing
 from ..core.collision.scene import scene
 from ..core.geometry import frames
 from ..core.geometry.file_content import digest
+from ..core.geometry.located import is_there, located
 from ..core.geometry.mesh.file_unit import MESHES
 from ..core.geometry.surroundings import Body, box
 from ..core.issues import InputError
@@ -49,7 +50,7 @@ def bodies_of(settings: CellParameters) -> tuple[Body, ...]:
 def hashes_of(text: str) -> list[str]:
     """Of the files that a text of obstacles names, those that are there. InputError of one that is too large."""
     files = [(Path(one.file), f"{WHERE} {one.name}") for one in obstacles(text) if one.file]
-    return [digest(file, LARGEST, "BAD_FILE", where) for file, where in files if file.is_file()]
+    return [digest(file, LARGEST, "BAD_FILE", where) for file, where in files if is_there(file)]
 
 
 def _body(one: Obstacle) -> Body:
@@ -57,7 +58,7 @@ def _body(one: Obstacle) -> Body:
     if one.size is not None:
         return box(one.size, pose, one.name)
     try:
-        found = _read(Path(one.file))
+        found = _read(located(one.file))
     except InputError as error:
         raise InputError(error.code, f"{WHERE} {one.name}", error.message) from None
     return dataclasses.replace(found, name=one.name).moved(pose)

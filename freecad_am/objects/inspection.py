@@ -12,6 +12,7 @@ from typing import Any
 from ..brep.distance import skin
 from ..core.geometry.curves.profile import RevolvedWall
 from ..core.geometry.file_content import digest
+from ..core.geometry.located import is_there
 from ..core.inspection import inspect, point_file, surfaces, table
 from ..core.inspection.planned import Planned, of_triangles
 from ..core.issues import InputError
@@ -83,7 +84,7 @@ class Inspection(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         path = file_of(obj)
         # a file that is gone is taken to be what it was: the result has its points
-        known = _digest(path, f"{obj.Label}.File") if os.path.isfile(path) else obj.FileDigest
+        known = _digest(path, f"{obj.Label}.File") if is_there(path) else obj.FileDigest
         shape = [] if stage_of(obj.Planned) is not None else [fingerprint(obj.Planned)]
         return [os.path.basename(path), known, *shape]
 

@@ -10,6 +10,7 @@ import FreeCAD as App
 
 from ..brep.apart import apart
 from ..brep.read import placed_mesh, read_mesh, read_shape
+from ..core.geometry.located import is_there, located
 from ..core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ..core.issues import InputError
 from . import document_file, hooks
@@ -32,12 +33,12 @@ def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[An
         return hooks.carry_out(lambda: read_mesh(path, scale), stem, READING), stem
     if extension.lower() != ".fcstd":
         return hooks.carry_out(lambda: read_shape(path), stem, READING), stem
-    if not os.path.isfile(path):
+    if not is_there(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     for document in App.listDocuments().values():
         if document.FileName and os.path.realpath(document.FileName) == os.path.realpath(path):
             return _shape_in(document, path, object_name)  # open already: it is the user's, and stays open
-    return hooks.carry_out(lambda: apart(_shape_of_file, path, object_name), stem, READING)
+    return hooks.carry_out(lambda: apart(_shape_of_file, str(located(path)), object_name), stem, READING)
 
 
 def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:

@@ -8,6 +8,7 @@ import os
 
 import FreeCAD as App
 
+from ..core.geometry.located import is_there
 from ..core.issues import InputError
 from ..core.kinematics import calibration, machine, urdf_reference
 from . import preferences
@@ -15,8 +16,19 @@ from . import preferences
 FOLDER = os.path.join("RoboticAM", "machines")
 
 
+_travelled: tuple[str, ...] | None = None  # folders of the machine that a job has come from
+
+
+def travelled(named: tuple[str, ...]) -> None:
+    """From now on `folders` are those of another machine, whose files are copies (`core.geometry.located`)."""
+    global _travelled
+    _travelled = named
+
+
 def folders() -> tuple[str, ...]:
     """Folders with the user's machine files, those that exist."""
+    if _travelled is not None:
+        return _travelled
     own = os.path.join(App.getUserAppDataDir(), FOLDER)
     return tuple(folder for folder in (own, preferences.machine_folder()) if preferences.existing(folder))
 
@@ -44,7 +56,7 @@ def files_of(name: str) -> list[str]:
     """The user's files that a machine given by its id or by a path is made of; none of a built-in or unknown one."""
     measured = calibration.named(name)
     if measured is not None:
-        return [*files_of(measured.machine), *([measured.file] if os.path.isfile(measured.file) else [])]
+        return [*files_of(measured.machine), *([measured.file] if is_there(measured.file) else [])]
     meant = urdf_reference.reference(name)
     candidates = [name if meant is None else meant.file, *(os.path.join(folder, f"{name}.json") for folder in folders())]
-    return [path for path in candidates if os.path.isfile(path)][:1]
+    return [path for path in candidates if is_there(path)][:1]

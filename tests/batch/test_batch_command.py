@@ -79,7 +79,7 @@ def test_rows_that_were_interrupted_count(workshop, monkeypatch, ends, worst):
     ))
     told = []
     session = SimpleNamespace(outcome="", say=told.append, progress=told.append, out=told.append)
-    assert rows.run(str(workshop.folder / "rows.csv"), str(workshop.job), None, 2, session) == worst
+    assert rows.run(str(workshop.folder / "rows.csv"), str(workshop.job), None, rows.How(processes=2), session) == worst
     assert [line.split(",")[0] for line in told[-1].splitlines()[1:]] == ["1", "2"]
 
 

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 import pytest
 
@@ -54,7 +55,7 @@ def test_a_batch_stops_with_its_rows(workshop):
     top = workshop.folder / "rows"
     whole = {"cup.FCStd", "waypoints.csv", "report.json", "report.html"}
     assert not list(top.rglob(".unfinished*"))
-    for folder in top.iterdir() if top.exists() else ():
+    for folder in filter(Path.is_dir, top.iterdir()) if top.exists() else ():
         assert whole <= {path.name for path in folder.iterdir()}
     time.sleep(0.5)
     assert not list(top.rglob(".unfinished*"))

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..issues import InputError
+from .located import located
 
 MB = 1_000_000
 
@@ -29,7 +30,8 @@ def digest(path: str | Path, largest: int, code: str, where: str) -> str:
 
 
 def _pieces(path: str | Path, largest: int, code: str, where: str) -> Iterator[bytes]:
-    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))  # a pipe would wait
+    waits_not = getattr(os, "O_NONBLOCK", 0)  # as for a pipe
+    descriptor = os.open(located(path), os.O_RDONLY | waits_not | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as stream:
         told = os.fstat(descriptor)
         if not stat.S_ISREG(told.st_mode):

@@ -18,6 +18,7 @@ import numpy as np
 from ..geometry import frames
 from ..geometry.file_content import content
 from ..geometry.frames import Array
+from ..geometry.located import is_there
 from ..issues import InputError
 from .chain import Chain
 
@@ -52,7 +53,7 @@ def read(path: Path) -> tuple[Array, str]:
 
     Raises InputError UNKNOWN_MACHINE without the file, BAD_CALIBRATION naming line or key.
     """
-    if not path.is_file():
+    if not is_there(path):
         raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no calibration {path}; give the path of the YAML "
                          "file that ur_calibration wrote of this arm")
     try:

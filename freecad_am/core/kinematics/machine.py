@@ -10,7 +10,6 @@ from __future__ import annotations
 import functools
 import json
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..geometry.frames import Array
+from ..geometry.located import is_there, located
 from ..issues import InputError
 from . import calibration, check_poses, urdf_machine
 from . import machine_entries as entry
@@ -169,14 +169,14 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
         return _calibrated(load(measured.machine, folders), Path(measured.file).expanduser())
     if text.lower().endswith(".json"):
         path = Path(text).expanduser()
-        if not path.is_file():
+        if not is_there(path):
             raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no machine file {text}")
         return _parse(read(path))
     meant = reference(text)
     if meant is not None:
         return of_description(f"{meant}", *urdf_machine.described(meant))
     path = file_of(text, folders)
-    machine = _built_in(path, path.stat().st_mtime_ns) if path.parent == BUILT_IN else _parse(read(path))
+    machine = _built_in(path, located(path).stat().st_mtime_ns) if path.parent == BUILT_IN else _parse(read(path))
     if machine.id != text:
         raise InputError("BAD_MACHINE", f"{path}: id", f"{machine.id!r} is not the name of the file, {text!r}")
     return machine
@@ -192,7 +192,7 @@ def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
     """The file of a machine of this id; InputError UNKNOWN_MACHINE when there is none."""
     for folder in (*folders, BUILT_IN):
         path = Path(folder).expanduser() / f"{name}.json"
-        if path.stem == name and os.path.exists(path):  # a name may be too long for a file
+        if path.stem == name and is_there(path):  # a name may be too long for a file
             return path
     raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{name!r} is not known; {_near(name, sorted(_files(folders)))}")
 

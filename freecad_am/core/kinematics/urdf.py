@@ -15,6 +15,7 @@ import numpy as np
 
 from ..geometry import frames
 from ..geometry.frames import Array
+from ..geometry.located import is_there, located
 from ..issues import InputError
 from . import urdf_xml
 from .chain import Chain
@@ -216,11 +217,11 @@ class Urdf:
         """The file of a mesh. A package is a folder of its name above the URDF, or beside one that is."""
         if name.startswith("package://"):
             package, _, rest = name[len("package://"):].partition("/")
-            folders = [folder / package for folder in self.path.resolve().parents]
-            return next((folder / rest for folder in folders if (folder / rest).is_file()), None)
+            folders = [folder / package for folder in located(self.path).resolve().parents]
+            return next((folder / rest for folder in folders if is_there(folder / rest)), None)
         file = Path(name.removeprefix("file://"))
-        file = file if file.is_absolute() else self.path.resolve().parent / file
-        return file if file.is_file() else None
+        file = file if file.is_absolute() else located(self.path).resolve().parent / file
+        return file if is_there(file) else None
 
     def _colour(self, visual: Element) -> tuple[float, float, float] | None:
         material = visual.first("material")

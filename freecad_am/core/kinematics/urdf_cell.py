@@ -15,6 +15,7 @@ import numpy as np
 
 from ..geometry import frames
 from ..geometry.frames import Array
+from ..geometry.located import is_there
 from ..issues import InputError
 from ..parameters.external import MORE, PART, ROBOT, WHERE, External, Pose
 from .urdf import FIXED, TIPS, Urdf
@@ -140,7 +141,7 @@ def texts_of(meant: Reference) -> tuple[str, str]:
     if meant.base is not None or meant.tip is not None:
         raise InputError("BAD_VALUE", WHERE, f"{WHOLE} takes all of the file; leave out base and tip of the machine, or "
                          "name the mechanisms one by one")
-    if not Path(meant.file).expanduser().is_file():
+    if not is_there(meant.file):
         raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no URDF {meant.file}")
     found = UrdfCell(meant.file)
     beside = f"{MORE} ".join(map(str, found.external()))

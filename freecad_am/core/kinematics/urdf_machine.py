@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..geometry.frames import Array
+from ..geometry.located import is_there
 from ..issues import InputError
 from ..parameters.external import WHERE
 from . import opw_recognition
@@ -51,7 +52,7 @@ def chain_of(meant: Reference) -> Description:
 def _ends(meant: Reference, where: str) -> tuple[Urdf, str, str]:
     """A file, and the links that a chain begins and ends with: those that are meant, or that the file proposes."""
     path = Path(meant.file).expanduser()
-    if not path.is_file():
+    if not is_there(path):
         raise InputError("UNKNOWN_MACHINE", where, f"there is no URDF {meant.file}")
     robot = Urdf(path)
     base = meant.base or robot.bases()[0]

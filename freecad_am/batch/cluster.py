@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rows of a batch planned by the workers of a Dask cluster, which is somebody else's engine (decision 0018).
+
+Code and files go with the rows, and outputs come back with the results, so that workers need no folder of ours. Rows whose
+worker is lost are done again by Dask.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import os
+import sys
+import time
+import uuid
+from collections.abc import Iterator
+from typing import Any
+
+from freecad_am.core.issues import InputError
+
+from . import outputs, staging, versions
+from .console import Session
+from .row_journal import Journal
+from .table import Row
+
+WHERE, CODE = "--scheduler", "SCHEDULER"
+WORKER = "freecad_am_row_worker"
+ANSWER = 10.0  # s for a scheduler to answer
+READY = 180.0  # s for every worker to have FreeCAD loaded
+GONE = 60.0  # s without scheduler or without workers that are waited
+LOOK = 0.5  # s between looks at what has changed
+AHEAD = 2  # rows given out for each that can be planned at the same time
+LARGEST = 1 << 30  # bytes of a file that goes along
+
+
+class Cluster:
+    """The workers of a scheduler, ready for the rows of one batch. Use as a context."""
+
+    def __init__(self, address: str, session: Session) -> None:
+        """Raises InputError NO_DASK, or SCHEDULER where there is none, it or a worker is of another version of Dask, or a
+        worker has no FreeCAD."""
+        self._address, self._session = address, session
+        self._told: set[str] = set()
+        self._token = uuid.uuid4().hex
+        self._kept: dict[str, Any] = {}
+        self._client = _connected(address)
+        try:
+            _refuse_versions(address, self._client)
+            self._module = _sent_module(self._client)
+            self._settings = _settings()
+            self._package = self._sent(versions.package(), "code")
+            self._make_ready()
+        except BaseException:
+            self._close()
+            raise
+
+    def __enter__(self) -> Cluster:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._close()
+
+    def planned(self, rows: list[Row], folder: str, dry: bool, journal: Journal) -> Iterator[tuple[Row, dict[str, Any]]]:
+        """Rows with their results, as they end; their outputs are in place below `folder`, and written down. Raises
+        InputError SCHEDULER where scheduler or workers are gone for a minute."""
+        waiting, running = list(reversed(rows)), {}
+        since = time.monotonic()
+        try:
+            while waiting or running:
+                while waiting and len(running) < AHEAD * max(1, self._threads()):
+                    row = waiting.pop()
+                    running[self._submitted(row, dry)] = row
+                done = [future for future in _first_done(list(running)) if future in running]
+                for future in done:
+                    row = running.pop(future)
+                    yield row, self._result(future, row, folder, dry, journal)
+                self._session.check()
+                since = time.monotonic() if done or self._is_there() else since
+                if time.monotonic() - since > GONE:
+                    raise self._gone()
+        finally:
+            with contextlib.suppress(Exception):
+                self._client.cancel(list(running), force=True)
+
+    def _submitted(self, row: Row, dry: bool) -> Any:
+        names = [name for name in sorted(row.files) if os.path.isfile(name)]
+        links = [(name, os.path.realpath(name)) for name in names if os.path.realpath(name) != name]
+        named = sorted({os.path.realpath(name) for name in names})
+        order = {
+            "label": row.label, "values": row.tree().values, "path": os.path.abspath(row.path), "dry": dry, "files": named,
+            "links": links,
+        }
+        return self._client.submit(
+            self._module.planned, self._token, self._settings, order, self._package, *map(self._file, named), pure=False,
+            key=f"freecad-am-row-{row.number}-{self._token}",
+        )
+
+    def _file(self, path: str) -> Any:
+        """A file of this machine on the cluster, once for all rows."""
+        if path not in self._kept:
+            if os.path.getsize(path) > LARGEST:
+                raise InputError(CODE, path, "a file of more than 1 GB is not sent to a cluster; plan without --scheduler")
+            with open(path, "rb") as stream:
+                self._kept[path] = self._sent(stream.read(), f"file-{len(self._kept)}")
+        return self._kept[path]
+
+    def _sent(self, content: bytes, name: str) -> Any:
+        """A result on the cluster that is made of the content again if the worker that has it is lost."""
+        return self._client.submit(self._module.kept, content, pure=False, key=f"freecad-am-{name}-{self._token}")
+
+    def _make_ready(self) -> None:
+        """Tell the versions of every worker. InputError where there is none, or one cannot plan."""
+        from distributed import wait
+
+        workers = sorted(self._workers())
+        if not workers:
+            raise InputError(CODE, WHERE, f"{self._address} has no workers; start some with: dask worker {self._address}")
+        asked = {worker: self._client.submit(
+            self._module.ready, self._token, self._settings, self._package, workers=[worker], pure=False,
+            key=f"freecad-am-ready-{number}-{self._token}",
+        ) for number, worker in enumerate(workers)}
+        with contextlib.suppress(TimeoutError):
+            wait(list(asked.values()), timeout=READY)
+        for worker, future in asked.items():
+            if future.status == "error":
+                raise InputError(CODE, worker, f"this worker cannot plan: {_why(future)}; install FreeCAD there, or end it")
+            if future.status == "finished":
+                self._tell(worker, future.result())
+
+    def _tell(self, worker: str, found: dict[str, str]) -> None:
+        """The versions of a worker, the first time."""
+        if worker in self._told:
+            return
+        self._told.add(worker)
+        own = versions.told()
+        other = [name for name in sorted({*own, *found}) if own.get(name) != found.get(name)]
+        told = ", ".join(f"{name} {version}" for name, version in found.items())
+        self._session.say(f"note[WORKER] {worker}: {told}")
+        if other:
+            ours = ", ".join(f"{name} {own.get(name, 'missing')}" for name in other)
+            self._session.say(f"warning[VERSIONS] {worker}: here is {ours}; last digits of its rows may differ from what is "
+                              "planned here")
+
+    def _result(self, future: Any, row: Row, folder: str, dry: bool, journal: Journal) -> dict[str, Any]:
+        """What a row has come to, its outputs in place and written down, Ctrl-C or not."""
+        if future.status != "finished":
+            if future.status == "error" and type(future.exception()).__name__ == "KilledWorker":
+                message = "each worker that planned it was lost; look into their memory, and plan this row alone"
+                return {"exit": 1, "message": message, "lines": [f"error[LOST] row: {message}"]}
+            raise InputError(CODE, WHERE, f"{self._address} gave up row {row.number}: {_why(future)}; rows that were done "
+                             "are whole: --resume plans the others")
+        result: dict[str, Any] = future.result()
+        self._tell(result.pop("worker"), result.pop("versions"))
+        found = result.pop("files")
+        with staging.uninterrupted():
+            if found:
+                with outputs.Outputs(os.path.join(folder, row.folder)) as files:
+                    for name, content in found.items():
+                        files.write(name, content)
+                    files.publish(outputs.earlier_outputs(files.folder))
+            journal.keep(row, dry, result)
+        return result
+
+    def _threads(self) -> int:
+        return sum(int(worker["nthreads"]) for worker in self._workers().values())
+
+    def _workers(self) -> dict[str, Any]:
+        found: dict[str, Any] = self._client.scheduler_info().get("workers", {})
+        return found
+
+    def _is_there(self) -> bool:
+        return self._client.status == "running" and bool(self._workers())
+
+    def _gone(self) -> InputError:
+        what = "it has no workers any more" if self._client.status == "running" else "it does not answer any more"
+        return InputError(CODE, WHERE, f"{self._address}: {what}; rows that were done are whole: --resume plans the others")
+
+    def _close(self) -> None:
+        with contextlib.suppress(Exception):
+            if self._client.status == "running":
+                self._client.run(self._module.stop, self._token, on_error="ignore")
+        with contextlib.suppress(Exception):
+            self._client.close(timeout=ANSWER)
+
+
+def _connected(address: str) -> Any:
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise InputError("NO_DASK", WHERE, f"rows are planned on a cluster by Dask, which is not there ({error}); install "
+                         "python3-distributed, or leave the option out") from None
+    try:
+        return Client(address, timeout=ANSWER)  # which `wait` goes by
+    except Exception as error:  # of sockets, of names, of messages that are not understood
+        why = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(CODE, WHERE, f"no scheduler answers at {address!r} ({why}); start one with: dask scheduler, give "
+                         "its address such as tcp://host:8786, and use the same version of Dask everywhere") from None
+
+
+def _refuse_versions(address: str, client: Any) -> None:
+    """Dask promises nothing between versions: results come late, not at all, or end in errors of its own."""
+    found = client.get_versions()
+    ours = found["client"]["packages"]["distributed"]
+    for where, told in (("scheduler", found["scheduler"]), *sorted(found["workers"].items())):
+        theirs = (told or {}).get("packages", {}).get("distributed")
+        if theirs != ours:
+            raise InputError(CODE, WHERE, f"{address}: {where} has distributed {theirs}, this command {ours}; install the "
+                             "same version everywhere")
+
+
+def _sent_module(client: Any) -> Any:
+    """The module of workers, sent to those that are there and those that come, and imported here under the same name."""
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), f"{WORKER}.py")
+    client.upload_file(path)
+    if WORKER not in sys.modules:
+        meant = importlib.util.spec_from_file_location(WORKER, path)
+        assert meant is not None and meant.loader is not None
+        sys.modules[WORKER] = importlib.util.module_from_spec(meant)
+        meant.loader.exec_module(sys.modules[WORKER])
+    return sys.modules[WORKER]
+
+
+def _settings() -> dict[str, Any]:
+    from freecad_am.objects import user_machines
+
+    return {"machines": [os.path.abspath(folder) for folder in user_machines.folders()], "home": os.path.expanduser("~")}
+
+
+def _first_done(futures: list[Any]) -> list[Any]:
+    """Those that have ended in one way or another, waited for a moment."""
+    from distributed import wait
+
+    try:
+        wait(futures, timeout=LOOK, return_when="FIRST_COMPLETED")
+    except Exception:  # nothing yet, or some cancelled at once, whose status tells it
+        time.sleep(0.02)
+    return [future for future in futures if future.status != "pending"]
+
+
+def _why(future: Any) -> str:
+    if future.status != "error":
+        return f"it was {future.status}"
+    return " ".join(str(future.exception()).split()) or type(future.exception()).__name__

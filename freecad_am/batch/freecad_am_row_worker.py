@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a worker of a Dask cluster does for a batch. This file is sent to workers by itself and imports nothing of ours.
+
+Our code comes as an archive, which is unpacked in the worker's own folder, with the files of the jobs beside it. Rows are
+planned by a process of `row_host.py`, found by the launcher: a worker's Python needs neither FreeCAD nor numpy. There are as
+many such processes as the worker has rows at the same time, and they end with it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import os
+import queue
+import shutil
+import subprocess
+import tempfile
+import threading
+import zipfile
+from typing import Any
+
+LONGEST = 2000  # characters of what a process says that does not start
+_ATTRIBUTE = "_freecad_am_batches"  # of the worker: this module may be sent again, by another batch
+
+
+class Batch:
+    """The folder and the processes of one batch on one worker."""
+
+    def __init__(self, folder: str, settings: dict[str, Any]) -> None:
+        self.path = tempfile.mkdtemp(prefix="freecad-am-", dir=folder)
+        self.settings = {**settings, "copies": os.path.join(self.path, "copies"), "folder": self.path}
+        self.versions: dict[str, str] = {}
+        self._idle: queue.SimpleQueue[subprocess.Popen[str]] = queue.SimpleQueue()
+        self._all: list[subprocess.Popen[str]] = []
+        self._lock = threading.Lock()
+        self._stopped = False
+
+    def unpacked(self, package: bytes, files: list[tuple[str, bytes]], links: list[tuple[str, str]]) -> None:
+        """Put code and files where they belong, what is not there yet."""
+        with self._lock:
+            if not os.path.isdir(os.path.join(self.path, "code")):
+                with zipfile.ZipFile(io.BytesIO(package)) as archive:
+                    archive.extractall(os.path.join(self.path, "unpacking"))
+                os.replace(os.path.join(self.path, "unpacking"), os.path.join(self.path, "code"))
+            for name, content in files:
+                target = self.settings["copies"] + name
+                if not os.path.exists(target):
+                    os.makedirs(os.path.dirname(target), exist_ok=True)
+                    with open(target, "wb") as stream:
+                        stream.write(content)
+            for name, meant in links:
+                target = self.settings["copies"] + name
+                if not os.path.lexists(target):
+                    os.makedirs(os.path.dirname(target), exist_ok=True)
+                    os.symlink(self.settings["copies"] + meant, target)
+
+    def ask(self, order: dict[str, Any]) -> dict[str, Any]:
+        """The answer of a process. RuntimeError where there can be none, with what it said."""
+        process = self._process()
+        answer = _exchanged(process, order)
+        if answer is None:
+            raise RuntimeError(_last_words(process))
+        self._idle.put(process)
+        return answer
+
+    def stop(self) -> None:
+        """End it with what it is doing, and remove its folder."""
+        with self._lock:
+            self._stopped = True
+            for process in self._all:
+                with contextlib.suppress(OSError):
+                    process.terminate()
+            for process in self._all:
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(10.0)
+                if process.poll() is None:
+                    process.kill()
+        shutil.rmtree(self.path, ignore_errors=True)
+
+    def _process(self) -> subprocess.Popen[str]:
+        with contextlib.suppress(queue.Empty):
+            return self._idle.get_nowait()
+        with self._lock:
+            if self._stopped:
+                raise RuntimeError("the batch has ended")
+            process = subprocess.Popen(
+                ["/bin/sh", os.path.join(self.path, "code", "freecad-am"), "rows"], text=True, cwd=self.path,
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+            )
+            self._all.append(process)
+        answer = _exchanged(process, self.settings)
+        if answer is None:
+            raise RuntimeError(_last_words(process))
+        self.versions = answer
+        return process
+
+
+def kept(content: bytes) -> bytes:
+    """The content: a file of a batch as a result of its own, which Dask makes again where it is lost with a worker."""
+    return content
+
+
+def ready(token: str, settings: dict[str, Any], package: bytes) -> dict[str, str]:
+    """The versions of what computes on this worker; RuntimeError where FreeCAD is missing."""
+    batch = _batch(token, settings)
+    batch.unpacked(package, [], [])
+    return dict(batch.ask({"versions": True}))
+
+
+def planned(token: str, settings: dict[str, Any], order: dict[str, Any], package: bytes, *contents: bytes) -> dict[str, Any]:
+    """The result of a row, with its outputs as `files`, the worker's address and its versions."""
+    from distributed import get_worker
+
+    batch = _batch(token, settings)
+    asked = dict(order)
+    batch.unpacked(package, list(zip(asked.pop("files"), contents, strict=True)), asked.pop("links"))
+    with tempfile.TemporaryDirectory(dir=batch.path) as folder:
+        result = batch.ask({**asked, "folder": os.path.join(folder, "row")})
+        result["files"] = dict(_files(os.path.join(folder, "row")))
+    return {**result, "worker": get_worker().address, "versions": batch.versions}
+
+
+def stop(token: str, dask_worker: Any) -> None:
+    """End what this worker does for a batch. `dask_worker` is put in by Dask."""
+    batch = getattr(dask_worker, _ATTRIBUTE, {}).pop(token, None)
+    if batch is not None:
+        batch.stop()
+
+
+_making = threading.Lock()
+
+
+def _batch(token: str, settings: dict[str, Any]) -> Batch:
+    from distributed import get_worker
+
+    worker = get_worker()
+    with _making:
+        known: dict[str, Batch] = worker.__dict__.setdefault(_ATTRIBUTE, {})
+        if token not in known:
+            known[token] = Batch(worker.local_directory, settings)
+        return known[token]
+
+
+def _exchanged(process: subprocess.Popen[str], told: dict[str, Any]) -> Any:
+    """What a process answers to a line; None where it ends."""
+    assert process.stdin is not None and process.stdout is not None
+    try:
+        process.stdin.write(json.dumps(told) + "\n")
+        process.stdin.flush()
+        line = process.stdout.readline()
+    except OSError:
+        return None
+    return json.loads(line) if line.endswith("\n") else None
+
+
+def _last_words(process: subprocess.Popen[str]) -> str:
+    assert process.stderr is not None
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        process.wait(10.0)
+    process.kill()
+    said = " ".join(process.stderr.read().split())
+    return said[-LONGEST:] or f"the process that plans rows ended with status {process.returncode}"
+
+
+def _files(folder: str) -> Any:
+    """Names, with slashes, and contents of what is in a folder."""
+    for place, _, names in os.walk(folder):
+        for name in names:
+            path = os.path.join(place, name)
+            with open(path, "rb") as stream:
+                yield os.path.relpath(path, folder).replace(os.sep, "/"), stream.read()

@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`batch --scheduler`: rows planned by the workers of a Dask cluster."""
+
+import contextlib
+import csv
+import importlib.util
+import io
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import zipfile
+from pathlib import Path
+
+import Mesh
+import Part
+import pytest
+
+from freecad_am.batch import freecad_am_row_worker, rows, table, versions
+from freecad_am.core.issues import InputError
+
+dask = pytest.mark.skipif(importlib.util.find_spec("distributed") is None,
+                          reason="needs Dask: apt install python3-distributed")
+HEIGHTS = (13, 14, 15, 16, 18, 20)
+WRITTEN = ("CreationDate", "LastModifiedDate", "Uid")  # of a document, another one each time it is saved
+
+
+class Cluster:
+    """Two workers in a folder of their own."""
+
+    def __init__(self, *words):
+        self.folder = Path(tempfile.mkdtemp(prefix="cluster-"))  # not in a folder of pytest's, which are closed to others
+        self.folder.chmod(0o777)
+        self.process = subprocess.Popen(
+            [sys.executable, str(Path(__file__).with_name("local_cluster.py")), str(self.folder), *words],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True,
+            env={**os.environ, "HOME": str(self.folder), "FREECAD_USER_HOME": str(self.folder)},
+        )
+        self.address = json.loads(self.process.stdout.readline())
+
+    def workers(self):
+        self.process.stdin.write("\n")
+        self.process.stdin.flush()
+        return json.loads(self.process.stdout.readline())
+
+    def end(self):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    made = Cluster()
+    yield made
+    made.end()
+
+
+def started(workshop, *words):
+    return subprocess.Popen(
+        [str(workshop.launcher), "batch", "rows.csv", "--job", "cup.yaml", *words], cwd=workshop.folder, text=True,
+        env=workshop.environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )
+
+
+def done_rows(folder):
+    """The folders of rows that are done."""
+    return sorted(path.parent for path in folder.glob("row-*/report.json"))
+
+
+def wait_for(folder, count, process, patience=300):
+    until = time.monotonic() + patience
+    while len(done_rows(folder)) < count:
+        assert process.poll() is None, process.stderr.read()
+        assert time.monotonic() < until
+        time.sleep(0.02)
+
+
+def compared(content, name):
+    """A file of outputs without what another run of the same job writes otherwise: times and dates."""
+    if name.endswith("report.json"):
+        report = json.loads(content)
+        assert report.pop("timing_s")
+        return re.sub(r'"[a-z_]*time_s": [0-9.e-]+', "", json.dumps(report))
+    if name.endswith(".FCStd"):
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            parts = {entry: archive.read(entry) for entry in archive.namelist()}
+        text = parts.pop("Document.xml").decode()
+        for key in WRITTEN:
+            text, count = re.subn(rf'(<Property name="{key}"[^>]*>\s*<\w+ value=")[^"]*', r"\1", text)
+            assert count == 1, key
+        text = re.sub(r'(<Object type=[^>]* id=")\d+', r"\1", text)
+        text = re.sub(r'(<Property name="Seconds"[^>]*>\s*<Float value=")[^"]*', r"\1", text)
+        return {**parts, "Document.xml": text.splitlines()}
+    if name.endswith("report.html"):
+        return re.sub(rb"<td>[0-9]+\.[0-9]{3} s</td>", b"", content)
+    return content
+
+
+def same(one, other):
+    """Whether two sets of outputs are of the same job."""
+    assert set(one) == set(other)
+    for name in one:
+        assert compared(one[name], name) == compared(other[name], name), name
+    return True
+
+
+def write_rows(workshop, heights=HEIGHTS):
+    (workshop.folder / "rows.csv").write_text("strategy.layer_height\n" + "".join(f"{h} mm\n" for h in heights))
+
+
+@dask
+@pytest.mark.parametrize("heights", [HEIGHTS, pytest.param([10 + k / 20 for k in range(200)], marks=pytest.mark.long)],
+                         ids=["a few rows", "200 rows"])
+def test_same_bytes_as_without_and_a_lost_worker_loses_nothing(workshop, cluster, heights):
+    """The workers see none of the files: they run as another user, and the folder is closed."""
+    write_rows(workshop, heights)
+    workshop.folder.chmod(0o700)
+    before = cluster.workers()
+    process = started(workshop, "--scheduler", cluster.address, "-o", "there")
+    wait_for(workshop.folder / "there", 1, process)
+    os.kill(before[0], signal.SIGKILL)
+    out, err = process.communicate(timeout=600)
+    assert process.returncode == 0, err
+    assert [row["exit"] for row in csv.DictReader(io.StringIO(out))] == ["0"] * len(heights)
+    assert set(cluster.workers()) != set(before)
+    assert len(re.findall(r"^note\[WORKER\] tcp://\S+: FreeCAD [\d.]+, OpenCASCADE [\d.]+, ", err, re.M)) >= 2
+    assert "VERSIONS" not in err
+    here = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "here", "-j", "2")
+    assert here.out == out
+    for row in done_rows(workshop.folder / "here"):
+        assert same(workshop.files(f"here/{row.name}"), workshop.files(f"there/{row.name}"))
+    assert not list(cluster.folder.rglob("freecad-am-*"))  # nothing is left with the workers
+
+
+@dask
+def test_interrupted_and_resumed(workshop, cluster):
+    write_rows(workshop)
+    process = started(workshop, "--scheduler", cluster.address, "-o", "rows")
+    top = workshop.folder / "rows"
+    wait_for(top, 2, process)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130 and "--resume" in err, err[-1500:]
+    kept = {row.name: (row / "report.json").stat().st_mtime_ns for row in done_rows(top)}
+    assert 2 <= len(kept) < len(HEIGHTS)
+    assert not list(top.rglob(".unfinished*"))
+    until = time.monotonic() + 30
+    while list(cluster.folder.rglob("freecad-am-*")) and time.monotonic() < until:
+        time.sleep(0.1)
+    assert not list(cluster.folder.rglob("freecad-am-*"))
+    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows", "--resume", "-j", "2")
+    assert done.status == 0 and f"{len(kept)} of {len(HEIGHTS)} rows" in done.err
+    assert len(done_rows(top)) == len(HEIGHTS)
+    assert [row["strategy.layer_height"] for row in csv.DictReader(io.StringIO(done.out))] == [f"{h} mm" for h in HEIGHTS]
+    assert all(int(row["layers"]) > 2 and row["exit"] == "0" for row in csv.DictReader(io.StringIO(done.out)))
+    for name, when in kept.items():
+        assert (top / name / "report.json").stat().st_mtime_ns == when
+
+
+@dask
+def test_a_cluster_of_another_version_or_none(workshop):
+    write_rows(workshop)
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        nobody = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    for address in (nobody, "no such address", "tcp://nowhere.invalid:8786"):
+        done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--scheduler", address)
+        assert done.status == 2 and done.err.startswith("error[SCHEDULER] --scheduler: no scheduler answers"), done.err
+        assert "Traceback" not in done.err
+    other = Cluster("1999.1.0")
+    try:
+        done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--scheduler", other.address)
+    finally:
+        other.end()
+    assert done.status == 2
+    assert re.search(r"error\[SCHEDULER\] --scheduler: \S+ scheduler has distributed 1999.1.0, this command \d", done.err)
+    assert not (workshop.folder / "out").exists()
+
+
+@dask
+def test_a_cluster_without_workers_or_with_one_that_cannot_plan(workshop, cluster, monkeypatch):
+    from freecad_am.batch import cluster as module
+
+    write_rows(workshop)
+    (_, found), session = table.read(str(workshop.folder / "rows.csv"), str(workshop.job)), Told()
+    assert len(found) == len(HEIGHTS)
+    monkeypatch.setattr(module.Cluster, "_workers", lambda self: {})
+    with pytest.raises(InputError, match="has no workers; start some with: dask worker tcp://"):
+        module.Cluster(cluster.address, session)
+    monkeypatch.undo()
+    broken = io.BytesIO()
+    with zipfile.ZipFile(broken, "w") as archive:
+        archive.writestr("freecad-am", "echo no FreeCAD here >&2; exit 2")
+    monkeypatch.setattr(versions, "package", broken.getvalue)
+    with pytest.raises(InputError, match="this worker cannot plan: no FreeCAD here; install FreeCAD there"):
+        module.Cluster(cluster.address, session)
+    monkeypatch.undo()
+    monkeypatch.setattr(versions, "told", lambda: {"FreeCAD": "9.9.9"})
+    with module.Cluster(cluster.address, session):
+        pass
+    assert sum("note[WORKER]" in line for line in session.lines) == 2
+    assert sum(bool(re.match(r"warning\[VERSIONS\] tcp://\S+: here is FreeCAD 9.9.9", line)) for line in session.lines) == 2
+
+
+class Told:
+    """A session that keeps what it is told."""
+
+    def __init__(self):
+        self.lines = []
+
+    def say(self, line):
+        self.lines.append(line)
+
+
+def test_without_dask_that_is_told(workshop, monkeypatch):
+    from freecad_am.batch import cluster as module
+
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError) as error:
+        module.Cluster("tcp://127.0.0.1:1", Told())
+    assert error.value.code == "NO_DASK" and "python3-distributed" in error.value.message
+    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--scheduler", "x", "-j", "2")
+    assert done.status == 2 and "-j" in done.err
+
+
+def test_files_travel_with_a_job(workshop, tmp_path):
+    """All that a job names, wherever it lies: planned with the whole folder moved away, to the bytes it had before."""
+    home = workshop.folder / "home"
+    for name in ("cell", "meshes", "around", "tables"):
+        (home / name).mkdir(parents=True)
+    Mesh.createBox(9.0, 9.0, 9.0).write(str(home / "around" / "post.stl"))
+    machine = json.loads((Path(versions.ROOT) / "freecad_am/machines/fanuc-arcmate120ic.json").read_text())
+    machine["id"], machine["shapes"] = "mine", {"base": {"file": "../meshes/base.stl"}}
+    (home / "cell" / "mine.json").write_text(json.dumps(machine))
+    (home / "meshes" / "base.stl").write_bytes((home / "around" / "post.stl").read_bytes())
+    (home / "cell" / "cell.yaml").write_text(
+        "machine: ./mine.json\nlimits: paper\nplatform_diameter: 100 mm\nobstacles: [{file: ../around/post.stl, pose: "
+        "[3000, 0, 0, 0, 0, 0]}]\n")
+    text = workshop.text.replace("cell:\n  limits: paper\n  platform_diameter: 100 mm", "cell: home/cell/cell.yaml")
+    workshop.write_job(text.replace("layer_height: 4 mm", "layer_height: 20 mm"))
+    write_rows(workshop, (20,))
+    assert workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "out").status == 0
+    before = workshop.files("out/row-001")
+    _, (row,) = table.read(str(workshop.folder / "rows.csv"), str(workshop.job))
+    named = {str(Path(name).relative_to(workshop.folder)) for name in row.files if os.path.isfile(name)}
+    inside = {"cell/cell.yaml", "cell/mine.json", "around/post.stl", "meshes/base.stl"}
+    assert named == {"cup.step", *(f"home/{name}" for name in inside)}
+    files = [(name, Path(name).read_bytes()) for name in row.files if os.path.isfile(name)]
+    apart = tmp_path.with_name(f"{tmp_path.name}-worker")
+    apart.mkdir()
+    worker = freecad_am_row_worker.Batch(str(apart), {"machines": [], "home": "/nowhere"})
+    workshop.folder.rename(apart / "away")
+    try:
+        worker.unpacked(versions.package(), files, [])
+        result = worker.ask({"label": row.label, "values": row.tree().values, "path": row.path, "dry": False,
+                             "folder": str(apart / "row")})
+        assert result["exit"] == 0, result
+        found = {str(path.relative_to(apart / "row")): path.read_bytes() for path in (apart / "row").rglob("*")
+                 if path.is_file()}
+        assert same(before, found)
+        assert b"/nowhere" not in b"".join(found.values()) and str(apart).encode() not in b"".join(found.values())
+    finally:
+        worker.stop()
+        (apart / "away").rename(workshop.folder)
+    assert not os.path.exists(worker.path)
+
+
+def test_what_has_changed_is_planned_again(workshop):
+    """Of rows that were done: one whose cells differ, one whose outputs are gone, all where the part differs."""
+    def batch(*heights):
+        write_rows(workshop, heights)
+        done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows", "--resume", "-j", "2")
+        assert done.status == 0, done.err
+        kept = int(re.search(r"note\[RESUMED\] batch: (\d) of \d rows", done.err)[1])
+        told = [int(row["layers"]) for row in csv.DictReader(io.StringIO(done.out))]
+        return kept, told
+
+    kept, layers = batch(20, 25)
+    assert kept == 0 and layers[0] > layers[1]
+    assert batch(20, 25) == (2, layers)
+    assert batch(20, 30)[0] == 1
+    (workshop.folder / "rows" / "row-001" / "report.json").write_text("{}")
+    assert batch(20, 30)[0] == 1
+    journal = workshop.folder / "rows" / ".rows.jsonl"
+    journal.write_text(journal.read_text()[:-20] + "\nnonsense\n[]\n{}\n")  # as a kill and an editor leave it
+    assert batch(20, 30)[0] == 1
+    Part.makeSphere(45.0).exportStep(str(workshop.folder / "cup.step"))
+    assert batch(20, 30)[0] == 0
+
+
+def test_a_dry_run_refuses_and_plans_nothing(workshop):
+    (workshop.folder / "rows.csv").write_text(
+        "strategy.layer_height,program.post,name\n20 mm,,fine\n1 kg,,heavy\n20 mm,siemens,other\n")
+    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--dry-run", "-o", "dry", "-j", "2")
+    assert done.status == 2
+    assert [row["status"] for row in csv.DictReader(io.StringIO(done.out))] == ["checked", "failed", "failed"]
+    assert [path.name for path in (workshop.folder / "dry").rglob("*")] == [".rows.jsonl"]
+
+
+@pytest.mark.parametrize(("done", "now", "seconds", "says"), [
+    (3, 3, 30.0, "3 of 10 rows done, about 70 s left"), (5, 2, 600.0, "5 of 10 rows done, about 25 min left"),
+    (1, 1, 3600.0, "1 of 10 rows done, about 9.0 h left"), (10, 4, 8.0, "10 of 10 rows done"),
+])
+def test_time_left(done, now, seconds, says):
+    """Rows that were kept count as done, but not for the pace."""
+    assert rows._progress(done, 10, now, seconds) == says
+
+
+def test_files_of_jobs_are_opened_by_where_they_are():
+    """Nothing of core opens a file, or looks whether it is there, by its name alone: it would not be found on a worker."""
+    looks = re.compile(r"\.is_file\(|\.exists\(|(?<![\w.])open\(|\.read_text\(|\.read_bytes\(|isfile\(|\.stat\(")
+    core = Path(versions.ROOT) / "freecad_am" / "core"
+    found = {
+        f"{path.relative_to(core)}: {line.strip()}" for path in core.rglob("*.py")
+        for line in path.read_text(encoding="utf-8").splitlines() if looks.search(line) and "located(" not in line
+    }
+    assert found == {
+        "geometry/file_content.py: with open(descriptor, \"rb\") as stream:",  # of what is located
+        "one_thread.py: return [file for file in files if os.path.exists(file)]",  # libraries of this machine
+    }
