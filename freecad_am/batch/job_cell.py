@@ -13,7 +13,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import arrangement, calibration, proposed_cell, urdf_cell, urdf_machine, urdf_reference
 from freecad_am.core.parameters import external, obstacles
 from freecad_am.core.parameters import field as f
-from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.cell import NO_SHAPE, CellParameters
 from freecad_am.objects import user_machines
 
 from . import fields, quantity, tree
@@ -53,6 +53,8 @@ def _of_section(section: Any, path: str) -> CellParameters:
     around = section.pop("obstacles", None)
     if around not in (None, []):
         section["obstacles"] = _obstacles(around, path)
+    if isinstance(section.get("nozzle"), dict) and section["nozzle"].get("shape") not in (None, {}, NO_SHAPE):
+        section["nozzle"] = {**section["nozzle"], "shape": _shape(section["nozzle"]["shape"], path)}
     if isinstance(section.get("world_up"), list):
         numbers = [quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]]
         section["world_up"] = " ".join(f"{number:.15g}" for number in numbers)
@@ -123,6 +125,18 @@ def _one_external(value: Any, key: str, path: str) -> external.External:
         told = fields.text(told, f"{key}.machine").strip()
     machine = _machine(told, path, f"{key}.machine")
     return external.External(machine, pose, section.get("carries") or external.PART)
+
+
+def _shape(value: Any, path: str) -> str:
+    """What `cell.nozzle.shape` says, the path of its file made absolute."""
+    key = "cell.nozzle.shape"
+    if isinstance(value, dict):
+        fields.known_keys(value, ("file",), key)
+        value, key = value.get("file"), f"{key}.file"
+    file = absolute(fields.text(value, key).strip(), path)
+    if not is_there(file):
+        raise InputError("NO_FILE", key, f"there is no file {file}; paths are relative to the job file")
+    return file
 
 
 def _pose(value: Any, key: str) -> external.Pose:

@@ -32,8 +32,9 @@ def text(cell: CellParameters, folder: str) -> str:
         lines.append(f"{field.name}: {_shown(value, f.spec_of(field).kind)}")
     if cell.nozzle != usual.nozzle:
         entries = [
-            f"{field.name}: {_shown(getattr(cell.nozzle, field.name), f.spec_of(field).kind)}"
-            for field in dataclasses.fields(cell.nozzle)
+            f"{field.name}: " + (_file(cell.nozzle.shape, folder) if field.name == "shape" else _shown(
+                getattr(cell.nozzle, field.name), f.spec_of(field).kind
+            )) for field in dataclasses.fields(cell.nozzle)
             if getattr(cell.nozzle, field.name) != getattr(usual.nozzle, field.name)
         ]
         lines.append(f"nozzle: {{{', '.join(entries)}}}")

@@ -30,6 +30,7 @@ class Cell(Stage):
         def work() -> Outcome:
             resolved = cells.resolve(parameters, np.eye(4), folders=folders)
             cell_obstacles.bodies_of(parameters)  # whether they can be read
+            cell_obstacles.torch_of(parameters)
             return Outcome(parameters, figures=(("MachineTitle", resolved.machine.title),))
 
         return work
@@ -40,4 +41,4 @@ class Cell(Stage):
             digest(path, LARGEST, "BAD_MACHINE", f"{obj.Label}.Machine")
             for name in named for path in user_machines.files_of(name)
         ]
-        return [*files, *cell_obstacles.hashes_of(obj.Obstacles)]
+        return [*files, *cell_obstacles.hashes_of(obj.Obstacles, obj.NozzleShape)]

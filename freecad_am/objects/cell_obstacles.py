@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What stands in a cell besides part and machine: `cell.obstacles` as bodies, those of files read."""
+"""What stands in a cell besides part and machine, `cell.obstacles`, and the torch, `cell.nozzle.shape`, as bodies."""
 
 from __future__ import annotations
 
@@ -22,12 +22,15 @@ from ..core.geometry.mesh.file_unit import MESHES
 from ..core.geometry.surroundings import Body, box
 from ..core.issues import InputError
 from ..core.kinematics import cell as cells
+from ..core.kinematics import torch
 from ..core.kinematics.cell import Cell
-from ..core.parameters.cell import CellParameters
+from ..core.parameters.cell import NO_SHAPE, CellParameters, NozzleParameters
 from ..core.parameters.obstacles import WHERE, Obstacle, obstacles
 from ..core.toolpath import Toolpath
 
 CODE = "OBSTACLE"
+MOST_TORCHES = 4  # kept
+_torches: list[tuple[Body, NozzleParameters, torch.Torch]] = []  # with what they were made of
 
 
 def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str]) -> Cell:
@@ -35,10 +38,11 @@ def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str
     files of obstacles, and OBSTACLE where one is at the first point of the job already."""
     cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
     bodies = bodies_of(settings)
-    if not bodies or not cell.arrangement.links_known:
+    if not cell.arrangement.links_known:
         return cell
-    cell = dataclasses.replace(cell, obstacles=bodies)
-    _refuse_at_start(cell, toolpath)
+    cell = dataclasses.replace(cell, obstacles=bodies, torch=torch_of(settings))
+    if bodies:
+        _refuse_at_start(cell, toolpath)
     return cell
 
 
@@ -47,9 +51,22 @@ def bodies_of(settings: CellParameters) -> tuple[Body, ...]:
     return tuple(_body(one) for one in obstacles(settings.obstacles))
 
 
-def hashes_of(text: str) -> list[str]:
-    """Of the files that a text of obstacles names, those that are there. InputError of one that is too large."""
+def torch_of(settings: CellParameters) -> torch.Torch | None:
+    """The torch of a cell; None without one. Raises InputError TORCH and those of its file."""
+    shape = settings.nozzle.shape.strip()
+    if shape == NO_SHAPE:
+        return None
+    try:
+        return _torch(_read(located(shape)), settings.nozzle)
+    except InputError as error:
+        raise InputError(error.code, torch.WHERE, error.message) from None
+
+
+def hashes_of(text: str, shape: str) -> list[str]:
+    """Of the files that a text of obstacles, and the shape of a torch, name, those that are there. InputError of one that is
+    too large."""
     files = [(Path(one.file), f"{WHERE} {one.name}") for one in obstacles(text) if one.file]
+    files += [(Path(shape.strip()), torch.WHERE)] if shape.strip() != NO_SHAPE else []
     return [digest(file, LARGEST, "BAD_FILE", where) for file, where in files if is_there(file)]
 
 
@@ -71,6 +88,17 @@ def _read(file: Path) -> Body:
     except OSError:
         return _triangles(file)  # which tells what is wrong
     return _known(file, now.st_mtime_ns, now.st_size)
+
+
+def _torch(body: Body, nozzle: NozzleParameters) -> torch.Torch:
+    """The torch of a body, which is the same one as long as its file is."""
+    for known, of, found in _torches:
+        if known is body and of == nozzle:
+            return found
+    found = torch.torch(body, nozzle)
+    _torches.append((body, nozzle, found))
+    del _torches[:-MOST_TORCHES]
+    return found
 
 
 @lru_cache(maxsize=16)

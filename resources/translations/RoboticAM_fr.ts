@@ -680,6 +680,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: file of the torch as closed solids, mm, its tip at the origin, Z out of the nozzle; what lies beyond the length of the nozzle keeps the arm&apos;s clearance as links do.</source>
+        <translation>Robots : fichier de la torche en solides fermés, en mm, sa pointe à l&apos;origine, Z sortant de la buse ; ce qui dépasse la longueur de la buse garde la distance du bras comme les segments.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; left out, planning does not look at them. (mm)</source>
         <translation>Robots : distance que les corps du bras gardent à la pièce, au dépôt, à la plateforme, aux montages et à la buse, déplacements rapides compris ; sans valeur, la planification ne les regarde pas. (mm)</translation>
     </message>
@@ -4398,6 +4403,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: file of the torch as closed solids, mm, its tip at the origin, Z out of the nozzle; what lies beyond the length of the nozzle keeps the arm&apos;s clearance as links do.</source>
+        <translation>Robots : fichier de la torche en solides fermés, en mm, sa pointe à l&apos;origine, Z sortant de la buse ; ce qui dépasse la longueur de la buse garde la distance du bras comme les segments.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Robots: how far the links stay from part, deposit, platform, fixtures and nozzle, rapids included; left out, planning does not look at them.</source>
         <translation>Robots : distance que les corps du bras gardent à la pièce, au dépôt, à la plateforme, aux montages et à la buse, déplacements rapides compris ; sans valeur, la planification ne les regarde pas.</translation>
     </message>
@@ -4555,6 +4565,11 @@
         <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Several features: one after the other, or of all layers the lowest first</source>
         <translation>Plusieurs éléments : l&apos;un après l&apos;autre, ou de toutes les couches la plus basse d&apos;abord</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Shape</source>
+        <translation>Forme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -8447,6 +8462,11 @@
         <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>it is open, so that nobody knows what is inside of it; give closed solids</source>
+        <translation>elle est ouverte, si bien que nul ne sait ce qui est à l&apos;intérieur ; donnez des solides fermés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka_read.py"/>
         <source>it is set ahead of the motion, or its outputs cannot tell such a number</source>
         <translation>il est mis en avance sur le mouvement, ou ses sorties ne peuvent transmettre un tel numéro</translation>
@@ -8485,6 +8505,11 @@
         <location filename="../../freecad_am/core/kinematics/calibration.py"/>
         <source>it is {0} mm and {1} deg from where the machine file has this joint, which is more than a calibration corrects; name the machine that it is of</source>
         <translation>elle est à {0} mm et {1} deg de l&apos;endroit où le fichier de machine place cette articulation, plus qu&apos;un étalonnage ne corrige ; nommez la machine dont il s&apos;agit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>it is {0} mm from its origin, which is where the deposit comes out; put the tip of the wire or nozzle at the origin of the file, Z out of the nozzle, in mm</source>
+        <translation>elle est à {0} mm de son origine, d&apos;où sort le dépôt ; placez la pointe du fil ou de la buse à l&apos;origine du fichier, Z sortant de la buse, en mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wire.py"/>
@@ -8540,6 +8565,11 @@
         <location filename="../../freecad_am/brep/read.py"/>
         <source>it reaches to {0} mm, farther than {1} mm; a coordinate is damaged, or its unit is wrong; export the part again</source>
         <translation>il s&apos;étend jusqu&apos;à {0} mm, plus loin que {1} mm ; une coordonnée est endommagée ou son unité est fausse ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>it reaches {0} mm beyond its origin along Z, where the deposit is; Z of the file points out of the nozzle, away from the torch, and the origin is its tip</source>
+        <translation>elle dépasse son origine de {0} mm selon Z, là où est le dépôt ; le Z du fichier sort de la buse, à l&apos;opposé de la torche, et l&apos;origine est sa pointe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_moves.py"/>
@@ -11192,6 +11222,26 @@
         <translation>les outils de {0} ne sont pas tous sur un outil</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <source>the torch</source>
+        <translation>la torche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet, sur le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <source>the torch comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <source>the torch touches {what}</source>
+        <translation>la torche touche {what}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>the transformation changes while the deposit is on</source>
         <translation>la transformation change pendant que le dépôt est en marche</translation>
@@ -13055,6 +13105,16 @@
         <location filename="../../freecad_am/core/strategies/revolution.py"/>
         <source>{0} mm of the wall are left at the top, less than a layer</source>
         <translation>{0} mm de la paroi restent en haut, moins qu&apos;une couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>{0} mm over its tip it reaches {1} mm from its axis, the nozzle as a cone {2} mm, and it is the cone that is kept clear of the deposit; give a larger cell.nozzle.diameter, or a smaller cell.nozzle.length</source>
+        <translation>à {0} mm de sa pointe elle s&apos;étend à {1} mm de son axe, la buse en cône à {2} mm, et c&apos;est le cône qui est tenu à l&apos;écart du dépôt ; donnez un cell.nozzle.diameter plus grand, ou une cell.nozzle.length plus petite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>{0} mm over its tip it reaches {1} mm from its axis, the nozzle as a cone {2} mm, and it is the cone that is kept clear of the deposit; give cell.nozzle.half_angle of {3} deg at least, or a smaller cell.nozzle.length</source>
+        <translation>à {0} mm de sa pointe elle s&apos;étend à {1} mm de son axe, la buse en cône à {2} mm, et c&apos;est le cône qui est tenu à l&apos;écart du dépôt ; donnez un cell.nozzle.half_angle d&apos;au moins {3} deg, ou une cell.nozzle.length plus petite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa.py"/>

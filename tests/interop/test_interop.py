@@ -246,13 +246,16 @@ def test_a_saved_cell_is_the_cell_again_where_jobs_name_it(tmp_path):
     doc = App.newDocument("SavedCell")
     (tmp_path / "robot 1.yaml").write_text(calibrated_robot, encoding="utf-8")
     Part.makeBox(1200, 800, 30).exportStep(str(tmp_path / "a table.step"))
+    Part.makeBox(4, 4, 90, App.Vector(-2, -2, -100)).exportStep(str(tmp_path / "a torch.step"))
     given = CellParameters(
         machine=f"ur-ur10e calibration={tmp_path / 'robot 1.yaml'}", setup="tool-on-robot", branch="auto",
         platform=(1.0, 2.0, 3.0, 0.1, -0.2, 0.3), platform_diameter=250.0, mount="part", world_up="0 0.5 1",
         arm_clearance=12.5,
         obstacles=f"table = {tmp_path / 'a table.step'} at 300 -400 -230 0 0 15; "
         "le post = box 60 50.5 400 at 900 -200 0 0 0 0",
-        nozzle=NozzleParameters(half_angle=0.3, tool=(1.5, 0.0, 210.0, 0.0, 0.4, 0.0)),
+        nozzle=NozzleParameters(
+            half_angle=0.3, tool=(1.5, 0.0, 210.0, 0.0, 0.4, 0.0), shape=str(tmp_path / "a torch.step"),
+        ),
         external="motoman-motopos-d500 at 900 10.5 -200 0 0 30 carries part",
     )
     cell = api.make_cell(doc, parameters=given)
@@ -263,8 +266,9 @@ def test_a_saved_cell_is_the_cell_again_where_jobs_name_it(tmp_path):
     assert api.make_cell(doc, parameters=again).Status == cell.Status == "up to date"
     for field in ("platform", "nozzle"):
         one, other = getattr(again, field), getattr(given, field)
-        one, other = (np.hstack(dataclasses.astuple(of) if field == "nozzle" else of) for of in (one, other))
+        one, other = (np.hstack(dataclasses.astuple(of)[:4] if field == "nozzle" else of) for of in (one, other))
         assert np.allclose(one, other, atol=1e-12)
+    assert again.nozzle.shape == given.nozzle.shape
     same = {"platform": given.platform, "nozzle": given.nozzle}
     assert dataclasses.replace(again, **same) == dataclasses.replace(given, **same)
     assert job_cell.read(api.export_cell(api.make_cell(doc), str(tmp_path / "usual.yaml")), "/") == CellParameters()

@@ -24,6 +24,7 @@ CLASSES = (
     (ProcessParameters, "process"), (JointParameters, "joints"), (ProgramParameters, "program"),
 )
 TEXTS = {"machine": "staubli-rx60bl", "limits": "paper", "call": "CLEAN", "gas": "argon 4.6", "bead_model": "csw",
+         "shape": "torch.step",
          "name": "ER 2319", "source": "l'essai n° 7",
          "post": "siemens", "plane": "0.6 0 -0.8", "deposit_on": "M7", "deposit_off": "H2=0", "unit": "STN1",
          "external": "motoman-motopos-d500 at 1500 0.25 -3 0 45 0 carries part", "world_up": "0 0.1 1",

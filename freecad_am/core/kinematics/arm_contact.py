@@ -6,12 +6,13 @@ Links are rods that hold what is drawn of them; bodies are their triangles and, 
 wide and high as they are. So what is not told to touch does not touch, as far as links are what is drawn. What the flange
 carries is not looked at against the last two links, which hold it and can hardly move against it, nor what stands still
 against the base. A part that moves is all there from the beginning: rods about its bodies and beads. The nozzle is looked
-at as it is against bodies, without clearance: it deposits next to them. Links against each other, the floor, cables and
-what holds the nozzle are not looked at at all.
+at as it is against bodies, without clearance: it deposits next to them. What holds the nozzle is looked at where
+`cell.nozzle.shape` shows it. Links against each other, the floor and cables are not looked at at all.
 """
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -33,7 +34,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-NOZZLE, PLATFORM, DEPOSIT, PART = "nozzle", "platform", "deposit", "part"
+NOZZLE, PLATFORM, DEPOSIT, PART, TORCH = "nozzle", "platform", "deposit", "part", "torch"
 WORLD = "world"
 NONE = -1
 PIECE = 4096  # joint vectors done together
@@ -84,8 +85,8 @@ class ArmContact:
     """A robot in its cell. rods: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
     deposit: in part coordinates. clearance: mm, links that are nearer touch.
 
-    names: what can be touched, links: what touches it, as messages call them: base, axes, then part and nozzle. groups: what
-    can be touched; solids: of each of `links`, in its frame; balls: centre and radius of one about these.
+    names: what can be touched, links: what touches it, as messages call them: base, axes, then part, nozzle and torch.
+    groups: what can be touched; solids: of each of `links`, in its frame; balls: centre and radius of one about these.
     """
 
     cell: Cell
@@ -103,12 +104,15 @@ class ArmContact:
         around = [body for body in self.bodies if len(body.triangles)]
         if self.cell.platform_diameter > 0.0:
             around.append(disc(self.cell.platform_diameter, self.cell.mount, PLATFORM))
-        part, holder = self._links(self._carries_part), self._links(not self._carries_part)
-        groups = [_of_body(_nozzle(self.cell), holder, NOZZLE), *(_of_body(body, part) for body in around)]
-        names = [NOZZLE, *(body.name for body in around)]
+        held, holder = self.cell.torch, self._links(not self._carries_part)
+        part = [*self._links(self._carries_part), *self._torch]
+        about_nozzle = [_nozzle(self.cell), *([] if held is None else [dataclasses.replace(held.body, name=TORCH)])]
+        groups = [*(_of_body(body, holder, NOZZLE) for body in about_nozzle), *(_of_body(body, part) for body in around)]
+        names = [body.name for body in (*about_nozzle, *around)]
         more = ABOUT_FACES + self.clearance
         solids = [[_of_rod(rod, more) for rod in link] for link in self.rods]
         solids += [[_of_rod(rod, more) for rod in self._part_rods(around)], [_of_nozzle(self.cell)]]
+        solids += [[_of_rod(rod, more) for rod in (() if held is None else held.rods)]]
         if self.deposit is not None:
             names.append(DEPOSIT)
             points = self.deposit.corners.reshape(-1, 3)
@@ -118,7 +122,7 @@ class ArmContact:
         groups += [_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
         names += [body.name for body in self.cell.obstacles]
         object.__setattr__(self, "names", tuple(names))
-        object.__setattr__(self, "links", ("base", *self.cell.robot.axes, PART, NOZZLE))
+        object.__setattr__(self, "links", ("base", *self.cell.robot.axes, PART, NOZZLE, TORCH))
         object.__setattr__(self, "groups", tuple(groups))
         object.__setattr__(self, "solids", tuple(map(tuple, solids)))
         object.__setattr__(self, "balls", tuple(_about(link) for link in solids))
@@ -133,12 +137,17 @@ class ArmContact:
         return range(axes - 1) if carried else range(1, axes + 1)
 
     @property
+    def _torch(self) -> list[int]:
+        """The number of the torch, if there is one."""
+        return [] if self.cell.torch is None else [self.cell.robot.chain.axes + 3]
+
+    @property
     def _movers(self) -> list[int]:
-        """What moves in the world: links, with a track the base too, and part or nozzle."""
+        """What moves in the world: links, with a track the base too, and part or nozzle with its torch."""
         axes, cell = self.cell.robot.chain.axes, self.cell
         on_track = cell.external is not None and cell.external.slides is not None
         found = list(range(0 if on_track else 1, axes + 1))
-        return [*found, *([axes + 1] if cell.part_moves else []), *([] if cell.torch_stands else [axes + 2])]
+        return [*found, *([axes + 1] if cell.part_moves else []), *([] if cell.torch_stands else [axes + 2, *self._torch])]
 
     def _part_rods(self, around: Sequence[Body]) -> list[Rod]:
         """Rods that hold the part with what it stands on, where it may meet obstacles."""
@@ -172,7 +181,7 @@ class ArmContact:
         platform, nozzle = (carried, still) if self._carries_part else (still, carried @ _TURNED)
         part = platform @ frames.inverse(self.cell.mount)
         seen_from = {PART: part, NOZZLE: nozzle, WORLD: self.cell.world(joints) if self.cell.obstacles else part}
-        return np.concatenate([links, part[:, None], nozzle[:, None]], axis=1), seen_from
+        return np.concatenate([links, part[:, None], nozzle[:, None], nozzle[:, None]], axis=1), seen_from
 
     def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
         links, seen_from = self.seen(joints)

@@ -29,6 +29,7 @@ from .external import ExternalAxes, coupled, upward
 from .limits import Limits
 from .machine import Machine
 from .pose_frames import PoseFrames
+from .torch import Torch
 
 Array = NDArray[np.float64]
 
@@ -50,6 +51,7 @@ class Cell:
     external: axes beside the robot; the machine then is the robot together with them, and what stands for base_link in its
     chain is the face that carries the part, or the world where only the robot is carried.
     obstacles: what stands in the world, the maker's base frame, in its coordinates. up: (3,) against gravity, there.
+    torch: what holds the nozzle, in the frame of its tip, Z into it.
     """
 
     machine: Machine
@@ -65,6 +67,7 @@ class Cell:
     arm_clearance: float | None = None
     obstacles: tuple[Body, ...] = ()
     up: Array = field(default_factory=lambda: np.array(UP))
+    torch: Torch | None = None
 
     @property
     def robot(self) -> Machine:

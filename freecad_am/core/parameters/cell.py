@@ -15,6 +15,7 @@ from .obstacles import obstacles
 
 Pose = tuple[float, float, float, float, float, float]
 
+NO_SHAPE = "none"
 SHOULDERS, ELBOWS, WRISTS = ("front", "back"), ("up", "down"), ("noflip", "flip")
 
 
@@ -30,6 +31,10 @@ class NozzleParameters:
     tool: Pose = f.parameter(
         (0.0, 0.0, 200.0, 0.0, 0.0, 0.0), f.POSE,
         "Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. mm, RX RY RZ.",
+    )
+    shape: str = f.parameter(
+        NO_SHAPE, f.TEXT, "Robots: file of the torch as closed solids, mm, its tip at the origin, Z out of the nozzle; what "
+        "lies beyond the length of the nozzle keeps the arm's clearance as links do.", advanced=True,
     )
 
     def __post_init__(self) -> None:

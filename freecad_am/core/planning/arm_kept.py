@@ -13,7 +13,7 @@ from ..collision.bead_ends import LINK_GRAIN, Beads
 from ..geometry.rods import Rod
 from ..geometry.surroundings import Body
 from ..issues import ERROR, Issue
-from ..kinematics.arm_contact import NOZZLE, PART, ArmContact, Touches
+from ..kinematics.arm_contact import NOZZLE, PART, TORCH, ArmContact, Touches
 from ..kinematics.cell import Cell
 from ..toolpath import Bead, Toolpath
 from .points import Points
@@ -90,7 +90,7 @@ def clearance_issue(
     if link == NOZZLE:
         return Issue(ERROR, CODE, f"the nozzle touches {what}{where}; move it in cell.obstacles, the part or "
                      "cell.deposition_point", layer, bead)
-    name = "the part" if link == PART else f"link {link}"
+    name = "the part" if link == PART else "the torch" if link == TORCH else f"link {link}"
     return Issue(
         ERROR, CODE, f"{name} comes nearer than {cell.arm_clearance:g} mm to {what}, or touches it"
         f"{where}; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance",

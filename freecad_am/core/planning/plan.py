@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..issues import ERROR, NOTE, WARNING, InputError, Issue, has_errors
 from ..kinematics import opw
 from ..kinematics.cell import Cell
+from ..parameters.cell import NO_SHAPE
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
 from . import (
@@ -164,6 +165,7 @@ def _not_used(cell: Cell, parameters: JointParameters) -> list[Issue]:
     chosen = [f"joints.{name}" for name in OF_ROBOTS if getattr(parameters, name) != getattr(usual, name)]
     chosen += [] if cell.arm_clearance is None else ["cell.arm_clearance"]
     chosen += ["cell.obstacles"] if cell.obstacles else []
+    chosen += ["cell.nozzle.shape"] if cell.nozzle.shape != NO_SHAPE else []
     if not chosen:
         return []
     return [Issue(

@@ -21,6 +21,7 @@ from ..issues import ERROR, NOTE, AmError, Issue, has_errors
 from ..kinematics import cell as cells
 from ..kinematics import opw, proposed_cell
 from ..kinematics.arrangement import of_setup
+from ..kinematics.torch import Torch
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
 from ..parameters.joints import OF_CELL, JointParameters
@@ -68,11 +69,12 @@ class Tried:
     own_speed: tuple[bool, ...] = ()
     rods: Rods = ()
     obstacles: tuple[Body, ...] = ()
+    torch: Torch | None = None
 
     def cell(self, toolpath: Toolpath) -> cells.Cell:
         """The cell of a toolpath of it."""
         found = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
-        return dataclasses.replace(found, obstacles=self.obstacles)
+        return dataclasses.replace(found, obstacles=self.obstacles, torch=self.torch)
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
         """What is wrong with it; rapids only of a whole one."""

@@ -11,6 +11,7 @@ import numpy as np
 from pivy import coin
 
 from ...core.geometry import frames
+from ...core.issues import InputError
 from ...core.kinematics import cell as cells
 from ...core.kinematics.arrangement import of_setup
 from ...core.kinematics.cell import Cell
@@ -18,12 +19,14 @@ from ...core.kinematics.limits import Limits
 from ...core.kinematics.link_rods import Mesh
 from ...core.kinematics.link_solids import capsule
 from ...core.kinematics.machine import Machine
+from ...core.kinematics.torch import Torch
 from ...core.parameters.cell import CellParameters
 from ...core.simulation.placing import at_rest, placing
 from ...core.toolpath import Toolpath
+from ...objects.cell_obstacles import torch_of
 from ...objects.link_meshes import meshes_of
 from .lines import Array, placed, turned
-from .machine_links import Links, MachineNodes, move, of_solid, plain_links
+from .machine_links import Links, MachineNodes, move, of_mesh, of_solid, plain_links
 from .wall import unpickable
 
 _LEAST_THICKNESS = 1.0
@@ -206,11 +209,22 @@ def platform_nodes(value: CellParameters, mount: Array) -> list[Any]:
 
 
 def nozzle_node(value: CellParameters) -> Any:
-    """The nozzle of a cell: its tip at the origin, Z into it."""
+    """The nozzle of a cell: its tip at the origin, Z into it; with a torch this."""
+    held = torch_seen(value)
+    if held is not None:
+        return of_mesh((held.body.vertices, held.body.triangles))
     nozzle = value.nozzle
     tip_radius = 0.5 * nozzle.diameter
     top_radius = tip_radius + nozzle.length * np.tan(nozzle.half_angle)
     return turned([(0.0, 0.0), (tip_radius, 0.0), (top_radius, nozzle.length), (0.0, nozzle.length)])
+
+
+def torch_seen(value: CellParameters) -> Torch | None:
+    """The torch, in the frame of its tip; None without one, or where it is refused, which is told at its field."""
+    try:
+        return torch_of(value)
+    except InputError:
+        return None
 
 
 def holder_node(value: CellParameters) -> Any:
@@ -221,6 +235,6 @@ def holder_node(value: CellParameters) -> Any:
         tip = frames.bryant(value.nozzle.tool) @ frames.pose(frames.about_x(np.pi), np.zeros(3))
         flange = frames.inverse(tip)[:3, 3]
     radius = 0.5 * value.nozzle.diameter + length * np.tan(value.nozzle.half_angle)
-    if not arrangement.links_known or np.linalg.norm(flange - end) < 1.0:  # drawn with the machine's head
-        return coin.SoSeparator()
+    if not arrangement.links_known or np.linalg.norm(flange - end) < 1.0 or torch_seen(value) is not None:
+        return coin.SoSeparator()  # drawn with the machine's head, or with the nozzle
     return of_solid(capsule(end, flange, radius, radius))

@@ -69,7 +69,7 @@ class MachineNodes:
         link, transform, materials = coin.SoSeparator(), coin.SoMatrixTransform(), []
         link.addChild(transform)
         mesh = mesh if mesh is not None or shape is None else _drawn_mesh(shape)
-        own = None if mesh is None else _of_mesh(mesh)
+        own = None if mesh is None else of_mesh(mesh)
         parts = [(own, _SHAPE if shape is None or shape.colour is None else shape.colour)] if own is not None else [
             (of_solid(solid), TONES.get(solid.tone)) for solid in plain
         ]
@@ -133,7 +133,7 @@ def _drawn_mesh(shape: LinkShape) -> Mesh | None:
         return None
 
 
-def _of_mesh(mesh: Mesh) -> Any:
+def of_mesh(mesh: Mesh) -> Any:
     """The node of a user's file."""
     group, hints = coin.SoGroup(), coin.SoShapeHints()
     hints.vertexOrdering, hints.shapeType = coin.SoShapeHints.COUNTERCLOCKWISE, coin.SoShapeHints.UNKNOWN_SHAPE_TYPE

@@ -37,8 +37,8 @@ from .preview import PreviewPanel
 
 MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
 ARM, OBSTACLES, EXTERNAL = "cell_arm_clearance", "cell_obstacles", "cell_external"
-TOOL, PLATFORM = "cell_nozzle_tool", "cell_platform"
-_OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, ARM, OBSTACLES, EXTERNAL)
+TOOL, TORCH, PLATFORM = "cell_nozzle_tool", "cell_nozzle_shape", "cell_platform"
+_OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, TORCH, ARM, OBSTACLES, EXTERNAL)
 _OF_TOOLS = (TOOL, EXTERNAL)  # that a robot carries
 
 

@@ -3,17 +3,19 @@
 
 from __future__ import annotations
 
-from ...core.kinematics.arm_contact import DEPOSIT, NOZZLE, PART, PLATFORM
+from ...core.kinematics.arm_contact import DEPOSIT, NOZZLE, PART, PLATFORM, TORCH
 from .translation import tr
 
 
 def link_touches(link: str, what: str) -> str:
     """link: as `ArmContact.links` has it; what: as `ArmContact.names` has it, a body by its own name."""
-    names = {NOZZLE: tr("the nozzle"), PLATFORM: tr("the platform"), DEPOSIT: tr("the deposit")}
+    names = {NOZZLE: tr("the nozzle"), PLATFORM: tr("the platform"), DEPOSIT: tr("the deposit"), TORCH: tr("the torch")}
     if link == "base":
         return tr("the base touches {what}").format(what=names.get(what, what))
     if link == PART:
         return tr("the part touches {what}").format(what=names.get(what, what))
     if link == NOZZLE:
         return tr("the nozzle touches {what}").format(what=names.get(what, what))
+    if link == TORCH:
+        return tr("the torch touches {what}").format(what=names.get(what, what))
     return tr("the link of {axis} touches {what}").format(axis=link, what=names.get(what, what))
