@@ -15,13 +15,14 @@ Array = NDArray[np.float64]
 
 VERTEX = re.compile(rb"^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.MULTILINE)
 FACE = re.compile(rb"^[ \t]*f((?:[ \t]+-?\d\S*){3,})", re.MULTILINE)
+CONTINUED = re.compile(rb"\\\r?\n")  # a line that goes on in the next one
 READ = 4  # corners of the largest faces that FreeCAD reads
 
 
 def left_out(file: Path, read: int) -> Array:
     """Corners (m, 3, 3), in units of the file, of the triangles that its faces with more than four corners are made of,
     where FreeCAD has `read` no more triangles than the others have. ValueError, IndexError for corners there are not."""
-    text = file.read_bytes()
+    text = CONTINUED.sub(b" ", file.read_bytes())
     faces = [(face.start(), face.group(1).split()) for face in FACE.finditer(text)]
     large = [(start, corners) for start, corners in faces if len(corners) > READ]
     if not large or read > sum(len(corners) - 2 for _, corners in faces if len(corners) <= READ):

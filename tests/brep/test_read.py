@@ -123,10 +123,10 @@ def test_a_folder_is_no_file(tmp_path):
         read_shape(tmp_path / "a.step")
 
 
-@pytest.mark.parametrize("relative", [False, True])
-def test_faces_of_obj_files_with_many_corners_are_read(tmp_path, relative):
+@pytest.mark.parametrize(("relative", "between"), [(False, " "), (True, " "), (False, " \\\n"), (True, " \\\r\n  ")])
+def test_faces_of_obj_files_with_many_corners_are_read(tmp_path, relative, between):
     """A prism over a star of 16 corners, of two faces of 16 corners, some sides of four and some of two triangles. FreeCAD
-    leaves out the two."""
+    leaves out the two, whose lines may go on in the next ones."""
     count, height = 16, 10.0
     angle, radius = 2.0 * np.pi * np.arange(count) / count, np.where(np.arange(count) % 2, 12.0, 5.0)
     ring = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
@@ -136,8 +136,10 @@ def test_faces_of_obj_files_with_many_corners_are_read(tmp_path, relative):
         a, b, c, d = i + 1, (i + 1) % count + 1, (i + 1) % count + 1 + count, i + 1 + count
         faces += [[a, b, c, d]] if i % 2 else [[a, b, c], [a, c, d]]
     shift = 2 * count + 1 if relative else 0
-    lines += ["f " + " ".join(f"{corner - shift}//1" for corner in face) for face in faces]
-    (tmp_path / "star.obj").write_text("\n".join(lines) + "\n")
+    lines += [
+        "f " + (between if len(face) > 4 else " ").join(f"{corner - shift}//1" for corner in face) for face in faces
+    ]
+    (tmp_path / "star.obj").write_bytes(("\n".join(lines) + "\n").encode())
     mesh = read_mesh(tmp_path / "star.obj", 2.0)
     area = 0.5 * count * 12.0 * 5.0 * np.sin(2.0 * np.pi / count)
     assert mesh.CountFacets == 2 * (count - 2) + 2 * count and mesh.isSolid()
