@@ -11,7 +11,7 @@ from typing import Any
 from freecad_am.core.geometry.located import is_there
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import arrangement, calibration, proposed_cell, urdf_cell, urdf_machine, urdf_reference
-from freecad_am.core.parameters import external, obstacles
+from freecad_am.core.parameters import external, obstacles, touched
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.cell import NO_SHAPE, CellParameters
 from freecad_am.objects import user_machines
@@ -55,6 +55,8 @@ def _of_section(section: Any, path: str) -> CellParameters:
         section["obstacles"] = _obstacles(around, path)
     if isinstance(section.get("nozzle"), dict) and section["nozzle"].get("shape") not in (None, {}, NO_SHAPE):
         section["nozzle"] = {**section["nozzle"], "shape": _shape(section["nozzle"]["shape"], path)}
+    if section.get("touched") not in (None, []):
+        section["touched"] = _touched(section["touched"])
     if isinstance(section.get("world_up"), list):
         numbers = [quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]]
         section["world_up"] = " ".join(f"{number:.15g}" for number in numbers)
@@ -137,6 +139,29 @@ def _shape(value: Any, path: str) -> str:
     if not is_there(file):
         raise InputError("NO_FILE", key, f"there is no file {file}; paths are relative to the job file")
     return file
+
+
+def _touched(value: Any) -> str:
+    """What `cell.touched` says as the text that a cell keeps."""
+    if isinstance(value, str):
+        return value
+    if not isinstance(value, list):
+        raise InputError("BAD_VALUE", touched.WHERE, "give a list such as - {part: [0, 0, 0], robot: [900.4, 2.1, -99.7]}")
+    found = []
+    for number, one in enumerate(value):
+        key = f"{touched.WHERE}[{number}]"
+        section = fields.mapping(one, key)
+        fields.known_keys(section, ("part", "robot"), key)
+        found.append(touched.Touched(*(_point(section.get(name), f"{key}.{name}") for name in ("part", "robot"))))
+    return f"{touched.MORE} ".join(map(str, found))
+
+
+def _point(value: Any, key: str) -> touched.Point:
+    """Three lengths of a job file."""
+    if not isinstance(value, list) or len(value) != 3:
+        raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is no point; give [x, y, z]")
+    x, y, z = (quantity.read(number, f.LENGTH, key) for number in value)
+    return x, y, z
 
 
 def _pose(value: Any, key: str) -> external.Pose:

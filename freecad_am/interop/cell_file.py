@@ -11,11 +11,11 @@ from typing import Any
 
 from ..core.kinematics import calibration, urdf_reference
 from ..core.kinematics.arrangement import of_setup
-from ..core.parameters import external, obstacles
+from ..core.parameters import external, obstacles, touched
 from ..core.parameters import field as f
 from ..core.parameters.cell import CellParameters
 
-SHOWN_APART = ("machine", "nozzle", "external", "world_up", "obstacles")
+SHOWN_APART = ("machine", "nozzle", "external", "world_up", "obstacles", "touched")
 PROPOSED = ("deposition_point", "branch")  # where a job file leaves them out
 
 
@@ -51,6 +51,9 @@ def text(cell: CellParameters, folder: str) -> str:
         what = f"file: {_file(body.file, folder)}" if body.size is None else f"box: {_shown(body.size, f.LENGTH)}"
         name = json.dumps(body.name, ensure_ascii=False)
         lines.append(f"- {{name: {name}, {what}, pose: {_shown(body.pose, f.POSE)}}}")
+    points = touched.touched(cell.touched)
+    lines += ["touched:"] if points else []
+    lines += [f"- {{part: {_shown(one.part, f.LENGTH)}, robot: {_shown(one.robot, f.LENGTH)}}}" for one in points]
     if cell.world_up != usual.world_up:
         lines.append(f"world_up: {_shown(cell.upward(), f.NUMBER)}")
     return "\n".join(lines) + "\n"

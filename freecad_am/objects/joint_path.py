@@ -132,7 +132,7 @@ class JointPath(Stage):
                 joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height, rods
             )
             near = () if not rods else arm_issues(motion, cell, toolpath, process, (*joint_path.issues, *rapid_issues))
-            issues = (*joint_path.issues, *rapid_issues, *near, *_not_kept(cell), *_drawn_plain(cell))
+            issues = (*joint_path.issues, *rapid_issues, *near, *_not_kept(cell), *_drawn_plain(cell), *_moved(cell))
             issues = (*issues, *_heights_as_run(joint_path, toolpath, process))
             asked = Tried(
                 lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,
@@ -158,6 +158,18 @@ def _tell_remedies(cell: cells.Cell, toolpath: Toolpath, issues: Sequence[Issue]
 
     for issue in size.of_remedies(most_points(toolpath, issues)):
         progress.tell(issue)
+
+
+def _moved(cell: cells.Cell) -> list[Issue]:
+    """A note on how well touched points tell where the part stands."""
+    if cell.offset is None:
+        return []
+    residual, six = cell.offset.residual, cell.offset.six()
+    left, pose = (", ".join(f"{value:.{digits}g}" for value in values) for values, digits in ((residual, 3), (six, 7)))
+    return [Issue(
+        NOTE, "WORK_OFFSET", f"by {len(residual)} touched points the part's coordinates are at [{pose}] mm and deg in the "
+        f"robot's base; left at the points: {left} mm, {float(np.sqrt((residual**2).mean())):.3g} mm in the mean of squares",
+    )]
 
 
 def _not_kept(cell: cells.Cell) -> list[Issue]:

@@ -294,6 +294,11 @@
         <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>How far a touched point may be from where the others say that it is.</source>
+        <translation>De combien un point palpé peut s&apos;écarter d&apos;où les autres le situent.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the deposit stands out on all sides of the part, to be machined off.</source>
         <translation>De combien le dépôt dépasse de tous les côtés de la pièce, pour être usiné.</translation>
@@ -1007,6 +1012,11 @@
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Tool axis turned sideways, towards the outside of the wall, from the build direction.</source>
         <translation>Axe de l&apos;outil tourné de côté, vers l&apos;extérieur de la paroi, à partir de la direction de dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Tool on robot only: points of the part and where the tip has touched them, three or more, which take the place of the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5. In the part file and in the maker&apos;s base frame, mm.</source>
+        <translation>Outil sur le robot seulement : points de la pièce et où la pointe les a palpés, trois ou plus, qui remplacent le point de dépôt, par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5. Dans le fichier de la pièce et dans le repère de base du constructeur, en mm.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -2790,6 +2800,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How far a closed bead runs on past its seam.</source>
         <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>How far a touched point may be from where the others say that it is.</source>
+        <translation>De combien un point palpé peut s&apos;écarter d&apos;où les autres le situent.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
@@ -5698,6 +5713,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Tool on robot only: points of the part and where the tip has touched them, three or more, which take the place of the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5. In the part file and in the maker&apos;s base frame, mm.</source>
+        <translation>Outil sur le robot seulement : points de la pièce et où la pointe les a palpés, trois ou plus, qui remplacent le point de dépôt, par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5. Dans le fichier de la pièce et dans le repère de base du constructeur, en mm.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. mm, RX RY RZ.</source>
         <translation>Outil sur le robot seulement : pose du bout sur la bride, son Z pointant hors de la buse. mm, RX RY RZ.</translation>
     </message>
@@ -5715,6 +5735,16 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Torch turned outwards about the bead on outer contours.</source>
         <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Touched</source>
+        <translation>Palpés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Touched tolerance</source>
+        <translation>Tolérance de palpage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -7155,6 +7185,11 @@
         <location filename="../../freecad_am/objects/program.py"/>
         <source>building moves and events</source>
         <translation>construction des mouvements et événements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>by {0} touched points the part&apos;s coordinates are at [{1}] mm and deg in the robot&apos;s base; left at the points: {2} mm, {3} mm in the mean of squares</source>
+        <translation>d&apos;après {0} points palpés, le repère de la pièce est en [{1}] mm et deg dans la base du robot ; écarts aux points : {2} mm, {3} mm en moyenne quadratique</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -9777,6 +9812,11 @@
         <translation>point par point</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>point {0} is {1} mm from where it was touched (of all: {2} mm), more than cell.touched_tolerance of {3} mm; touch it again, and see that the points stand in the same order, are of this part, and that the tip is calibrated</source>
+        <translation>le point {0} est à {1} mm d&apos;où il a été palpé (pour tous : {2} mm), plus que cell.touched_tolerance de {3} mm ; palpez-le de nouveau, et vérifiez que les points sont dans le même ordre, de cette pièce, et que la pointe est calibrée</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
         <source>point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm</source>
         <translation>point {} (0 à {}) en {:.2f}, {:.2f}, {:.2f} mm</translation>
@@ -9790,6 +9830,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>point-by-point</source>
         <translation>point par point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>points are touched of a part that stands still under a tool on the robot; leave them out, and measure cell.platform or the pose of what carries the part</source>
+        <translation>on palpe les points d&apos;une pièce immobile sous un outil porté par le robot ; retirez-les, et mesurez cell.platform ou la pose de ce qui porte la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/board.py"/>
@@ -10897,6 +10942,11 @@
         <translation>le point est celui de la ligne d&apos;avant ; enlevez-le</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>the points of the part are on a line, or all in one place: nothing tells how the part is turned about it; touch one beside it</source>
+        <translation>les points de la pièce sont sur une droite, ou tous au même endroit : rien ne dit comment la pièce est tournée autour ; palpez-en un à côté</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>the points of {0} are not all in one frame</source>
         <translation>les points de {0} ne sont pas tous dans un repère</translation>
@@ -10905,6 +10955,11 @@
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
         <source>the points reach over {0} mm, {1} over {2} mm; check the unit of the file</source>
         <translation>les points s&apos;étendent sur {0} mm, {1} sur {2} mm ; vérifiez l&apos;unité du fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>the points touched are on a line, or all in one place: nothing tells how the part is turned about it; touch one beside it</source>
+        <translation>les points palpés sont sur une droite, ou tous au même endroit : rien ne dit comment la pièce est tournée autour ; palpez-en un à côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
@@ -11897,6 +11952,16 @@
         <translation>ce qui porte la base du robot lui-même, qu&apos;aucun MACHINE_DEF ne dit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>what was touched is {0} times as large as what is planned; one of them is in {1}, give both in mm</source>
+        <translation>ce qui a été palpé est {0} fois plus grand que ce qui est prévu ; l&apos;un des deux est en {1}, donnez les deux en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>what was touched is {0} times as large as what is planned; these are points of another part, or in another order</source>
+        <translation>ce qui a été palpé est {0} fois plus grand que ce qui est prévu ; ce sont des points d&apos;une autre pièce, ou dans un autre ordre</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka.py"/>
         <source>whether WAIT FOR looks at $ANIN until it changes was not found documented</source>
         <translation>que WAIT FOR regarde $ANIN jusqu&apos;à ce qu&apos;il change n&apos;a été trouvé documenté nulle part</translation>
@@ -11995,6 +12060,11 @@
         <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>write decimals with &apos;{0}&apos;, as in 1{1}5 {2}, and do not group digits</source>
         <translation>écrivez les décimales avec &apos;{0}&apos;, comme 1{1}5 {2}, et ne groupez pas les chiffres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/touched.py"/>
+        <source>write such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5</source>
+        <translation>écrivez par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
@@ -12652,6 +12722,11 @@
         <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône : une paroi de plusieurs faces doit être de l&apos;un d&apos;eux ; choisissez une seule face</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/touched.py"/>
+        <source>{0} is no touched point; {1}</source>
+        <translation>{0} n&apos;est pas un point palpé ; {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc_parts.py"/>
         <source>{0} is no word such as M7 or H2=1; give one for on and one for off</source>
         <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
@@ -13270,6 +13345,11 @@
         <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
         <source>{0} pieces that enclose nothing were dropped</source>
         <translation>{0} morceaux qui n&apos;enferment rien ont été écartés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
+        <source>{0} point(s) do not tell where a part stands; touch {1} or more, far from one another and not on a line</source>
+        <translation>{0} point(s) ne disent pas où se trouve une pièce ; palpez-en {1} ou plus, éloignés les uns des autres et pas sur une droite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>

@@ -30,6 +30,7 @@ from .limits import Limits
 from .machine import Machine
 from .pose_frames import PoseFrames
 from .torch import Torch
+from .work_offset import WorkOffset, of_cell
 
 Array = NDArray[np.float64]
 
@@ -51,7 +52,7 @@ class Cell:
     external: axes beside the robot; the machine then is the robot together with them, and what stands for base_link in its
     chain is the face that carries the part, or the world where only the robot is carried.
     obstacles: what stands in the world, the maker's base frame, in its coordinates. up: (3,) against gravity, there.
-    torch: what holds the nozzle, in the frame of its tip, Z into it.
+    torch: what holds the nozzle, in the frame of its tip, Z into it. offset: where the part stands by points touched.
     """
 
     machine: Machine
@@ -68,6 +69,7 @@ class Cell:
     obstacles: tuple[Body, ...] = ()
     up: Array = field(default_factory=lambda: np.array(UP))
     torch: Torch | None = None
+    offset: WorkOffset | None = None
 
     @property
     def robot(self) -> Machine:
@@ -242,16 +244,15 @@ def resolve(
     """
     arrangement = planned_of(parameters.setup)
     machine = machines.load(parameters.machine, tuple(folders))
-    _refuse_otherwise(machine, arrangement)
+    beside = externals(parameters.external)
+    _refuse_otherwise(machine, arrangement, bool(beside))
     platform = parameters.platform
     platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
     limits, external = machine.limits(parameters.limits), None
     # the torch of a machine that leaves nothing free is where its chain begins
     station = frames.bryant(parameters.deposition_point) if arrangement.redundant else np.eye(4)
-    beside = externals(parameters.external)
-    if beside and arrangement.carries_part:
-        raise InputError("WRONG_SETUP", "cell.external", f"{parameters.setup}: axes beside the robot need "
-                         "the tool on the robot; use setup: tool-on-robot, or leave external out")
+    mount, offset = mounted(parameters, feature_frame, family), of_cell(parameters, arrangement)
+    station = station if offset is None else offset.pose @ mount
     if beside:
         machine, limits, external = coupled(machine, limits, beside, parameters.upward(), folders)
         station = station if not external.turning else frames.bryant(platform_pose)
@@ -261,21 +262,26 @@ def resolve(
         setup=parameters.setup,
         station=machine.base @ station,
         carried=frames.bryant(platform_pose if arrangement.carries_part else parameters.nozzle.tool),
-        mount=mounted(parameters, feature_frame, family),
+        mount=mount,
         branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),
         nozzle=parameters.nozzle,
         platform_diameter=parameters.platform_diameter,
         external=external,
         arm_clearance=parameters.arm_clearance,
         up=upward(parameters.upward()),
+        offset=offset,
     )
 
 
-def _refuse_otherwise(machine: Machine, arrangement: Arrangement) -> None:
-    """InputError WRONG_SETUP for what the machine does not do, NO_CLOSED_FORM for an arm whose inverse is not known."""
+def _refuse_otherwise(machine: Machine, arrangement: Arrangement, beside: bool) -> None:
+    """InputError WRONG_SETUP for what the machine, or axes beside it, do not do, NO_CLOSED_FORM for an arm whose inverse is
+    not known."""
     if arrangement not in machine.arrangements:
         kind = "is a robot" if machine.redundant else "has sliding axes"
         wanted = " or ".join(one.setup for one in machine.arrangements if one.planned)
         raise InputError("WRONG_SETUP", "cell.setup", f"{machine.title} {kind}; use {wanted}, or choose another machine")
     if machine.arm is None and machine.redundant:
         raise InputError("NO_CLOSED_FORM", "cell.machine", f"{machine.title}: {machine.no_arm}")
+    if beside and arrangement.carries_part:
+        raise InputError("WRONG_SETUP", "cell.external", f"{arrangement.setup}: axes beside the robot need "
+                         "the tool on the robot; use setup: tool-on-robot, or leave external out")

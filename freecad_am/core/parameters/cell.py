@@ -12,6 +12,8 @@ from .external import NONE as NO_AXES
 from .external import externals
 from .obstacles import NONE as NO_OBSTACLES
 from .obstacles import obstacles
+from .touched import NONE as NOT_TOUCHED
+from .touched import touched
 
 Pose = tuple[float, float, float, float, float, float]
 
@@ -88,6 +90,16 @@ class CellParameters:
         "file's origin, or of the middle of the box, in the maker's base frame.", advanced=True,
     )
 
+    touched: str = f.parameter(
+        NOT_TOUCHED, f.TEXT, "Tool on robot only: points of the part and where the tip has touched them, three or more, "
+        "which take the place of the deposition point, such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 "
+        "= 901 82 -99.5. In the part file and in the maker's base frame, mm.", advanced=True,
+    )
+    touched_tolerance: float = f.parameter(
+        1.0, f.LENGTH, "How far a touched point may be from where the others say that it is.", low=0.0, high=100.0,
+        open_low=True, advanced=True,
+    )
+
     def upward(self) -> tuple[float, float, float]:
         """`world_up` as three numbers, not of unit length. InputError BAD_VALUE for what is no direction."""
         return f.direction_of(self.world_up, "cell.world_up", "give three numbers such as [0, 0, 1]")
@@ -95,6 +107,7 @@ class CellParameters:
     def __post_init__(self) -> None:
         externals(self.external)
         obstacles(self.obstacles)
+        touched(self.touched)
         self.upward()
         if isinstance(self.platform, (tuple, list)):
             if len(self.platform) != 6:

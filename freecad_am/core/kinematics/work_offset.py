@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where a part really stands, by three or more of its points that the robot has touched: `cell.touched`.
+
+The rigid motion with the least sum of squares (Arun, Huang, Blostein 1987, with the sign of Umeyama 1991). What is left at
+each point tells how well it was touched, and whether these are points of this part at all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import frames
+from ..issues import InputError
+from ..parameters.cell import CellParameters
+from ..parameters.external import PART, externals
+from ..parameters.touched import WHERE, Touched, touched
+from .arrangement import Arrangement
+
+Array = NDArray[np.float64]
+
+CODE = "TOUCHED"
+LEAST = 3
+LINE = 0.05  # of their spread that points are off a line at least
+SAME_SIZE = 0.01  # of the distances between points
+_UNITS = ((25.4, "inches"), (1000.0, "m"), (10.0, "cm"), (1.0 / 25.4, "inches"), (1e-3, "m"), (0.1, "cm"))
+
+
+@dataclass(frozen=True)
+class WorkOffset:
+    """pose: (4, 4) of the part's coordinates in the maker's base frame. residual: (n,) mm, how far each point is from where
+    it was touched."""
+
+    pose: Array
+    residual: Array
+
+    def six(self) -> Array:
+        """x y z RX RY RZ of the pose, mm and deg (Bryant)."""
+        return np.concatenate([self.pose[:3, 3], np.degrees(frames.to_bryant(self.pose[:3, :3]))])
+
+
+def of_cell(parameters: CellParameters, arrangement: Arrangement) -> WorkOffset | None:
+    """Where the part of a cell stands by the points that were touched; None without any. InputError TOUCHED."""
+    points = touched(parameters.touched)
+    if not points:
+        return None
+    carried = any(one.carries == PART for one in externals(parameters.external))
+    if arrangement.carries_part or not arrangement.redundant or carried:
+        raise InputError(CODE, WHERE, "points are touched of a part that stands still under a tool on the robot; leave them "
+                         "out, and measure cell.platform or the pose of what carries the part")
+    return work_offset(points, parameters.touched_tolerance)
+
+
+def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
+    """Where the part stands. Raises InputError TOUCHED for fewer than three points, points on a line, of another size, and
+    where one is farther than `tolerance` mm from where it was touched."""
+    if len(points) < LEAST:
+        raise InputError(CODE, WHERE, f"{len(points)} point(s) do not tell where a part stands; touch {LEAST} or more, far "
+                         "from one another and not on a line")
+    part, robot = (np.array([getattr(one, side) for one in points]) for side in ("part", "robot"))
+    here, there = part - part.mean(axis=0), robot - robot.mean(axis=0)
+    for side, seen in (("part", here), ("robot", there)):
+        spread = np.linalg.svd(seen, compute_uv=False)
+        if not spread[1] > LINE * spread[0]:
+            raise InputError(CODE, WHERE, f"the points {'touched' if side == 'robot' else 'of the part'} are on a line, or "
+                             "all in one place: nothing tells how the part is turned about it; touch one beside it")
+    _refuse_other_size(float(np.linalg.norm(there) / np.linalg.norm(here)))
+    left, _, right = np.linalg.svd(here.T @ there)
+    turn = (left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right).T
+    pose = frames.pose(turn, robot.mean(axis=0) - turn @ part.mean(axis=0))
+    residual = np.linalg.norm(part @ turn.T + pose[:3, 3] - robot, axis=1)
+    worst = int(np.argmax(residual))
+    if residual[worst] > tolerance:
+        told = ", ".join(f"{value:.3g}" for value in residual)
+        raise InputError(CODE, WHERE, f"point {worst + 1} is {residual[worst]:.3g} mm from where it was touched (of all: "
+                         f"{told} mm), more than cell.touched_tolerance of {tolerance:g} mm; touch it again, and see that "
+                         "the points stand in the same order, are of this part, and that the tip is calibrated")
+    return WorkOffset(pose, residual)
+
+
+def _refuse_other_size(ratio: float) -> None:
+    """Of what was touched against what is planned."""
+    if abs(ratio - 1.0) <= SAME_SIZE:
+        return
+    unit = next((name for factor, name in _UNITS if abs(ratio * factor - 1.0) <= SAME_SIZE), "")
+    raise InputError(CODE, WHERE, f"what was touched is {ratio:.4g} times as large as what is planned; "
+                     + (f"one of them is in {unit}, give both in mm" if unit else "these are points of another part, or "
+                        "in another order"))

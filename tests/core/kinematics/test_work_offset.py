@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`cell.touched`: where a part stands by points touched, against scipy's own fit of rotations, and what is refused."""
+
+import dataclasses
+
+import numpy as np
+import PyKDL
+import pytest
+from scipy.spatial.transform import Rotation
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import work_offset as module
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.touched import Touched, touched
+from freecad_am.kdl.chain import KdlArm
+from tests.core.planning.test_obstacles import kdl_pose
+
+POINTS = np.array([[0.0, 0.0, 0.0], [120.0, 0.0, 5.0], [0.0, 80.0, 0.0], [110.0, 90.0, -3.0]])
+
+
+def pairs(part, robot):
+    return tuple(Touched(tuple(one), tuple(other)) for one, other in zip(part.tolist(), robot.tolist(), strict=True))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_best_rigid_motion_and_what_is_left(seed):
+    rng = np.random.default_rng(seed)
+    part = rng.normal(scale=100.0, size=(3 + seed, 3))
+    turn, move = Rotation.random(random_state=seed), rng.normal(scale=800.0, size=3)
+    robot = turn.apply(part) + move + rng.normal(scale=0.1, size=part.shape)
+    found = module.work_offset(pairs(part, robot), 5.0)
+    best, _ = Rotation.align_vectors(robot - robot.mean(axis=0), part - part.mean(axis=0))
+    assert np.abs(found.pose[:3, :3] - best.as_matrix()).max() < 1e-9
+    assert np.abs(found.pose[:3, 3] - (robot.mean(axis=0) - best.apply(part.mean(axis=0)))).max() < 1e-7
+    left = np.linalg.norm(best.apply(part - part.mean(axis=0)) + robot.mean(axis=0) - robot, axis=1)
+    assert np.allclose(found.residual, left, atol=1e-9)
+    assert np.linalg.det(found.pose[:3, :3]) == pytest.approx(1.0)
+    six = found.six()
+    assert np.abs(frames.bryant((*six[:3], *np.radians(six[3:]))) - found.pose).max() < 1e-9
+
+
+def test_plane_points_are_not_mirrored():
+    flat = POINTS * [1.0, 1.0, 0.0]
+    turn = Rotation.from_euler("xyz", [10.0, -5.0, 170.0], degrees=True)
+    found = module.work_offset(pairs(flat, turn.apply(flat) + 500.0), 0.1)
+    assert np.abs(found.pose[:3, :3] - turn.as_matrix()).max() < 1e-9
+
+
+@pytest.mark.parametrize(("part", "robot", "says"), [
+    (POINTS[:2], POINTS[:2], "2 point"),
+    (POINTS[[0, 1, 1]] * [[1], [1], [2]], POINTS[[0, 1, 1]] * [[1], [1], [2]], "points of the part are on a line"),
+    (POINTS, POINTS[[0, 1, 1, 1]] * [[1], [1], [2], [3]], "points touched are on a line"),
+    (POINTS, POINTS * 25.4, "25.4 times as large as what is planned; one of them is in inches"),
+    (POINTS, POINTS * 1e-3, "one of them is in m,"),
+    (POINTS, POINTS * 1.3, "points of another part"),
+    (POINTS, POINTS * [1.0, 1.0, -1.0], r"point \d is \d\.\d+ mm from where it was touched"),
+    (POINTS, POINTS[[1, 0, 2, 3]], r"point \d is \d+\.?\d* mm from where it was touched"),
+    (POINTS, POINTS + [[0, 0, 0], [0, 0, 0], [0, 0, 6.0], [0, 0, 0]], r"point \d is 1\.\d+ mm .* more than "
+     "cell.touched_tolerance of 1 mm"),
+])
+def test_what_is_refused(part, robot, says):
+    with pytest.raises(InputError, match=says) as error:
+        module.work_offset(pairs(part, robot + 700.0), 1.0)
+    assert (error.value.code, error.value.where) == ("TOUCHED", "cell.touched")
+
+
+def test_points_of_the_toolpath_are_met_where_they_were_touched():
+    """By PyKDL: with the joints of a point the tip is where the touched points say."""
+    turn = Rotation.from_euler("xyz", [2.0, -3.0, 25.0], degrees=True)
+    move = np.array([880.0, 60.0, -120.0])
+    text = "; ".join(map(str, pairs(POINTS, turn.apply(POINTS) + move)))
+    assert touched(text) == pairs(*(np.array([getattr(one, side) for one in touched(text)]) for side in ("part", "robot")))
+    settings = CellParameters(setup="tool-on-robot", branch=("front", "up", "flip"), touched=text)
+    cell = cells.resolve(settings, frames.pose(np.eye(3), [3.0, -4.0, 10.0]))
+    position, tool = POINTS + [0.0, 0.0, 20.0], np.tile([0.0, 0.0, 1.0], (4, 1))
+    flange = cell.pose_frames(position, tool).at(np.zeros(4))
+    arm, frame = KdlArm(cell.machine), PyKDL.Frame()
+    wanted = turn.apply(position) + move
+    joints = cell.machine.arm.inverse_branch(flange, cell.branch)
+    assert np.isfinite(joints).all()
+    for q, point in zip(joints, wanted, strict=True):
+        arm._forward.JntToCart(arm.angles(q), frame)
+        pose = np.linalg.inv(cell.machine.base) @ kdl_pose(frame) @ cell.carried
+        assert np.abs(pose[:3, 3] - point).max() < 1e-6
+
+
+@pytest.mark.parametrize("values", [
+    {"setup": "part-on-robot"}, {"external": "motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"},
+])
+def test_only_a_part_that_stands_is_touched(values):
+    text = "; ".join(map(str, pairs(POINTS, POINTS + 700.0)))
+    settings = dataclasses.replace(CellParameters(setup="tool-on-robot", touched=text), **values)
+    with pytest.raises(InputError, match="a part that stands still"):
+        cells.resolve(settings, np.eye(4))
