@@ -19,10 +19,9 @@ from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, uprig
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from .axis import from_normals
-from .fine_mesh import fine
 from .kernel import refuse_bare
-from .kernel_process import beside
 from .tessellate import WELDED
+from .whole_mesh import whole
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
 CROSSED = 5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin
@@ -73,7 +72,7 @@ def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching
 
 def _meshed(solid: Any, source: Any, chord_error: float, label: str, mend: float, touching: bool) -> Repaired:
     """The mesh of a solid; of one whose faces do not meet, what mending its triangles makes of it."""
-    made = beside(fine, solid.copy(), SHARE * chord_error)
+    made, issues = whole(solid, SHARE * chord_error, label)
     vertices, corners = made.vertices, made.triangles
     if len(np.unique(made.owner)) < len(solid.Faces):
         numbers = {face.hashCode(): number for number, face in enumerate(source.Faces, start=1)}
@@ -85,7 +84,8 @@ def _meshed(solid: Any, source: Any, chord_error: float, label: str, mend: float
         mesh.refuse_unsound(label, of_shape=True, touching=touching)
     except InputError as unsound:
         try:
-            return repaired(vertices, mesh.triangles, label, mend, touching)
+            found = repaired(vertices, mesh.triangles, label, mend, touching)
+            return found._replace(issues=(*found.issues, *issues))
         except InputError:
             widest = max((hole.size for hole in holes(told_apart(vertices, mesh.triangles))), default=0.0)
         if widest <= mend:
@@ -96,7 +96,7 @@ def _meshed(solid: Any, source: Any, chord_error: float, label: str, mend: float
         ) from None
     if not touching:
         mesh.refuse_crossing(label, CROSSED * chord_error)
-    return Repaired((mesh,), ())
+    return Repaired((mesh,), issues)
 
 
 def _placed(first: Any, mesh: SolidMesh, solid: Any) -> SolidMesh:

@@ -13677,6 +13677,11 @@
         <translation>{0} : seule une numérisation dans les coordonnées de la pièce dit jusqu&apos;où une pièce a grandi ; donnez none</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/whole_mesh.py"/>
+        <source>{0}: its triangles enclose {1} cm3 and its faces {2} cm3; check and export the part again, or deposit it from a mesh</source>
+        <translation>{0} : ses triangles enferment {1} cm3 et ses faces {2} cm3 ; contrôlez la pièce et exportez-la de nouveau, ou déposez-la à partir d&apos;un maillage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
         <source>{0}: layer {1} lies on what was scanned, {2} to {3} mm from the plan, now within {4} mm; {5} layers lead back to the plan. {6} points were looked at, {7} that face another way left out; along the beads it rises by up to {8} deg against the plan{9}</source>
         <translation>{0} : la couche {1} repose sur ce qui a été numérisé, de {2} à {3} mm du plan, maintenant à moins de {4} mm ; {5} couches ramènent au plan. {6} points ont été regardés, {7} tournés ailleurs laissés de côté ; le long des cordons elle monte de {8} deg au plus par rapport au plan{9}</translation>

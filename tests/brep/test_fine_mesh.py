@@ -8,7 +8,7 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep import fine_mesh, hub
+from freecad_am.brep import fine_mesh, hub, whole_mesh
 from freecad_am.brep.tessellate import tessellated
 from freecad_am.core.geometry.mesh.refined import Edges
 from freecad_am.core.issues import InputError
@@ -74,7 +74,7 @@ def test_a_face_that_the_kernel_makes_no_triangles_of_gets_those_of_splines(monk
 def test_a_face_of_which_there_are_no_triangles_at_all_is_named(monkeypatch):
     """Also where its solid is not the first."""
     two = Part.makeCompound([Part.makeBox(5, 5, 5, Vector(20, 0, 0)), Part.makeBox(1, 2, 3)])
-    monkeypatch.setattr(hub, "beside", lambda made, *words: made(*words))
+    monkeypatch.setattr(whole_mesh, "beside", lambda made, *words: made(*words))
 
     def bare(shape, chord):
         found = tessellated(shape, chord)

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Triangles of a solid enclose what it does, whatever the kernel makes at one deflection."""
+
+import Part
+import pytest
+
+from freecad_am.brep import hub, whole_mesh
+from freecad_am.brep.fine_mesh import fine
+from freecad_am.core.geometry.mesh.solid import SolidMesh
+
+TORUS = Part.makeTorus(20.0, 5.0)
+
+
+def cut_short(faulty):
+    """What the kernel would make, for the deflections that `faulty` says with the tube half as thick in one half."""
+    asked = []
+
+    def made(function, shape, chord):
+        assert function is fine
+        asked.append(chord)
+        right = fine(shape, chord)
+        if not faulty(chord):
+            return right
+        bent = right.vertices.copy()
+        bent[bent[:, 1] > 0.0, 2] *= 0.5  # still closed, and of half the volume there
+        return right._replace(vertices=bent)
+
+    return made, asked
+
+
+def test_another_deflection_is_taken_where_one_lacks_a_part(monkeypatch):
+    made, asked = cut_short(lambda chord: chord > 0.009)
+    monkeypatch.setattr(whole_mesh, "beside", made)
+    found = hub.bodies_of(TORUS, "ring", 0.01 / hub.SHARE, 0.1)
+    body = found.bodies[0]
+    assert found.issues == () and len(asked) == 2
+    assert SolidMesh(body.vertices, body.triangles).volume == pytest.approx(TORUS.Volume, rel=2e-3)
+
+
+def test_what_no_deflection_mends_is_told_with_both_volumes(monkeypatch):
+    made, asked = cut_short(lambda chord: True)
+    monkeypatch.setattr(whole_mesh, "beside", made)
+    found = hub.bodies_of(TORUS, "ring", 0.01 / hub.SHARE, 0.1)
+    (issue,) = found.issues
+    assert issue.code == "MESH_VOLUME" and issue.level == "warning" and len(asked) == len(whole_mesh.FINER)
+    assert f"{1e-3 * TORUS.Volume:.4g} cm3" in issue.message
+
+
+@pytest.mark.parametrize("shape", [
+    TORUS, Part.makeSphere(30.0), Part.makeCone(1.0, 20.0, 300.0), Part.makeBox(0.1, 50.0, 50.0),
+])
+@pytest.mark.parametrize("chord", [0.5, 0.01])
+def test_sound_solids_are_meshed_once(monkeypatch, shape, chord):
+    made, asked = cut_short(lambda chord: False)
+    monkeypatch.setattr(whole_mesh, "beside", made)
+    assert whole_mesh.whole(shape, chord, "it")[1] == () and asked == [chord]
