@@ -203,7 +203,7 @@ def test_a_track_that_is_too_short_is_told(track, tmp_path):
 @pytest.mark.parametrize(("external", "code", "says"), [
     ("motoman-motopos-d500 at 0 0 0 0 0 0 carries robot", "NOT_YET", "carries the robot and is no track"),
     ("kuka-kl100-2 at 0 0 0 0 0 0 carries part", "NOT_YET", "slides and carries the part"),
-    ("kuka-kl100-2 at 0 0 0 0 0 0 carries robot; kuka-kl100-2 at 0 0 0 0 0 0 carries robot", "NOT_YET", "2 mechanisms"),
+    ("kuka-kl100-2 at 0 0 0 0 0 0 carries robot; kuka-kl100-2 at 0 900 0 0 0 0 carries robot", "NOT_YET", "2 mechanisms"),
 ])
 def test_refused_with_a_reason(track, external, code, says):
     with pytest.raises(InputError) as error:
