@@ -65,9 +65,9 @@ def test_obstacles_of_a_document(tmp_path, name):
     text = f"post = {tmp_path / name} at 0 0 0 0 0 0"
     assert refused(cell_obstacles.bodies_of, CellParameters(obstacles=text)).where == "cell.obstacles post"
     if name == "huge.step":
-        assert refused(cell_obstacles.hashes_of, text).code == "BAD_FILE"
+        assert refused(cell_obstacles.hashes_of, text, "").code == "BAD_FILE"
     else:
-        assert cell_obstacles.hashes_of(text) == []
+        assert cell_obstacles.hashes_of(text, "") == []
 
 
 @pytest.mark.parametrize("name", ["huge.json", "pipe.json", "zero.json"])
