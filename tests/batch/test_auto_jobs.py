@@ -39,7 +39,7 @@ def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True, *
     (lambda: Part.makeCylinder(30, 20), "solid", "planes", "would leave out"),
     (lambda: Part.makeBox(60, 40, 10).fuse(Part.makeBox(10, 40, 40)), "solid", "planes",
      "a solid, and less than 1% of its surface hangs"),
-    (tee, "solid", "geodesic", "hang over by more than 45 deg"),
+    (tee, "solid", "geodesic", "hangs over by more than 45 deg"),
     (lambda: Part.makeCompound([Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, Vector(20, 0, 0))]), "solid", "planes",
      "holds 2 solids"),
 ])
