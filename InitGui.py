@@ -5,7 +5,7 @@ import FreeCADGui as Gui
 
 from freecad_am.gui import former_names
 from freecad_am.gui.texts import translation
-from freecad_am.objects import hooks
+from freecad_am.objects.work import hooks
 
 former_names.install()
 translation.install()

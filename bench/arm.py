@@ -21,7 +21,8 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.kinematics import link_rods, machine
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.kdl.chain import KdlArm
 
 from rows import Row

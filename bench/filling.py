@@ -10,14 +10,14 @@ from time import process_time
 
 import numpy as np
 
+from freecad_am.brep.files.read import read_shape
 from freecad_am.brep.hub import bodies_of
-from freecad_am.brep.read import read_shape
 from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import fill
 from freecad_am.core.geometry.regions.region import regions, shapely
-from freecad_am.core.layers import eikonal
-from freecad_am.core.layers.voxels import voxels
-from freecad_am.core.slicing.plane_sections import PlaneCuts
+from freecad_am.core.layers.curved import eikonal
+from freecad_am.core.layers.curved.voxels import voxels
+from freecad_am.core.slicing.solids.plane_sections import PlaneCuts
 
 from rows import Row
 

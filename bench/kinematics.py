@@ -16,7 +16,7 @@ import numpy as np
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import jacobian as jac
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.kdl import chain as kdl
 
 from rows import Row

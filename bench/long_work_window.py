@@ -39,7 +39,7 @@ def cancelled(job) -> dict[str, float]:
 
     from freecad_am import api
     from freecad_am.gui.background import busy
-    from freecad_am.objects.progress import Cancelled
+    from freecad_am.objects.work.progress import Cancelled
 
     pressed: list[float] = []
 

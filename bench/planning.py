@@ -13,19 +13,21 @@ from statistics import median
 import numpy as np
 from scipy.optimize import minimize
 
-from freecad_am.brep import read, revolution
+from freecad_am.brep.files import read
+from freecad_am.brep.revolution import wall as revolution
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.planning import criteria, search
+from freecad_am.core.planning import criteria
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
+from freecad_am.core.planning.rotation import search
 from freecad_am.core.planning.task import Task
-from freecad_am.core.strategies import revolution as strategy
+from freecad_am.core.strategies.revolution import plan as strategy
 from freecad_am.kdl import chain as kdl
 
 from rows import Row

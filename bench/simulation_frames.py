@@ -30,7 +30,7 @@ def run_of_points(layer_height: float, points: int, document: str):
     from freecad_am.core.simulation.timeline import timeline
     from freecad_am.core.simulation.totals import totals
     from freecad_am.core.simulation.watch import watch
-    from freecad_am.core.strategies import revolution
+    from freecad_am.core.strategies.revolution import plan as revolution
     from freecad_am.gui.simulation.run import Run
 
     def dome(t):

@@ -11,8 +11,8 @@ from time import process_time
 import numpy as np
 
 from freecad_am.core.geometry.developable import Developable
-from freecad_am.core.slicing.equidistant import Facets
-from freecad_am.core.slicing.plane_sections import PlaneCuts
+from freecad_am.core.slicing.solids.equidistant import Facets
+from freecad_am.core.slicing.solids.plane_sections import PlaneCuts
 
 from rows import Row
 

@@ -15,9 +15,10 @@ import numpy as np
 
 from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.walls.surface import Torus
-from freecad_am.core.slicing import constant_distance, fronts
 from freecad_am.core.slicing.first_layer import on_implicit
-from freecad_am.core.slicing.wall_layer import WallLayer, even_grid
+from freecad_am.core.slicing.fronts import layers as fronts
+from freecad_am.core.slicing.tubes import constant_distance
+from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid
 from tests.core.patch_walls import bend
 
 from rows import Row

@@ -26,9 +26,10 @@ from typing import Any
 
 from .core.geometry.curves.bead_curves import POINT_FILES
 from .core.issues import InputError, Issue
-from .core.kinematics import machine as machines
-from .core.kinematics import urdf_cell, urdf_machine
+from .core.kinematics.machines import machine as machines
 from .core.kinematics.proposed_cell import cell_of
+from .core.kinematics.urdf import cell as urdf_cell
+from .core.kinematics.urdf import machine as urdf_machine
 from .core.one_thread import one_thread
 from .core.parameters.cell import CellParameters
 from .core.parameters.inspection import InspectionParameters
@@ -59,15 +60,15 @@ from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
 from .objects import user_machines
 from .objects.cell import Cell
-from .objects.controllers import written_by
-from .objects.findings import issues_of
+from .objects.checks.controllers import written_by
+from .objects.fields.naming import proposed_name
 from .objects.job_group import grouped
 from .objects.joint_path import JointPath
-from .objects.naming import proposed_name
 from .objects.program import Program
-from .objects.progress import told_to
+from .objects.results.findings import issues_of
 from .objects.revival import revive
 from .objects.toolpath import Toolpath, own_process
+from .objects.work.progress import told_to
 from .posts import catalogue
 
 __all__ = (
@@ -218,7 +219,7 @@ def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any)
     `found = am.place(doc.JointPath, x=300, step=100); am.change(doc.Cell, **found.entries(found.best))`; `found.best` is
     None where no pose serves.
     """
-    from .objects.placed import given, placing_of
+    from .objects.checks.placed import given, placing_of
 
     return placing_of(path, cell).placed(given(parameters, values))
 
@@ -261,7 +262,7 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
             table = open_points(doc, path)
             table.purgeTouched()
         return table
-    from .objects.part_file import part_shape
+    from .objects.shapes.part_file import part_shape
 
     shape, label = part_shape(path, object, scale)
     with one_step(doc, "Open part"):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from freecad_am.batch import job
+from freecad_am.batch.job import job
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from freecad_am.batch import cli
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.posts import catalogue
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -16,12 +16,12 @@ import pytest
 from freecad_am import api
 from freecad_am.core.geometry.mesh.repair import repaired
 from freecad_am.core.issues import AmError, Issue
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.gui.texts.field_names import as_in_panels
 from freecad_am.gui.texts.phrases import Phrases, Template
-from freecad_am.objects import progress
+from freecad_am.objects.work import progress
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "resources" / "translations"

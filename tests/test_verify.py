@@ -11,14 +11,14 @@ from freecad_am import verify as verification
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.opw import branch_name
+from freecad_am.core.kinematics.inverse.opw import branch_name
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.program import DepositOff, DepositOn, LayerStart, Moves, Program
 from freecad_am.core.read_moves import Event
-from freecad_am.posts import fanuc
+from freecad_am.posts.fanuc import post as fanuc
 from freecad_am.read_back import points, text_path
 from freecad_am.read_back.events import _alike
 from tests.programs import build

@@ -18,12 +18,12 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.planning import moving_tool
+from freecad_am.core.planning.beads import moving_tool
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.strategies import revolution
+from freecad_am.core.strategies.revolution import plan as revolution
 from freecad_am.kdl.chain import KdlArm
-from freecad_am.posts import staubli
+from freecad_am.posts.staubli import post as staubli
 from tests.programs import build
 
 CHORD_ERROR = 0.01

@@ -23,19 +23,22 @@ from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning.program import without_moves
+from freecad_am.core.planning.program.build import without_moves
 from freecad_am.core.planning.task import CONDITION_FLOOR
 from freecad_am.core.preflight import clearance, joints
 from freecad_am.core.preflight.promise import Promise, row_place
 from freecad_am.core.read_moves import ReadMoves
 from freecad_am.core.simulation import rapid_look, waypoints
 from freecad_am.core.simulation.margins import on_deposit
-from freecad_am.objects import controllers
+from freecad_am.objects.checks import controllers
 from freecad_am.posts import catalogue
 from freecad_am.read_back import driven
 from freecad_am.report import figures
 
-from . import job, job_cell, outputs, paths, tree
+from . import paths
+from .job import cell as job_cell
+from .job import job, tree
+from .outputs import folder as outputs
 
 # of the promises about joints and rapids, in their order, where one is not kept
 CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")

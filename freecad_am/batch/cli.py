@@ -184,7 +184,8 @@ def _count(text: str) -> int:
 
 
 def _plan(options: Any, session: Any) -> int:
-    from freecad_am.batch import job, run
+    from freecad_am.batch import run
+    from freecad_am.batch.job import job
 
     read = job.read_job(options.job)
     result = run.run(read, options.output or run.default_folder(read), session, page=not options.no_page)
@@ -207,7 +208,7 @@ def _export(options: Any, session: Any) -> int:
 
 
 def _batch(options: Any, session: Any) -> int:
-    from freecad_am.batch import rows
+    from freecad_am.batch.rows import rows
 
     if options.scheduler and options.jobs is not None:
         from freecad_am.core.issues import InputError
@@ -238,7 +239,8 @@ def _check(options: Any, session: Any) -> int:
 
 
 def _place(options: Any, session: Any) -> int:
-    from freecad_am.batch import job, place
+    from freecad_am.batch import place
+    from freecad_am.batch.job import job
 
     result = place.place(job.read_job(options.job), options.output, session)
     session.issues(result.issues)

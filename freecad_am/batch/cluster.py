@@ -18,10 +18,12 @@ from typing import Any
 
 from freecad_am.core.issues import InputError
 
-from . import outputs, staging, versions
+from . import versions
 from .console import Session
-from .row_journal import Journal
-from .table import Row
+from .outputs import folder as outputs
+from .outputs import staging
+from .rows.journal import Journal
+from .rows.table import Row
 
 WHERE, CODE = "--scheduler", "SCHEDULER"
 WORKER = "freecad_am_row_worker"

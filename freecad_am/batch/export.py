@@ -8,7 +8,8 @@ from typing import Any
 
 from freecad_am.core.issues import InputError
 
-from . import outputs, paths
+from . import paths
+from .outputs import folder as outputs
 
 _PROGRAMS, _PATHS = ("program",), ("joint path", "toolpath", "program")
 
@@ -28,7 +29,7 @@ def export(path: str, folder: str | None, names: tuple[str, ...], session: Any, 
     paths.require_freecad()
     import FreeCAD
 
-    from freecad_am.objects import document_file
+    from freecad_am.objects.shapes import document_file
 
     target = folder or os.path.join(os.path.dirname(os.path.abspath(path)), "out", os.path.splitext(label)[0])
     with outputs.Outputs(target, session) as files:

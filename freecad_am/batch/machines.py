@@ -8,9 +8,10 @@ from typing import Any
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 
-from . import paths, quantity
+from . import paths
+from .job import quantity
 
 
 def listing() -> str:
@@ -25,7 +26,7 @@ def chosen(maker: str | None, reach: str | None, payload: str | None, post: str 
     """The lines of `listing` of those machines that `machine_catalogue.chosen` finds, each with reach, payload and posts as
     far as its file tells them. `reach` is a length and `payload` a mass as users write them; InputError for others."""
     paths.require_freecad()
-    from freecad_am.core.kinematics import machine_catalogue
+    from freecad_am.core.kinematics.machines import catalogue as machine_catalogue
     from freecad_am.core.parameters import field
     from freecad_am.objects import user_machines
     from freecad_am.posts import catalogue
@@ -70,10 +71,10 @@ def written(name: str, form: str) -> str:
 
     found = machine.load(name, user_machines.folders())
     if form == "urdf":
-        from freecad_am.core.kinematics import urdf_text
+        from freecad_am.core.kinematics.urdf import text as urdf_text
 
         return urdf_text.text(found)
-    from freecad_am.core.kinematics import denavit_hartenberg
+    from freecad_am.core.kinematics.machines import denavit_hartenberg
 
     table = denavit_hartenberg.table_of(found.chain, form == "modified-dh")
     joints = [[math.degrees(row.theta), row.d, row.a, math.degrees(row.alpha)] for row in table.rows]

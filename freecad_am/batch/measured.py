@@ -9,7 +9,8 @@ from typing import Any
 
 from freecad_am.core.issues import InputError
 
-from . import outputs, paths
+from . import paths
+from .outputs import folder as outputs
 
 FIGURES, DATA, PAGE, DOCUMENT = "inspection.csv", "inspection.json", "inspection.html", "inspection.FCStd"
 _KEPT = {"measured", "planned", "file", "label", "inspection"}
@@ -75,7 +76,7 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
         raise InputError("USAGE", "freecad-am inspect", "--object is for FCStd documents; a job's part is compared")
     import FreeCAD
 
-    from . import job
+    from .job import job
 
     read = job.read_job(source)
     document = FreeCAD.newDocument("Inspection")
@@ -89,7 +90,7 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
 
 def _feature(document: Any, read: Any, session: Any) -> Any:
     """The feature of a job; its toolpath need not be made."""
-    from .job_shapes import Shapes
+    from .job.shapes import Shapes
 
     session.progress("feature ...")
     return Shapes(document, read, 0).make_feature([])
@@ -99,7 +100,7 @@ def _of_document(path: str, name: str) -> tuple[Any, Any]:
     import FreeCAD
 
     from freecad_am import api
-    from freecad_am.objects import document_file
+    from freecad_am.objects.shapes import document_file
 
     label = os.path.basename(path)
     if not os.path.isfile(path):
@@ -127,7 +128,7 @@ def _made(document: Any, planned: Any, path: str, label: str, values: dict[str, 
 def _write(files: outputs.Outputs, planned: str, made: list[Any], labels: list[str]) -> None:
     from freecad_am.core.inspection import table
 
-    from . import inspection_page
+    from .outputs import inspection_page
 
     compared = table.compared(made)
     several = len(made) > 1

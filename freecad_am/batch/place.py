@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 from freecad_am.core.issues import ERROR, NOTE, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
 
-from . import outputs, paths
-from .job import SECTIONS, Job
-from .job_features import in_words_of_job
+from . import paths
+from .job.features import in_words_of_job
+from .job.job import SECTIONS, Job
+from .outputs import folder as outputs
 
 TABLE, PAGE = "place.csv", "place.html"
 
@@ -35,7 +36,8 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
     paths.require_freecad()
     import FreeCAD
 
-    from . import job_document, run
+    from . import run
+    from .job import document as job_document
 
     target = folder or os.path.join(job.folder, "out", f"{job.name}-place")
     try:
@@ -58,9 +60,9 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
 
 def _written(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Result:
     from freecad_am.core.placement import table
-    from freecad_am.objects.placed import placing_of
+    from freecad_am.objects.checks.placed import placing_of
 
-    from . import place_page
+    from .outputs import place_page
 
     with stages.timed("place", session):
         found = placing_of(stages.toolpath, stages.cell, job.joints).placed(job.place)

@@ -54,7 +54,7 @@ def _settled(settings: dict[str, Any]) -> None:
 
 def _planned(asked: dict[str, Any]) -> dict[str, Any]:
     """The result of an order."""
-    from freecad_am.batch import row_process
+    from freecad_am.batch.rows import process as row_process
 
     receiver, process = row_process.started(row_process.Order(**asked))
 

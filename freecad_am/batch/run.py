@@ -14,9 +14,12 @@ from typing import Any
 from freecad_am.core.issues import ERROR, InfeasibleError, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
 
-from . import for_report, job_document, outputs, paths
-from .job import SECTIONS, Job
-from .job_features import in_words_of_job
+from . import paths
+from .job import document as job_document
+from .job.features import in_words_of_job
+from .job.job import SECTIONS, Job
+from .outputs import folder as outputs
+from .outputs import for_report
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class Stages:
     @contextlib.contextmanager
     def timed(self, stage: str, session: Any) -> Iterator[None]:
         """Tell of a stage and take its time."""
-        from freecad_am.objects.progress import told_to
+        from freecad_am.objects.work.progress import told_to
 
         name = stage.replace("_", " ")
         session.progress(f"{name} ...")
@@ -155,14 +158,14 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`. fails: code
     of the error that curved layers end with, where the job leaves layers open."""
     from freecad_am import api
-    from freecad_am.core.process.predicted import HEIGHTS
+    from freecad_am.core.process.model.predicted import HEIGHTS
 
     stages = as_far_as_toolpath(job, document, session, fails)
     job = stages.job
     if stages.cell is None or has_errors(stages.issues):
         return stages
     if job.program is not None:
-        from freecad_am.objects import controllers
+        from freecad_am.objects.checks import controllers
 
         controllers.check_beads(api.result(stages.toolpath), job.program.post, job.program.max_points)
     with stages.timed("joint_path", session):
@@ -183,7 +186,7 @@ def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -
     from freecad_am import api
     from freecad_am.core.strategies.size import LARGE
 
-    from .job_shapes import Shapes, toolpath_of
+    from .job.shapes import Shapes, toolpath_of
 
     stages = Stages(document)
     with stages.timed("part", session):

@@ -127,7 +127,7 @@ def _tell(value: Any) -> None:
 
 def _tidied(folder: str, made: list[str]) -> None:
     """Finish or remove what a crash has left in the making."""
-    from . import staging
+    from .outputs import staging
 
     with contextlib.suppress(OSError):
         staging.clear(folder)

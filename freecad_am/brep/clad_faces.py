@@ -18,11 +18,11 @@ from ..core.geometry.walls.clad_faces import CladFaces
 from ..core.geometry.walls.patch_wall import Array, PatchWall
 from ..core.geometry.walls.surface import dot
 from ..core.issues import WARNING, InputError, Issue
-from .kernel import told
-from .patch_wall import sound
-from .sheet import sheet
-from .wall import faces_by_name
-from .wall_checks import CREASE, smallest_radii
+from .kernel.limits import told
+from .walls.checks import CREASE, smallest_radii
+from .walls.patch_wall import sound
+from .walls.sheet import sheet
+from .walls.wall import faces_by_name
 
 OF_RADIUS, OF_SPACING, FINEST = 0.25, 0.5, 0.1  # edges: of the smallest radius, of the bead spacing, at least
 TOLD = 8  # faces named in a message

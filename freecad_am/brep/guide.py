@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.geometry.walls.patch import Array
 from ..core.issues import InputError
-from .start_edges import sampled
+from .walls.start_edges import sampled
 
 LEAST = 1e-3  # mm; shorter edges are none
 

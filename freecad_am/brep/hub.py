@@ -18,9 +18,9 @@ from ..core.geometry.mesh.solid import Array, SolidMesh
 from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
-from .axis import from_normals
-from .kernel import refuse_bare
-from .tessellate import WELDED
+from .kernel.limits import refuse_bare
+from .revolution.axis import from_normals
+from .shapes.tessellate import WELDED
 from .whole_mesh import whole
 
 SHARE = 0.4  # of the chord error, between solids and their triangles

@@ -8,11 +8,11 @@ from typing import Any
 
 import Part
 
-from .fine_mesh import fine
 from .hub import SHARE
-from .kernel_process import beside
-from .tessellate import Array
-from .wall import faces_by_name
+from .kernel.process import beside
+from .shapes.fine_mesh import fine
+from .shapes.tessellate import Array
+from .walls.wall import faces_by_name
 
 
 def triangles_of_faces(shape: Any, names: Sequence[str], label: str, chord_error: float) -> Array:

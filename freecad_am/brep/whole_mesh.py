@@ -8,9 +8,9 @@ from typing import Any
 
 from ..core.geometry.mesh.solid import SolidMesh
 from ..core.issues import WARNING, Issue
-from .fine_mesh import fine
-from .kernel_process import beside
-from .tessellate import Tessellation
+from .kernel.process import beside
+from .shapes.fine_mesh import fine
+from .shapes.tessellate import Tessellation
 
 FINER = (1.0, 0.8, 1.2, 0.5)  # of the deflection asked for, in the order in which they are tried
 MOST = 1.5  # deflections between triangles and shape, on average over its area, that are no fault

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..objects import preferences
+from ..objects.fields import preferences
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,9 @@ import math
 import os
 from typing import Any
 
-from ..core.kinematics import calibration, urdf_reference
 from ..core.kinematics.arrangement import of_setup
+from ..core.kinematics.machines import calibration
+from ..core.kinematics.urdf import reference as urdf_reference
 from ..core.parameters import external, obstacles, touched
 from ..core.parameters import field as f
 from ..core.parameters.cell import CellParameters

@@ -11,7 +11,7 @@ from typing import Any
 from ..core.issues import InputError
 from ..core.parameters.cell import CellParameters
 from ..core.simulation import waypoints
-from ..objects import hooks
+from ..objects.work import hooks
 from . import cam_path, cell_file, dxf, robot_trajectory, step_wires
 from .lines import Line
 from .source import lines_of, motion_of

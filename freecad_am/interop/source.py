@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.issues import InputError
-from ..core.kinematics import machine
+from ..core.kinematics.machines import machine
 from ..core.motion import Motion
 from ..core.simulation import deposit
 from ..objects import user_machines

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.geometry import frames
-from ..core.kinematics.machine import Machine
+from ..core.kinematics.machines.machine import Machine
 
 Array = NDArray[np.float64]
 SOLVERS = ("nr", "lma")

@@ -8,8 +8,8 @@ from typing import Any
 
 from ..core.issues import AmError
 from ..objects import stage as stages
+from ..objects.fields.settings import given
 from ..objects.program import Program
-from ..objects.settings import given
 from .steps import checked_stage, in_order, one_step, renew, with_faces
 
 

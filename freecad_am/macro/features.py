@@ -9,7 +9,7 @@ from typing import Any
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters, DevelopableParameters, SolidParameters
 from ..core.parameters.strategy import CurvesParameters, RevolutionParameters, SurfaceParameters
-from ..objects.feature_kinds import proxy_of
+from ..objects.planned.feature_kinds import proxy_of
 from .steps import make_stage, with_faces
 
 

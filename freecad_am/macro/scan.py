@@ -23,7 +23,7 @@ def make_scan(
     """
     from ..core.inspection import point_file, scan_checks, scan_motion  # what few jobs need
     from ..objects.inspection import Inspection
-    from ..objects.shapes import taken
+    from ..objects.shapes.bodies import taken
 
     body = taken(substrate).body()
     measured = point_file.read(file, unit)

@@ -11,7 +11,7 @@ import FreeCAD as App
 
 from ..core.issues import InputError
 from ..objects import stage as stages
-from ..objects.settings import given
+from ..objects.fields.settings import given
 
 
 def make_stage(

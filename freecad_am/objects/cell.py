@@ -9,10 +9,11 @@ import numpy as np
 
 from ..core.geometry.file_content import digest
 from ..core.kinematics import cell as cells
-from ..core.kinematics.urdf_xml import LARGEST
+from ..core.kinematics.urdf.elements import LARGEST
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.external import externals
-from . import cell_obstacles, user_machines
+from . import user_machines
+from .shapes import cell_obstacles
 from .stage import Stage
 from .stage_parts import Outcome, Section, Work
 

@@ -15,8 +15,8 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters
 from ..core.strategies import size
 from .feature import source_of
-from .fingerprints import fingerprint, shape_fingerprint
-from .shapes import FIXTURES, bodies, fixtures_of, taken
+from .results.fingerprints import fingerprint, shape_fingerprint
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
 

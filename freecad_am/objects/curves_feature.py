@@ -10,8 +10,8 @@ from ..core.geometry.curves.bead_curves import Curves
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import CurvesParameters
-from .fingerprints import fingerprint, shape_fingerprint
-from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
+from .results.fingerprints import fingerprint, shape_fingerprint
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
 from .table_part import points_of

@@ -17,11 +17,11 @@ from ..core.geometry.surroundings import Body
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import DevelopableParameters
-from ..core.slicing.standing import hub_among, on_hub
+from ..core.slicing.solids.standing import hub_among, on_hub
 from ..core.strategies import size
 from .feature import source_of
-from .fingerprints import fingerprint
-from .shapes import FIXTURES, Taken, bodies, fixtures_of, taken
+from .results.fingerprints import fingerprint
+from .shapes.bodies import FIXTURES, Taken, bodies, fixtures_of, taken
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
 

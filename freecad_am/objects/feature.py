@@ -8,14 +8,14 @@ from typing import Any
 
 import FreeCAD as App
 
-from ..brep.part_depths import of_revolved
-from ..brep.revolution import find_wall
+from ..brep.revolution.wall import find_wall
+from ..brep.shapes.part_depths import of_revolved
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import RevolutionParameters
 from ..core.strategies import size
-from .fingerprints import digits, fingerprint, shape_fingerprint
-from .shapes import FIXTURES, bodies, fixtures_of, global_shape
+from .results.fingerprints import digits, fingerprint, shape_fingerprint
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
 

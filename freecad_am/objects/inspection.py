@@ -9,7 +9,7 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from ..brep.distance import skin
+from ..brep.shapes.distance import skin
 from ..core.geometry.curves.profile import RevolvedWall
 from ..core.geometry.file_content import digest
 from ..core.geometry.located import is_there
@@ -17,12 +17,12 @@ from ..core.inspection import inspect, point_file, surfaces, table
 from ..core.inspection.planned import Planned, of_triangles
 from ..core.issues import InputError
 from ..core.parameters.inspection import InspectionParameters
-from . import progress
-from .fingerprints import fingerprint
-from .properties import HIDDEN, OUTPUT
-from .shapes import taken
+from .fields.properties import HIDDEN, OUTPUT
+from .results.fingerprints import fingerprint
+from .shapes.bodies import taken
 from .stage import Stage, checked, stage_of
 from .stage_parts import Link, Outcome, Section, Work
+from .work import progress
 
 KINDS = ("feature", "toolpath")
 FACES_FITTED = 3000  # points that a fit to exact faces is made with

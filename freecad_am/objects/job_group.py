@@ -8,8 +8,8 @@ from typing import Any
 
 import FreeCAD as App
 
-from . import hooks
 from .stage import stage_of
+from .work import hooks
 
 TYPE = "App::DocumentObjectGroupPython"
 _PASTE = "Paste"  # what FreeCAD calls this step of undo, in every language

@@ -12,26 +12,28 @@ import numpy as np
 
 from ..core.issues import NOTE, AmError, InputError, Issue
 from ..core.kinematics import cell as cells
-from ..core.kinematics.machine import NOT_TOLD
+from ..core.kinematics.machines.machine import NOT_TOLD
 from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.joints import JointParameters
 from ..core.parameters.process import ProcessParameters
+from ..core.planning.beads.speeds import SLOWED
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
 from ..core.planning.remedies import Fixed, Tried, most_points, remedies
-from ..core.planning.speeds import SLOWED
-from ..core.process import bead_table, predicted
+from ..core.process.model import bead_table, predicted
 from ..core.simulation import payload
 from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
-from . import cell_obstacles, progress, user_machines
-from .links_clear import arm_issues, rods_of
+from . import user_machines
+from .checks.links_clear import arm_issues, rods_of
+from .shapes import cell_obstacles
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import UP_TO_DATE
+from .work import progress
 
 JOINTS = 0.9  # of the time goes into the joints, the rest into rapid moves
 TRYING = 0.95

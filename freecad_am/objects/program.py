@@ -14,15 +14,18 @@ from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.planning import moving_tool, program_beads, steps
-from ..core.planning import program as programs
+from ..core.planning.beads import moving_tool, steps
+from ..core.planning.program import beads as program_beads
+from ..core.planning.program import build as programs
 from ..core.program import Program as Text
 from ..core.toolpath import Toolpath
 from ..posts import catalogue, refusals
-from . import controllers, progress, user_machines
+from . import user_machines
+from .checks import controllers
 from .joint_path import Planned
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
+from .work import progress
 
 
 @dataclass(frozen=True)

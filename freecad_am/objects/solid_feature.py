@@ -11,14 +11,14 @@ from ..brep.hub import bodies_of
 from ..brep.start_faces import triangles_of_faces
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
-from ..core.layers.guided import guided
-from ..core.layers.stacking import stacked
+from ..core.layers.along.guided import guided
+from ..core.layers.planes.stacking import stacked
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import SolidParameters
 from ..core.strategies import size
 from .feature import source_of
-from .fingerprints import fingerprint, shape_fingerprint
-from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
+from .results.fingerprints import fingerprint, shape_fingerprint
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
 

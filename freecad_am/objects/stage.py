@@ -20,13 +20,16 @@ import FreeCAD as App
 
 from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, has_errors
 from ..core.one_thread import one_thread
-from . import expressions, faults, hooks, progress, properties, staleness, store
-from .findings import as_text, first_message, issues_of, say
-from .link_targets import broken_link, is_there
-from .properties import HIDDEN, OUTPUT, READ_ONLY
+from . import staleness
+from .fields import expressions, properties
+from .fields.link_targets import broken_link, is_there
+from .fields.properties import HIDDEN, OUTPUT, READ_ONLY
+from .results import store
+from .results.findings import as_text, first_message, issues_of, say
+from .results.stored import Stored
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
-from .stored import Stored
+from .work import faults, hooks, progress
 
 SCHEMA_VERSION = 2
 CLASS_PROPERTY = "StageClass"
@@ -192,9 +195,7 @@ class Stage(Stored):
                 return f"{broken} links to nothing, what it showed is gone or was not loaded; choose another {link.name}"
         return expressions.broken(obj)
 
-    def _store(
-        self, obj: Any, outcome: Outcome, floats: list[float], text: str, key: str, seconds: float
-    ) -> None:
+    def _store(self, obj: Any, outcome: Outcome, floats: list[float], text: str, key: str, seconds: float) -> None:
         obj.ResultData, obj.ResultLayout, obj.Seconds = floats, text, seconds
         obj.Issues = as_text(outcome.issues)
         for name, figure in outcome.figures:
@@ -281,9 +282,7 @@ def checked(obj: Any, link: Link) -> Any:
     """The linked stage, or a list of them: of the right kind, and computed; None without one. InputError BAD_INPUT,
     INPUT_FAILED; InfeasibleError INPUT_INFEASIBLE."""
     linked = getattr(obj, link.name)
-    if link.many:
-        return [_checked(obj, link, one) for one in linked]
-    return _checked(obj, link, linked)
+    return [_checked(obj, link, one) for one in linked] if link.many else _checked(obj, link, linked)
 
 
 def _checked(obj: Any, link: Link, linked: Any) -> Any:

@@ -6,16 +6,16 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-from ..brep.part_depths import of_faces
-from ..brep.wall_on import wall_on
+from ..brep.shapes.part_depths import of_faces
+from ..brep.walls.wall_on import wall_on
 from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import SurfaceParameters
 from ..core.strategies import size
 from .feature import source_of
-from .fingerprints import fingerprint
-from .shapes import FIXTURES, bodies, fixtures_of, taken
+from .results.fingerprints import fingerprint
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
 

@@ -13,14 +13,15 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.process import OF_FEATURE, ProcessParameters
 from ..core.parameters.scan import ScanParameters
 from ..core.parameters.strategy import RevolutionParameters
-from ..core.process import bead_table, deposit_balance
+from ..core.process.deposit import balance as deposit_balance
+from ..core.process.model import bead_table
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ..core.toolpath import Toolpath as CoreToolpath
-from . import rows
-from .in_sequence import member, planned_in_sequence
-from .on_its_part import looked_at
-from .planned import Given, planned
-from .shapes import taken
+from .checks.on_its_part import looked_at
+from .fields import rows
+from .planned.in_sequence import member, planned_in_sequence
+from .planned.toolpaths import Given, planned
+from .shapes.bodies import taken
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
 
@@ -99,7 +100,7 @@ class Toolpath(Stage):
         parameters = self.parameters(obj, ScanParameters)
         if obj.Scan is None:
             return None
-        from .scan import fit_of  # jobs without a scan need none of it
+        from .planned.scan import fit_of  # jobs without a scan need none of it
 
         return fit_of(obj, parameters)
 

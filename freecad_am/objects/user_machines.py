@@ -10,8 +10,9 @@ import FreeCAD as App
 
 from ..core.geometry.located import is_there
 from ..core.issues import InputError
-from ..core.kinematics import calibration, machine, urdf_reference
-from . import preferences
+from ..core.kinematics.machines import calibration, machine
+from ..core.kinematics.urdf import reference as urdf_reference
+from .fields import preferences
 
 FOLDER = os.path.join("RoboticAM", "machines")
 

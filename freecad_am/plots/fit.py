@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core.process.bead_model import MINUTE, BeadModel
-from ..core.process.bead_table import Measured
+from ..core.process.model.bead_model import MINUTE, BeadModel
+from ..core.process.model.bead_table import Measured
 from .chart import DOTS, Chart, Curve, Quantity
 
 STEPS = 60

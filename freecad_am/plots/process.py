@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.layers.slabs import outline
-from ..core.process import predicted
+from ..core.layers.planes.slabs import outline
+from ..core.process.model import predicted
 from .chart import LINE, MARKED, OUTLINE, STEP, Array, Bars, Chart, Curve, Quantity
 from .rows import Rows
 from .source import Source

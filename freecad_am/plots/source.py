@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from ..core.geometry.on_hub import Group, SolidsOnHub
 from ..core.kinematics.cell import Cell
-from ..core.layers.slabs import Slabs, group_of, slabs
+from ..core.layers.planes.slabs import Slabs, group_of, slabs
 from ..core.motion import Motion
 from ..core.parameters.process import ProcessParameters
-from ..core.process import bead_model, bead_table, predicted, spacing
-from ..core.process.bead_model import BeadModel
-from ..core.process.bead_table import Measured
+from ..core.process.deposit import spacing
+from ..core.process.model import bead_model, bead_table, predicted
+from ..core.process.model.bead_model import BeadModel
+from ..core.process.model.bead_table import Measured
 from ..core.simulation.deposit import volumes
 from ..core.simulation.pace import Pace, pace
 from ..core.simulation.rates import Rates, rates

@@ -50,7 +50,7 @@ def load(name: str) -> Post:
     if name not in NAMES:
         known = ", ".join(NAMES)
         raise InputError("UNKNOWN_POST", "program.post", f"{name!r} is not known; use one of {known}, or none")
-    post: Any = importlib.import_module(f".{name}", __package__)
+    post: Any = importlib.import_module(f".{name}.post", __package__)
     found: Post = post
     return found
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ..core.geometry import frames
 from ..core.issues import InputError
-from ..core.kinematics import opw
 from ..core.kinematics.cell import Cell
-from ..core.kinematics.five_axis import FiveAxis
+from ..core.kinematics.inverse import opw
+from ..core.kinematics.inverse.five_axis import FiveAxis
 from ..core.read_moves import ReadMoves
 from .planned import pieces
 from .text_path import Path

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import ERROR, Issue
-from ..core.kinematics import opw
 from ..core.kinematics.cell import Cell
+from ..core.kinematics.inverse import opw
 from ..core.program import LINEAR_MOVE, Program
 from ..core.read_moves import Configuration, ReadMoves
 from .planned import COMPUTED_AXIS, Planned, pieces

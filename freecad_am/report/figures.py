@@ -11,17 +11,20 @@ from typing import Any
 import numpy as np
 
 from freecad_am.core.issues import Issue, has_errors
-from freecad_am.core.kinematics import opw
 from freecad_am.core.kinematics.cell import Cell
+from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.joints import OPTIMISED, JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.planning import comparison, external_rule, level
+from freecad_am.core.planning import comparison
+from freecad_am.core.planning.external import level
+from freecad_am.core.planning.external import rule as external_rule
 from freecad_am.core.planning.joint_path import JointPath
 from freecad_am.core.planning.task import Task
-from freecad_am.core.process import deposit_balance, predicted
-from freecad_am.core.process import spacing as layer_spacing
-from freecad_am.core.process.deposit_balance import Balance
+from freecad_am.core.process.deposit import balance as deposit_balance
+from freecad_am.core.process.deposit import spacing as layer_spacing
+from freecad_am.core.process.deposit.balance import Balance
+from freecad_am.core.process.model import predicted
 from freecad_am.core.simulation import class_figures, totals
 from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.strategies.families import family_of

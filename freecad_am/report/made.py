@@ -11,7 +11,8 @@ from typing import Any
 from freecad_am.core.geometry.on_hub import SolidsOnHub
 from freecad_am.core.kinematics.cell import Cell
 from freecad_am.core.motion import Motion
-from freecad_am.core.process import deposit_balance, spacing
+from freecad_am.core.process.deposit import balance as deposit_balance
+from freecad_am.core.process.deposit import spacing
 from freecad_am.core.simulation import deposit
 from freecad_am.core.simulation.margins import on_deposit
 from freecad_am.core.strategies.families import family_of

@@ -15,14 +15,16 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.process.predicted import HEIGHTS
-from freecad_am.objects import preflight, progress, user_machines
-from freecad_am.objects.findings import issues_of
+from freecad_am.core.process.model.predicted import HEIGHTS
+from freecad_am.objects import user_machines
+from freecad_am.objects.checks import preflight
 from freecad_am.objects.job_group import is_group
 from freecad_am.objects.joint_path import planned_of
+from freecad_am.objects.results.findings import issues_of
 from freecad_am.objects.stage import stage_of
 from freecad_am.objects.staleness import FAILED, STALE
 from freecad_am.objects.toolpath import features_of, strategy_of
+from freecad_am.objects.work import progress
 
 from .asked import Feature, Job, Results
 from .made import Made, made

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:  # slow to import, and a job of other families never needs it
-    from freecad_am.core.strategies.wall_comparison import Compared, Refused
+    from freecad_am.core.strategies.walls.comparison import Compared, Refused
     from freecad_am.core.toolpath import Array, Toolpath
 
 

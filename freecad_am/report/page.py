@@ -9,8 +9,8 @@ from html import escape
 from typing import Any
 
 from freecad_am.core.geometry.on_hub import SolidsOnHub
-from freecad_am.core.process.spacing import local_distances
-from freecad_am.core.strategies.wall_comparison import Compared
+from freecad_am.core.process.deposit.spacing import local_distances
+from freecad_am.core.strategies.walls.comparison import Compared
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.plots.source import Source
 

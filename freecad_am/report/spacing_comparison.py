@@ -19,12 +19,12 @@ from freecad_am.core.planning import comparison
 from freecad_am.core.planning.joint_path import JointPath
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.process.layer_curve import SMOOTH
-from freecad_am.core.strategies import wall_comparison
-from freecad_am.core.strategies.wall_comparison import METHODS, NORMAL, Compared, Refused
+from freecad_am.core.process.deposit.layer_curve import SMOOTH
+from freecad_am.core.strategies.walls import comparison as wall_comparison
+from freecad_am.core.strategies.walls.comparison import METHODS, NORMAL, Compared, Refused
 from freecad_am.core.toolpath import Array, Toolpath
 from freecad_am.objects import user_machines
-from freecad_am.objects.planned import Given, planned
+from freecad_am.objects.planned.toolpaths import Given, planned
 
 from . import figures as of_report
 from .asked import Job

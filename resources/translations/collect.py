@@ -32,14 +32,15 @@ from templates import Templates  # noqa: E402
 from freecad_am.core import issues  # noqa: E402
 from freecad_am.core.parameters import field  # noqa: E402
 from freecad_am.core.parameters.place import PlaceParameters  # noqa: E402
-from freecad_am.objects import preferences, properties, staleness  # noqa: E402
+from freecad_am.objects import staleness  # noqa: E402
 from freecad_am.objects.cell import Cell  # noqa: E402
 from freecad_am.objects.developable_feature import DevelopableFeature  # noqa: E402
 from freecad_am.objects.feature import RevolutionFeature  # noqa: E402
+from freecad_am.objects.fields import preferences, properties  # noqa: E402
+from freecad_am.objects.fields.rows import Row, group_of, rows  # noqa: E402
 from freecad_am.objects.inspection import Inspection  # noqa: E402
 from freecad_am.objects.joint_path import JointPath  # noqa: E402
 from freecad_am.objects.program import Program  # noqa: E402
-from freecad_am.objects.rows import Row, group_of, rows  # noqa: E402
 from freecad_am.objects.surface_feature import SurfaceFeature  # noqa: E402
 from freecad_am.objects.toolpath import Toolpath  # noqa: E402
 
@@ -79,7 +80,7 @@ class Collected:
         for text in ("layer {0}", "layer {0} bead {1}", "layer {0} bead {1} point {2}"):
             self.messages.setdefault(text, "freecad_am/core/issues.py")
         for row in preferences.process_rows():
-            self.messages.setdefault(preferences.label(row), "freecad_am/objects/preferences.py")
+            self.messages.setdefault(preferences.label(row), "freecad_am/objects/fields/preferences.py")
         for template, place in Templates(self.code, TITLES).found.items():
             self.messages.setdefault(template, place)
 

@@ -11,7 +11,7 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.batch.job import read_job
+from freecad_am.batch.job.job import read_job
 from tests.batch import row_limits
 
 V = FreeCAD.Vector

@@ -12,10 +12,10 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.batch import job as jobs
+from freecad_am.batch.job import job as jobs
 from freecad_am.core.issues import InputError
-from freecad_am.objects.proposed_family import proposed
-from freecad_am.objects.shapes import Taken
+from freecad_am.objects.planned.proposed_family import proposed
+from freecad_am.objects.shapes.bodies import Taken
 
 UP = Vector(0, 0, 1)
 

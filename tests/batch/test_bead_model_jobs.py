@@ -11,7 +11,7 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.core.process import bead_table
+from freecad_am.core.process.model import bead_table
 from freecad_am.posts import catalogue
 
 FIN = """\

@@ -11,7 +11,7 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.batch import job as jobs
+from freecad_am.batch.job import job as jobs
 from freecad_am.core.issues import InputError
 
 # a bar of which the outermost beads are contours and lines fill the rest

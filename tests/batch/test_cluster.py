@@ -21,7 +21,8 @@ import Mesh
 import Part
 import pytest
 
-from freecad_am.batch import freecad_am_row_worker, rows, table, versions
+from freecad_am.batch import freecad_am_row_worker, versions
+from freecad_am.batch.rows import rows, table
 from freecad_am.core.issues import InputError
 
 dask = pytest.mark.skipif(importlib.util.find_spec("distributed") is None,

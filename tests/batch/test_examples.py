@@ -13,7 +13,7 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.batch.job import read_job
+from freecad_am.batch.job.job import read_job
 from tests.batch import row_limits
 
 EXAMPLES = Path(__file__).parents[2] / "resources" / "examples"

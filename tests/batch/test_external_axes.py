@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import yaml
 
-from freecad_am.batch.job import read_job
+from freecad_am.batch.job.job import read_job
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import external
 from tests.core.kinematics import urdf_cells

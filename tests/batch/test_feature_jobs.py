@@ -12,7 +12,7 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.batch import job as jobs
+from freecad_am.batch.job import job as jobs
 from freecad_am.core.issues import InputError
 
 START = """\

@@ -10,7 +10,7 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.batch import job as jobs
+from freecad_am.batch.job import job as jobs
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.filled import DevelopableParameters
 

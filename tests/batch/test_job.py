@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from freecad_am.batch import job as jobs
+from freecad_am.batch.job import job as jobs
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters

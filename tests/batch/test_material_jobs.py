@@ -8,8 +8,8 @@ from pathlib import Path
 import Part
 import pytest
 
-from freecad_am.batch import job as jobs
-from freecad_am.batch import material
+from freecad_am.batch.job import job as jobs
+from freecad_am.batch.job import material
 from freecad_am.core.issues import InputError
 
 JOB = "part: {file: bar.step}\nstrategy: {kind: solid, layer_height: 2 mm}\n"

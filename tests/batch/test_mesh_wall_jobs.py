@@ -8,7 +8,7 @@ import Mesh
 import numpy as np
 import pytest
 
-from freecad_am.batch import job as jobs
+from freecad_am.batch.job import job as jobs
 
 JOB = """\
 part: {file: vase.stl}

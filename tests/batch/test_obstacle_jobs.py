@@ -12,7 +12,8 @@ import PyKDL
 import pytest
 import yaml
 
-from freecad_am.core.kinematics import link_rods, machine
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_arm_clearance import on_rods
 from tests.core.planning.test_obstacles import kdl_pose

@@ -285,7 +285,7 @@ def test_machines_lists_those_that_plan_accepts(workshop):
     assert "FANUC" in known["fanuc-arcmate120ic"] and "kuka-kr16-2" in known and "staubli-rx60bl" in known
     folder = workshop.folder / "RoboticAM" / "machines"
     folder.mkdir(parents=True)
-    from freecad_am.core.kinematics import machine
+    from freecad_am.core.kinematics.machines import machine
 
     own = json.loads((machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
     own.update(id="my-robot", title="My own robot")

@@ -7,7 +7,7 @@ import random
 import FreeCAD
 import pytest
 
-from freecad_am.batch import quantity
+from freecad_am.batch.job import quantity
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 

@@ -10,7 +10,7 @@ from FreeCAD import Vector
 
 from freecad_am import api
 from freecad_am.batch import run
-from freecad_am.batch.job import read_job
+from freecad_am.batch.job.job import read_job
 from freecad_am.core.issues import InputError
 
 JOB = """\

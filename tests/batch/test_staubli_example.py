@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.kinematics import machine as machines
+from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.kdl.chain import KdlArm
-from freecad_am.posts import staubli
+from freecad_am.posts.staubli import post as staubli
 from tests.batch.conftest import Workshop
 
 NAME = "tube-on-pipe-staubli"

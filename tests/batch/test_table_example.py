@@ -11,8 +11,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from freecad_am.batch.job import read_job
-from freecad_am.core.kinematics import machine as machines
+from freecad_am.batch.job.job import read_job
+from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.kdl.chain import KdlArm
 from tests.batch import row_limits
 

@@ -10,7 +10,7 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.batch import job_cell
+from freecad_am.batch.job import cell as job_cell
 from freecad_am.interop import cell_file
 
 CELL = """\

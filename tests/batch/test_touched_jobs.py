@@ -9,9 +9,9 @@ import numpy as np
 import PyKDL
 import pytest
 
-from freecad_am.batch import job_cell
+from freecad_am.batch.job import cell as job_cell
 from freecad_am.core.geometry import frames
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.interop import cell_file
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_obstacles import kdl_pose

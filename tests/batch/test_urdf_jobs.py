@@ -5,7 +5,8 @@ import json
 
 import pytest
 
-from freecad_am.core.kinematics import machine, urdf_text
+from freecad_am.core.kinematics.machines import machine
+from freecad_am.core.kinematics.urdf import text as urdf_text
 from tests.batch.test_plan_command import deposit
 from tests.core.kinematics.arms import on_track
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from freecad_am.batch.job import read_job
+from freecad_am.batch.job.job import read_job
 from tests.batch import row_limits, wall_checks
 from tests.batch.conftest import COMMANDS
 

@@ -7,9 +7,9 @@ import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 
-from freecad_am.brep.sheet import sheet
-from freecad_am.brep.wall_cuts import refuse_crossing
-from freecad_am.brep.wall_on import wall_on
+from freecad_am.brep.walls.cuts import refuse_crossing
+from freecad_am.brep.walls.sheet import sheet
+from freecad_am.brep.walls.wall_on import wall_on
 from freecad_am.core.geometry.mesh.refined import boundary
 from freecad_am.core.geometry.walls.patch_wall import PatchWall
 from freecad_am.core.geometry.walls.surface_wall import SurfaceWall

@@ -10,7 +10,7 @@ import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 
-from freecad_am.brep.revolution import find_wall
+from freecad_am.brep.revolution.wall import find_wall
 
 UPRIGHT = Placement(Vector(), Rotation(Vector(1, 0, 0), 90))
 

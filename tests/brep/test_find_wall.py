@@ -9,8 +9,8 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep.read import read_shape
-from freecad_am.brep.revolution import find_wall
+from freecad_am.brep.files.read import read_shape
+from freecad_am.brep.revolution.wall import find_wall
 
 ORIGIN, Z = Vector(), Vector(0, 0, 1)
 BALL = Part.makeSphere(45, ORIGIN, Z, 0, 90, 360)

@@ -8,8 +8,9 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep import fine_mesh, hub, whole_mesh
-from freecad_am.brep.tessellate import tessellated
+from freecad_am.brep import hub, whole_mesh
+from freecad_am.brep.shapes import fine_mesh
+from freecad_am.brep.shapes.tessellate import tessellated
 from freecad_am.core.geometry.mesh.refined import Edges
 from freecad_am.core.issues import InputError
 

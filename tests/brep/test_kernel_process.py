@@ -15,7 +15,9 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.brep import distance, kernel_process, sheet, tessellate
+from freecad_am.brep.kernel import process as kernel_process
+from freecad_am.brep.shapes import distance, tessellate
+from freecad_am.brep.walls import sheet
 from freecad_am.core.issues import InputError
 
 EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"

@@ -9,8 +9,9 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep import axis, revolution
-from freecad_am.brep.revolution import find_wall
+from freecad_am.brep.revolution import axis
+from freecad_am.brep.revolution import wall as revolution
+from freecad_am.brep.revolution.wall import find_wall
 from freecad_am.core.issues import InputError
 
 TEETH, RINGS = 250, 300

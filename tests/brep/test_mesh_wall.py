@@ -7,14 +7,14 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep.wall_on import wall_on
+from freecad_am.brep.walls.wall_on import wall_on
 from freecad_am.core.geometry.mesh.smooth import SmoothMesh
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.strategies import wall_fronts
+from freecad_am.core.strategies.walls import fronts as wall_fronts
 
 SIDES = 60
 

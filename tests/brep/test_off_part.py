@@ -9,10 +9,10 @@ import pytest
 from FreeCAD import Vector
 
 from freecad_am import api
-from freecad_am.brep import off_part
-from freecad_am.brep.off_part import off_edges, off_faces, off_mesh, off_solids
-from freecad_am.objects import in_sequence
+from freecad_am.brep.shapes import off_part
+from freecad_am.brep.shapes.off_part import off_edges, off_faces, off_mesh, off_solids
 from freecad_am.objects import toolpath as stage
+from freecad_am.objects.planned import in_sequence
 
 
 @pytest.fixture

@@ -4,13 +4,13 @@
 import numpy as np
 import pytest
 
-from freecad_am.brep.read import read_shape
-from freecad_am.brep.revolution import find_wall
+from freecad_am.brep.files.read import read_shape
+from freecad_am.brep.revolution.wall import find_wall
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.strategies import revolution
+from freecad_am.core.strategies.revolution import plan as revolution
 
 
 def sphere(z):

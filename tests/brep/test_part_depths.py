@@ -10,11 +10,11 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep.part_depths import of_faces, of_revolved
-from freecad_am.brep.revolution import find_wall
+from freecad_am.brep.revolution.wall import find_wall
+from freecad_am.brep.shapes.part_depths import of_faces, of_revolved
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
-from freecad_am.core.process import deposit_balance
+from freecad_am.core.process.deposit import balance as deposit_balance
 
 Z = Vector(0, 0, 1)
 WIDTH = 8.0

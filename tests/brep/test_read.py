@@ -9,7 +9,7 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.brep.read import read_mesh, read_shape
+from freecad_am.brep.files.read import read_mesh, read_shape
 from freecad_am.core.issues import InputError
 
 

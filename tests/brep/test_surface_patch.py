@@ -6,7 +6,7 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.brep.surface_patch import patch_of
+from freecad_am.brep.walls.surface_patch import patch_of
 
 
 def loft():

@@ -7,7 +7,7 @@ import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 
-from freecad_am.brep.tessellate import DEFLECTION, body
+from freecad_am.brep.shapes.tessellate import DEFLECTION, body
 from freecad_am.core.issues import InputError
 
 PLACE = Placement(Vector(10, -20, 30), Rotation(Vector(1, 2, 3), 50))

@@ -10,8 +10,8 @@ import Mesh
 import numpy as np
 import pytest
 
-from freecad_am.brep import three_mf
-from freecad_am.brep.read import read_mesh
+from freecad_am.brep.files import three_mf
+from freecad_am.brep.files.read import read_mesh
 from freecad_am.core.geometry.mesh.repair import repaired
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.issues import InputError

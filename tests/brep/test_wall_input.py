@@ -8,12 +8,12 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep.read import read_mesh
-from freecad_am.brep.substrate import mesh_solid, substrate_of
-from freecad_am.brep.wall_on import wall_on
+from freecad_am.brep.files.read import read_mesh
+from freecad_am.brep.walls.substrate import mesh_solid, substrate_of
+from freecad_am.brep.walls.wall_on import wall_on
 from freecad_am.core.geometry.walls.patch_wall import PatchWall
 from freecad_am.core.issues import InputError
-from freecad_am.objects.store import pack, unpack
+from freecad_am.objects.results.store import pack, unpack
 
 RADIUS = 32.0
 

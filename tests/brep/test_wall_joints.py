@@ -6,12 +6,12 @@ import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 
-from freecad_am.brep.wall_on import wall_on
+from freecad_am.brep.walls.wall_on import wall_on
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.slicing import fronts
-from freecad_am.core.strategies import wall_fronts
+from freecad_am.core.slicing.fronts import layers as fronts
+from freecad_am.core.strategies.walls import fronts as wall_fronts
 
 LONG, WIDE, ROUND, HEIGHT = 26.0, 20.0, 6.0, 3.0
 

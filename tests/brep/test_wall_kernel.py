@@ -6,9 +6,9 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep import kernel
-from freecad_am.brep import wall_on as module
-from freecad_am.brep.wall_on import wall_on
+from freecad_am.brep.kernel import limits as kernel
+from freecad_am.brep.walls import wall_on as module
+from freecad_am.brep.walls.wall_on import wall_on
 from freecad_am.core.geometry.walls.patch_wall import PatchWall
 from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError

@@ -9,7 +9,7 @@ import Part
 import pytest
 from FreeCAD import Vector
 
-from freecad_am.brep.revolution import find_wall
+from freecad_am.brep.revolution.wall import find_wall
 from freecad_am.core.issues import InputError
 
 ORIGIN, Z = Vector(), Vector(0, 0, 1)

@@ -5,7 +5,7 @@ import Part
 import pytest
 
 from freecad_am.brep import hub, whole_mesh
-from freecad_am.brep.fine_mesh import fine
+from freecad_am.brep.shapes.fine_mesh import fine
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 
 TORUS = Part.makeTorus(20.0, 5.0)

@@ -17,7 +17,7 @@ from freecad_am.core.simulation.placing import at_rest
 from freecad_am.gui.nodes.cell import resting_point
 from freecad_am.gui.panels import cell as cell_panel
 from freecad_am.kdl.chain import KdlArm
-from freecad_am.objects.progress import Cancelled
+from freecad_am.objects.work.progress import Cancelled
 from tests.gui.previews import drawn_by_previews
 
 PANEL = "RoboticAM_Cell"

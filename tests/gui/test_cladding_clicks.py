@@ -11,7 +11,7 @@ from pivy import coin
 
 from freecad_am import api
 from freecad_am.gui.nodes.wall import drawn
-from freecad_am.objects.shapes import taken
+from freecad_am.objects.shapes.bodies import taken
 
 pytestmark = pytest.mark.usefixtures("person")
 

@@ -13,7 +13,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.gui.background import busy
-from freecad_am.objects import progress
+from freecad_am.objects.work import progress
 from freecad_am.report import made
 
 NAME = "RoboticAM_ExportPath"

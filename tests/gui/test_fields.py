@@ -12,10 +12,10 @@ from freecad_am.gui.widgets.quantity import PlainQuantity, QuantityField
 from freecad_am.objects.cell import Cell
 from freecad_am.objects.developable_feature import DevelopableFeature
 from freecad_am.objects.feature import RevolutionFeature
+from freecad_am.objects.fields.rows import MIXED, rows
 from freecad_am.objects.inspection import Inspection
 from freecad_am.objects.joint_path import JointPath
 from freecad_am.objects.program import Program
-from freecad_am.objects.rows import MIXED, rows
 from freecad_am.objects.surface_feature import SurfaceFeature
 from freecad_am.objects.toolpath import Toolpath
 

@@ -11,8 +11,8 @@ from freecad_am import api
 from freecad_am.gui.registry import edit
 from freecad_am.gui.tools.commands import GROUPS
 from freecad_am.objects.job_group import is_group
-from freecad_am.objects.proposed_family import proposed
-from freecad_am.objects.shapes import taken
+from freecad_am.objects.planned.proposed_family import proposed
+from freecad_am.objects.shapes.bodies import taken
 from tests.gui.nested_cone import nested_cone
 
 EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"
@@ -351,7 +351,7 @@ def test_a_shape_the_kernel_fails_on_is_told(person, hemisphere, monkeypatch):
     def fail(*_, **__):
         raise RuntimeError("Bnd_Box is void")
 
-    monkeypatch.setattr("freecad_am.objects.proposed_family.find_wall", fail)
+    monkeypatch.setattr("freecad_am.objects.planned.proposed_family.find_wall", fail)
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")

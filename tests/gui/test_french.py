@@ -19,7 +19,7 @@ from freecad_am.core.parameters.inspection import InspectionParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.gui.widgets import fields
 from freecad_am.gui.widgets.quantity import PlainQuantity, QuantityField
-from freecad_am.objects.rows import rows
+from freecad_am.objects.fields.rows import rows
 from tests import run
 
 NO_BREAK = "\u00a0"

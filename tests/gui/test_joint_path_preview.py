@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.core.kinematics import machine as machines
-from freecad_am.core.planning.judgement import judged
+from freecad_am.core.kinematics.machines import machine as machines
+from freecad_am.core.planning.rotation.headroom import judged
 from freecad_am.gui.panels import joint_path as joint_path_panel
 from tests.gui.previews import drawn_by_previews
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.core.process.spacing import local_distances
+from freecad_am.core.process.deposit.spacing import local_distances
 from freecad_am.gui.colours import ramp
 from freecad_am.gui.path import colouring, legend
 

@@ -14,10 +14,11 @@ from freecad_am import api
 from freecad_am.core.issues import InputError
 from freecad_am.gui.background import busy
 from freecad_am.gui.background.worker import Worker
-from freecad_am.objects import hooks, part_file, progress
 from freecad_am.objects.feature import RevolutionFeature
-from freecad_am.objects.progress import Cancelled
+from freecad_am.objects.shapes import part_file
 from freecad_am.objects.toolpath import Toolpath
+from freecad_am.objects.work import hooks, progress
+from freecad_am.objects.work.progress import Cancelled
 from tests.gui.long_jobs import JOBS
 
 pytestmark = pytest.mark.planned_anew

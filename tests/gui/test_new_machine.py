@@ -8,9 +8,12 @@ import FreeCAD as App
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics import external, machine, pendant, pose_figures, urdf_text
+from freecad_am.core.kinematics import external
+from freecad_am.core.kinematics.machines import machine, pendant, pose_figures
+from freecad_am.core.kinematics.urdf import text as urdf_text
 from freecad_am.kdl.chain import KdlArm
-from freecad_am.objects import preferences, user_machines
+from freecad_am.objects import user_machines
+from freecad_am.objects.fields import preferences
 from tests.core.kinematics import urdf_cells
 from tests.core.kinematics.arms import on_track
 
@@ -218,7 +221,7 @@ def test_figures_with_a_wrong_sign_are_found_out(person, hand, wizard):
 
 
 def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, hand, wizard):
-    from freecad_am.core.kinematics import denavit_hartenberg as dh
+    from freecad_am.core.kinematics.machines import denavit_hartenberg as dh
 
     person.choose(wizard, "source", "A table of Denavit and Hartenberg")
     table = dh.table_of(machine.load("kuka-kr6-r900-2").chain)
@@ -249,7 +252,7 @@ def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, h
 
 def test_a_machine_tool_from_its_table(person, hand, wizard):
     from freecad_am.core.geometry import frames
-    from freecad_am.core.kinematics import denavit_hartenberg as dh
+    from freecad_am.core.kinematics.machines import denavit_hartenberg as dh
 
     person.choose(wizard, "source", "A table of Denavit and Hartenberg")
     tool = machine.load("table-xyzac")

@@ -11,10 +11,11 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
-from freecad_am.brep import apart, kernel_process
-from freecad_am.brep.read import read_shape
+from freecad_am.brep.files import apart
+from freecad_am.brep.files.read import read_shape
+from freecad_am.brep.kernel import process as kernel_process
 from freecad_am.core.issues import InputError
-from freecad_am.objects.progress import Cancelled
+from freecad_am.objects.work.progress import Cancelled
 from tests.brep.test_read import in_unit
 from tests.robust import damage
 
@@ -150,7 +151,7 @@ def test_limits_are_told_in_the_window_too(person, monkeypatch, tmp_path, read, 
 
 
 def test_reading_that_takes_long_can_be_cancelled_and_leaves_no_process(person, monkeypatch, tmp_path):
-    from freecad_am.brep import read
+    from freecad_am.brep.files import read
 
     monkeypatch.setattr(read, "_shape", waiting)
     part = tmp_path / "long.step"

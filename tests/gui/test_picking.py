@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.gui.picking import picking
 from freecad_am.gui.picking.picking import Pick
-from freecad_am.objects.shapes import global_shape
+from freecad_am.objects.shapes.bodies import global_shape
 
 
 @pytest.fixture

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.objects import preferences, user_machines
+from freecad_am.objects import user_machines
+from freecad_am.objects.fields import preferences
 
 GROUP = "User parameter:BaseApp/Preferences"
 

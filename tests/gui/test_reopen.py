@@ -9,7 +9,7 @@ import numpy as np
 from freecad_am import api
 from freecad_am.gui.path.facts import facts
 from freecad_am.gui.path.rows import Rows
-from freecad_am.objects import store
+from freecad_am.objects.results import store
 
 HEADLESS = """
 import functools, sys

@@ -9,7 +9,7 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
-from freecad_am.brep import kernel_process
+from freecad_am.brep.kernel import process as kernel_process
 from freecad_am.objects.job_group import grouped, is_group
 
 EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"

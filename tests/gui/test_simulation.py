@@ -11,7 +11,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import WARNING, Issue
-from freecad_am.core.planning import moving_tool
+from freecad_am.core.planning.beads import moving_tool
 from freecad_am.core.simulation.pace import pace
 from freecad_am.core.simulation.watch import ISSUE, LIMIT, SINGULAR, SLOWED, TOUCHES
 from freecad_am.gui.simulation import dock as docks

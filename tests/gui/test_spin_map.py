@@ -7,7 +7,9 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.parameters.joints import given_polynomials
-from freecad_am.core.planning import spin_across, spin_curve, spin_map
+from freecad_am.core.planning.redundancy import across as spin_across
+from freecad_am.core.planning.redundancy import curve as spin_curve
+from freecad_am.core.planning.redundancy import map as spin_map
 from freecad_am.gui.path.colouring import NONE, TOO_NEAR
 from freecad_am.gui.spin_map import dock as docks
 from freecad_am.gui.spin_map.canvas import TURN

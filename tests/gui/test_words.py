@@ -112,7 +112,7 @@ def test_keys_are_words_and_short_lengths_are_in_mm(person, hemisphere):
     person.panel_closed()
     from freecad_am.core.parameters.strategy import SurfaceParameters
     from freecad_am.gui.widgets import fields
-    from freecad_am.objects.rows import rows
+    from freecad_am.objects.fields.rows import rows
 
     tolerance = next(row for row in rows(SurfaceParameters) if row.key == "tolerance")
     field = fields.make(tolerance, tolerance.default)

@@ -12,7 +12,7 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.batch import job_cell
+from freecad_am.batch.job import cell as job_cell
 from freecad_am.core.geometry.frames import rotation_about
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters

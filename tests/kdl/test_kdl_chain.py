@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics import machine
 from freecad_am.core.kinematics.jacobian import jacobian
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.kdl.chain import SOLVERS, KdlArm, available
 from tests.core.kinematics.arms import EXAMPLES
 

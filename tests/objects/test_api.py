@@ -16,8 +16,8 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.strategies import size
-from freecad_am.objects import progress
 from freecad_am.objects.program import files_of
+from freecad_am.objects.work import progress
 
 LABEL = "Hémisphère n° 1"
 

@@ -7,7 +7,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InfeasibleError, InputError
-from freecad_am.posts import fanuc
+from freecad_am.posts.fanuc import post as fanuc
 
 DAMAGES = {
     "an angle": (rb"(J1=\s*)(-?\d+)\.", lambda found: found[1] + str(int(found[2]) + 1).encode() + b"."),

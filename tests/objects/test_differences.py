@@ -6,7 +6,7 @@ import zlib
 import numpy as np
 import pytest
 
-from freecad_am.objects import differences
+from freecad_am.objects.results import differences
 
 PIECE = differences.PIECE
 

@@ -13,7 +13,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.objects import stage as stages
-from freecad_am.objects import store
+from freecad_am.objects.results import store
 
 # results stored as they were before: row by row, each number a float; and fingerprints of what was read of them then
 ROWS = Path(__file__).parent / "data" / "rows.FCStd"

@@ -7,8 +7,8 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.objects import fingerprints
-from freecad_am.objects.fingerprints import fingerprint
+from freecad_am.objects.results import fingerprints
+from freecad_am.objects.results.fingerprints import fingerprint
 
 
 @pytest.fixture

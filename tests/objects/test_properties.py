@@ -17,7 +17,7 @@ from freecad_am.core.parameters.joints import METHODS, JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.objects import properties, rows
+from freecad_am.objects.fields import properties, rows
 
 CLASSES = (
     (CellParameters, "cell"), (RevolutionParameters, "strategy"), (BuildDirectionParameters, "build_direction"),

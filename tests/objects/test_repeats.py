@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.objects import repeats, store
+from freecad_am.objects.results import repeats, store
 
 NO_RUNS, NO_COPIES = np.zeros((0, 2), dtype=np.int64), np.zeros((0, 3), dtype=np.int64)
 

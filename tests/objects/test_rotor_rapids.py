@@ -13,7 +13,7 @@ from freecad_am import api
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.motion import TRAVEL
 from freecad_am.objects import program as programs
-from freecad_am.posts import fanuc
+from freecad_am.posts.fanuc import post as fanuc
 from tests.posts.driven import Drive, depth_in_hub
 
 HUB, TOP = Developable(60.0, 270.0), 90.0

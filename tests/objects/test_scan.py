@@ -8,7 +8,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.inspection import fit_layers
 from freecad_am.core.issues import InputError
-from freecad_am.objects import preflight
+from freecad_am.objects.checks import preflight
 from tests.core.inspection.test_scan import bent, points_on
 
 

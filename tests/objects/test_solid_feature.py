@@ -12,7 +12,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
-from freecad_am.core.layers import planes
+from freecad_am.core.layers.planes import field as planes
 from freecad_am.core.parameters.filled import SolidParameters
 
 UP = App.Vector(0, 0, 1)

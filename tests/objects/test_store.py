@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am.core.issues import InputError, Issue
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
-from freecad_am.objects import store
+from freecad_am.objects.results import store
 
 
 def toolpath(seed=0):

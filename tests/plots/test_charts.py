@@ -6,10 +6,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.layers.stacking import stacked
+from freecad_am.core.layers.planes.stacking import stacked
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.process import bead_model, bead_table, predicted, spacing
+from freecad_am.core.process.deposit import spacing
+from freecad_am.core.process.model import bead_model, bead_table, predicted
 from freecad_am.core.simulation import deposit
 from freecad_am.core.simulation.totals import totals
 from freecad_am.plots import catalogue, draw, joints, process

@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput
-from freecad_am.posts import fanuc
+from freecad_am.posts.fanuc import post as fanuc
 
 UPRIGHT = ("front", "up", "flip")
 

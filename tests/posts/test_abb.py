@@ -13,7 +13,8 @@ from scipy.spatial.transform import Rotation
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitBelow, WaitInput
-from freecad_am.posts import abb, catalogue
+from freecad_am.posts import catalogue
+from freecad_am.posts.abb import post as abb
 
 VARIANTS = [("joint", "part-on-robot"), ("cartesian", "part-on-robot"), ("cartesian", "tool-on-robot")]
 NO_AXES = [9e9] * 6

@@ -10,7 +10,7 @@ import pytest
 
 from freecad_am.core.collision import bead_ends
 from freecad_am.core.issues import ERROR
-from freecad_am.core.planning import rapids
+from freecad_am.core.planning.rapids import clearance as rapids
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts import planned_jobs

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
-from freecad_am.posts import fanuc
+from freecad_am.posts.fanuc import post as fanuc
 from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program, refusal
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import DepositOff, DepositOn, Moves
-from freecad_am.posts import fanuc
+from freecad_am.posts.fanuc import post as fanuc
 
 HALF_DIGIT = 0.0005
 

@@ -8,7 +8,8 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, LayerStart
-from freecad_am.posts import catalogue, fanuc
+from freecad_am.posts import catalogue
+from freecad_am.posts.fanuc import post as fanuc
 from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program, refusal
 
 

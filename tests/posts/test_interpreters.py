@@ -7,7 +7,8 @@ import re
 import numpy as np
 import pytest
 
-from freecad_am.posts import linuxcnc, siemens
+from freecad_am.posts.linuxcnc import post as linuxcnc
+from freecad_am.posts.siemens import post as siemens
 from tests.posts.interpreters import nc_python, rs274, run_nc, run_rs274
 from tests.posts.nc_programs import deposit_of, random_program, with_options
 

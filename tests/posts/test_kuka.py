@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitBelow, WaitInput
-from freecad_am.posts import catalogue, kuka
+from freecad_am.posts import catalogue
+from freecad_am.posts.kuka import post as kuka
 
 NOMINAL = tuple(math.radians(value) for value in (156.0, 156.0, 156.0, 330.0, 330.0, 615.0))
 NUMBER = r"-?\d+\.\d{%d}"

@@ -10,7 +10,10 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
-from freecad_am.posts import catalogue, linuxcnc, nc_numbers, siemens
+from freecad_am.posts import catalogue
+from freecad_am.posts.linuxcnc import post as linuxcnc
+from freecad_am.posts.nc import numbers as nc_numbers
+from freecad_am.posts.siemens import post as siemens
 from tests.posts.nc_programs import deposit_of, moves, program, random_program, with_options
 
 POSTS = (siemens, linuxcnc)
@@ -72,7 +75,7 @@ GOLDENS = {"joint": JOINT, "path": with_options(JOINT, path_feed=True), "tip": T
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 @pytest.mark.parametrize("name", GOLDENS)
 def test_golden_programs_to_the_byte(root, name, post):
-    folder = root / "tests/golden" / post.__name__.rpartition(".")[2] / name
+    folder = root / "tests/golden" / post.__name__.split(".")[-2] / name
     assert post.write(GOLDENS[name]) == {path.name: path.read_bytes() for path in folder.iterdir()}
 
 

@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.posts import linuxcnc, nc_read, siemens
+from freecad_am.posts.linuxcnc import post as linuxcnc
+from freecad_am.posts.nc import read as nc_read
+from freecad_am.posts.siemens import post as siemens
 
 # as others write them: short numbers, words in another order, lower case, remarks behind blocks
 MAIN = """; by hand

@@ -10,7 +10,8 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput
-from freecad_am.posts import catalogue, staubli
+from freecad_am.posts import catalogue
+from freecad_am.posts.staubli import post as staubli
 
 VARIANTS = [("joint", "part-on-robot"), ("cartesian", "part-on-robot"), ("cartesian", "tool-on-robot")]
 NOMINAL = (math.radians(287.0), math.radians(287.0), math.radians(319.0), math.radians(410.0), math.radians(320.0),

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import DepositOff, DepositOn, Moves
-from freecad_am.posts import staubli
+from freecad_am.posts.staubli import post as staubli
 
 HEAD = '\ufeff<?xml version="1.0" encoding="utf-8"?>\n'
 SPACE = "http://www.staubli.com/robotics/VAL3/"

@@ -22,7 +22,7 @@ from freecad_am.core.program import (
     WaitBelow,
     WaitInput,
 )
-from freecad_am.posts import ur
+from freecad_am.posts.ur import post as ur
 from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program
 
 LIMITED = dataclasses.replace(

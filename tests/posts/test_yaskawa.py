@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitBelow, WaitInput
-from freecad_am.objects.controllers import check_pulses, written_by
-from freecad_am.posts import earlier, ur, yaskawa
+from freecad_am.objects.checks.controllers import check_pulses, written_by
+from freecad_am.posts import earlier
+from freecad_am.posts.ur import post as ur
+from freecad_am.posts.yaskawa import post as yaskawa
 from tests.posts.fanuc_programs import GOLDEN_JOINT, beads, moves, program
 
 PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75)

@@ -10,8 +10,8 @@ import FreeCAD
 import Part
 import yaml
 
-from freecad_am.core.kinematics import machine as machines
-from freecad_am.objects.controllers import written_by
+from freecad_am.core.kinematics.machines import machine as machines
+from freecad_am.objects.checks.controllers import written_by
 from freecad_am.posts import catalogue
 from tests.core.kinematics.arms import EXAMPLES as MACHINES
 

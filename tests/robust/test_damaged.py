@@ -15,11 +15,11 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.brep import apart, three_mf
-from freecad_am.brep.read import read_mesh, read_shape
+from freecad_am.brep.files import apart, three_mf
+from freecad_am.brep.files.read import read_mesh, read_shape
 from freecad_am.core.issues import InputError
-from freecad_am.objects import document_file
-from freecad_am.objects.part_file import part_shape
+from freecad_am.objects.shapes import document_file
+from freecad_am.objects.shapes.part_file import part_shape
 from tests.robust import damage
 
 SECONDS, MEMORY = 10.0, 1000.0  # s of the processor, MB

@@ -10,7 +10,7 @@ import FreeCAD
 import Part
 import pytest
 
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 from tests.batch.conftest import Workshop
 
 NAME = "<img src=x onerror=alert(1)>\"'&lt;<!--]]>${%s#"  # of files, jobs and features: no slash, no control signs

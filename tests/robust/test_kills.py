@@ -19,7 +19,10 @@ import FreeCAD
 import pytest
 
 from freecad_am import api
-from freecad_am.batch import console, outputs, row_journal, staging
+from freecad_am.batch import console
+from freecad_am.batch.outputs import folder as outputs
+from freecad_am.batch.outputs import staging
+from freecad_am.batch.rows import journal as row_journal
 from freecad_am.core.issues import InputError
 from tests.batch.conftest import COMMANDS, ended, used_by
 

@@ -9,7 +9,8 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.objects import cell_obstacles, table_part
+from freecad_am.objects import table_part
+from freecad_am.objects.shapes import cell_obstacles
 from tests.robust.test_damaged import assert_refused, refused
 
 HUGE = 5 << 30  # bytes of blocks that take no room: more than the commands may use of memory

@@ -10,7 +10,8 @@ import time
 
 import pytest
 
-from freecad_am.batch import outputs, supervised
+from freecad_am.batch import supervised
+from freecad_am.batch.outputs import folder as outputs
 from tests.robust.test_kills import OLD, files, publish
 
 SCRIPT = """

@@ -22,12 +22,12 @@ from ..geometry.surroundings import Body
 from ..issues import InputError
 from ..parameters.cell import CellParameters, NozzleParameters
 from ..parameters.external import externals
-from . import machine as machines
-from . import opw
 from .arrangement import Arrangement, of_setup, planned_of
 from .external import ExternalAxes, coupled, upward
+from .inverse import opw
 from .limits import Limits
-from .machine import Machine
+from .machines import machine as machines
+from .machines.machine import Machine
 from .pose_frames import PoseFrames
 from .torch import Torch
 from .work_offset import WorkOffset, of_cell

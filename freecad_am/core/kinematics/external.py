@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 from ..geometry import frames
 from ..issues import InputError
 from ..parameters.external import PART, ROBOT, WHERE, External
-from . import machine as machines
-from . import urdf_machine
 from .chain import Chain, Piece, joined
 from .limits import Limits
-from .machine import MAKER, Machine
-from .urdf_reference import reference
+from .machines import machine as machines
+from .machines.machine import MAKER, Machine
+from .urdf import machine as urdf_machine
+from .urdf.reference import reference
 
 Array = NDArray[np.float64]
 

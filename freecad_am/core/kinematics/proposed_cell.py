@@ -24,12 +24,13 @@ from ..geometry import frames
 from ..geometry.rods import Rod
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
-from . import link_rods, opw
-from . import machine as machines
-from .arm_contact import ArmContact
 from .arrangement import OF_ROBOTS, of_setup
 from .cell import Cell, resolve
+from .inverse import opw
 from .limits import margins
+from .links import rods as link_rods
+from .links.contact import ArmContact
+from .machines import machine as machines
 
 Array = NDArray[np.float64]
 

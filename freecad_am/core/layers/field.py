@@ -11,10 +11,13 @@ from ..geometry.developable import Developable
 from ..geometry.on_hub import Group, middle_azimuth
 from ..geometry.surroundings import Body
 from ..parameters.filled import DevelopableParameters, FilledParameters, SolidParameters
-from ..slicing.equidistant import Facets
-from ..slicing.laid_flat import cut
-from . import along, curved, planes, rotary
-from .plane_layer import PlaneLayer
+from ..slicing.solids.equidistant import Facets
+from ..slicing.solids.unrolled import cut
+from .along import field as along
+from .curved import field as curved
+from .planes import field as planes
+from .planes.layer import PlaneLayer
+from .rotary import field as rotary
 from .surface import Array, Slice
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..geometry.curves.guide import Guide
 from ..geometry.on_hub import Base
 from ..geometry.surroundings import Body
-from .stacking import facets
+from .planes.stacking import facets
 
 Array = NDArray[np.float64]
 

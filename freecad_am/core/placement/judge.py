@@ -17,16 +17,16 @@ from numpy.typing import NDArray
 from ..collision.bead_ends import LINK_GRAIN, Beads
 from ..geometry.rods import Rod
 from ..issues import ERROR, AmError, Issue
-from ..kinematics import opw
-from ..kinematics.arm_contact import ArmContact
-from ..kinematics.arm_distance import least_distance
 from ..kinematics.cell import Cell
+from ..kinematics.inverse import opw
+from ..kinematics.links.contact import ArmContact
+from ..kinematics.links.distance import least_distance
 from ..motion import Motion
 from ..parameters.cell import CellParameters
 from ..parameters.joints import OF_CELL, JointParameters
 from ..parameters.process import ProcessParameters
+from ..planning.external.level import levelled
 from ..planning.joint_path import JointPath
-from ..planning.level import levelled
 from ..planning.motion import assemble
 from ..planning.plan import Progress, plan_joints
 from ..planning.sampled import Sampled, sampled

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kinematics import jacobian as jac
-from ..kinematics import opw
 from ..kinematics.cell import Cell
+from ..kinematics.inverse import opw
 from ..parameters.joints import OBJECTIVES, JointParameters
 from . import criteria
 from .joint_path import BeadPath, JointPath

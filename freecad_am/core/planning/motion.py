@@ -17,11 +17,11 @@ from ..parameters.bead_classes import number_of
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
 from . import nozzle_beside
-from .arm_kept import Rods
+from .arm.kept import Rods
 from .joint_path import BeadPath, JointPath
-from .rapid_findings import findings
-from .rapid_ways import RapidWays, Way
-from .retract_ways import Leg
+from .rapids.findings import findings
+from .rapids.retract_ways import Leg
+from .rapids.ways import RapidWays, Way
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from ..geometry import frames
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
 from ..motion import Motion
-from .rapids import evenly
+from .rapids.clearance import evenly
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -11,35 +11,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..issues import ERROR, NOTE, WARNING, InputError, Issue, has_errors
-from ..kinematics import opw
 from ..kinematics.cell import Cell
+from ..kinematics.inverse import opw
 from ..parameters.cell import NO_SHAPE
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
-from . import (
-    arm_clear,
-    comparison,
-    constant,
-    external_rule,
-    given,
-    layer_by_layer,
-    phases,
-    point_by_point,
-    search,
-    table,
-    track,
-    turns,
-)
-from .arm_kept import ArmKept, Rods, of_job
+from . import comparison
+from .arm import clear as arm_clear
+from .arm.kept import ArmKept, Rods, of_job
+from .beads import phases
+from .beads.overlap import run_on
+from .beads.speeds import corners_slowed, rings_slowed, too_fast
+from .beads.straight import kept_straight
 from .certificate import bound
+from .external import rule as external_rule
+from .external import track
+from .external.level import levelled, standing
 from .findings import findings, out_of_reach
 from .joint_path import BeadPath, JointPath
-from .level import levelled, standing
-from .overlap import run_on
+from .methods import constant, layer_by_layer, point_by_point
+from .methods import five_axis as table
 from .points import gather
-from .speeds import corners_slowed, rings_slowed, too_fast
-from .straight import kept_straight
+from .rotation import given, search
 from .task import Task
+from .turns import unwrap as turns
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]

@@ -19,21 +19,22 @@ import numpy as np
 from ..geometry.surroundings import Body
 from ..issues import ERROR, NOTE, AmError, Issue, has_errors
 from ..kinematics import cell as cells
-from ..kinematics import opw, proposed_cell
+from ..kinematics import proposed_cell
 from ..kinematics.arrangement import of_setup
+from ..kinematics.inverse import opw
 from ..kinematics.torch import Torch
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
 from ..parameters.joints import OF_CELL, JointParameters
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
-from . import external_remedies
-from .arm_kept import Rods
+from .arm.kept import Rods
+from .beads.speeds import share_of_speed
+from .external import remedies as external_remedies
+from .external.level import levelled
 from .joint_path import JointPath
-from .level import levelled
 from .motion import assemble
 from .plan import Progress, best_branches, plan_joints
-from .speeds import share_of_speed
 
 REMEDY, NO_REMEDY = "REMEDY", "NO_REMEDY"
 LAYERS = 3  # that failed, planned anew with each change

@@ -15,10 +15,10 @@ from ..kinematics.cell import Cell
 from ..kinematics.inverse.serial_arm import SerialArm
 from ..kinematics.limits import Limits
 from ..parameters.joints import JointParameters
-from . import following
-from .arm_kept import ArmKept
+from .arm.kept import ArmKept
 from .points import TURN, Points, unwrapped
 from .reserve import RESERVE
+from .turns import configurations as following
 
 Array = NDArray[np.float64]
 

@@ -12,10 +12,10 @@ from ..issues import Issue
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
-from ..process.deposit_balance import Balance
+from ..process.deposit.balance import Balance
 from ..simulation.arm import ArmTouches
 from ..simulation.rapid_look import RapidsLooked
-from ..strategies.clearance_look import Looked
+from ..strategies.clearance.look import Looked
 from ..toolpath import Toolpath
 from . import clearance, deposit, joints, written
 from .promise import Promise

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..issues import Issue
-from ..kinematics.arm_contact import NONE
 from ..kinematics.cell import Cell
+from ..kinematics.links.contact import NONE
 from ..motion import Motion
 from ..simulation.arm import ArmTouches
 from ..simulation.rapid_look import RapidsLooked
-from ..strategies.clearance_look import Looked
+from ..strategies.clearance.look import Looked
 from .promise import Place, Promise, issue_place, number, of_codes, row_place
 
 DEPOSITING = ("CLEARANCE", "OVER_PLATFORM")

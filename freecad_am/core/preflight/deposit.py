@@ -10,8 +10,10 @@ import numpy as np
 from ..geometry.fitted import REMAINS
 from ..issues import WARNING, Issue
 from ..parameters.process import ProcessParameters
-from ..process import deposit_balance, layer_heights, on_part, spacing, support, wire, wire_taken
-from ..process.deposit_balance import MM3, Balance
+from ..process.deposit import balance as deposit_balance
+from ..process.deposit import layer_heights, on_part, spacing, support
+from ..process.deposit.balance import MM3, Balance
+from ..process.model import wire, wire_taken
 from ..toolpath import Array, Toolpath
 from .promise import PERCENT, Place, Promise, issue_place, of_codes
 

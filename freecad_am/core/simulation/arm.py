@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..collision.bead_ends import LINK_GRAIN, Beads
 from ..collision.obstacles import Obstacles
-from ..kinematics.arm_contact import NONE, ArmContact
+from ..kinematics.links.contact import NONE, ArmContact
 from ..motion import Motion
 
 Array = NDArray[np.float64]

@@ -16,7 +16,7 @@ from ..geometry import frames
 from ..geometry.surroundings import Body
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
-from ..kinematics.machine import Machine
+from ..kinematics.machines.machine import Machine
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath

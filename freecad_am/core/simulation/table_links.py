@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..kinematics.chain import Chain
-from ..kinematics.link_solids import BRIGHT, DARK, Solid, box, capsule, cylinder
+from ..kinematics.links.solids import BRIGHT, DARK, Solid, box, capsule, cylinder
 
 Array = NDArray[np.float64]
 

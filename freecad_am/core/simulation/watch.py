@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..issues import NOTE, Issue
-from ..kinematics.arm_contact import NONE
 from ..kinematics.cell import Cell
+from ..kinematics.links.contact import NONE
 from ..motion import Motion
 from .arm import ArmTouches
 from .pace import Pace

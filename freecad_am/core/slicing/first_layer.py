@@ -11,7 +11,7 @@ from ..geometry.implicit import Implicit
 from ..geometry.walls.surface import Surface, dot
 from ..issues import InputError
 from .refinement import ROUNDS, finer_grid
-from .wall_layer import WallLayer
+from .tubes.wall_layer import WallLayer
 
 Array = NDArray[np.float64]
 

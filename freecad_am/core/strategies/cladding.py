@@ -11,12 +11,12 @@ from ..geometry.on_hub import Base
 from ..geometry.plane import Plane
 from ..geometry.walls.clad_faces import CladFaces
 from ..issues import NOTE, InfeasibleError, InputError, Issue
-from ..layers.on_faces import FaceLayer, pieces, slices
+from ..layers.curved.on_faces import FaceLayer, pieces, slices
 from ..layers.surface import Slice
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
-from ..process.bead_model import BeadModel
+from ..process.model.bead_model import BeadModel
 from ..process.order import Laid, ordered, waited
 from ..toolpath import Array, Toolpath
 from .progress import Progress, silent

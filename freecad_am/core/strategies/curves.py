@@ -14,7 +14,7 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import CurvesParameters
 from ..process import classes
-from ..slicing.wall_direction import held
+from ..slicing.directions.wall import held
 from ..toolpath import Bead, Layer, Toolpath
 from .progress import Progress, silent
 

@@ -14,7 +14,7 @@ from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.on_hub import Base
 from ..geometry.surroundings import Body
 from ..issues import Issue
-from ..process import support
+from ..process.deposit import support
 from ..toolpath import Array, Toolpath
 
 Mask = NDArray[np.bool_]

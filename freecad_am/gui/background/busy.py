@@ -15,7 +15,7 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ...objects import progress
+from ...objects.work import progress
 from ..signals import connect
 from ..texts.translation import tr, translated
 from .worker import Worker

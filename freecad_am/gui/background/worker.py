@@ -22,7 +22,7 @@ from typing import Any
 from PySide import QtCore
 
 from ...core import one_thread
-from ...objects.progress import Cancelled, told_to
+from ...objects.work.progress import Cancelled, told_to
 
 AGAIN = 200  # ms between two looks at the threads that go on
 YOUNG = 1  # the generation of objects up to which cycles are collected at each look: those made since the last one

@@ -11,9 +11,10 @@ from PySide import QtGui
 
 from ...core.geometry import frames
 from ...core.issues import InputError
-from ...core.kinematics import machine_draft, pendant
 from ...core.kinematics.chain import Chain
-from ...core.kinematics.pendant import Shown
+from ...core.kinematics.machines import draft as machine_draft
+from ...core.kinematics.machines import pendant
+from ...core.kinematics.machines.pendant import Shown
 from ..texts.translation import tr
 from .figure_table import FigureTable
 from .page import Page, axis_names, choice, heading

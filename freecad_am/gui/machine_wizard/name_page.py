@@ -10,9 +10,9 @@ from typing import Any
 from PySide import QtGui
 
 from ...core.issues import InputError
-from ...core.kinematics import machine_draft
-from ...core.kinematics.opw import OpwArm
-from ...core.kinematics.urdf_machine import is_mechanism
+from ...core.kinematics.inverse.opw import OpwArm
+from ...core.kinematics.machines import draft as machine_draft
+from ...core.kinematics.urdf.machine import is_mechanism
 from ...objects import user_machines
 from ...posts import catalogue
 from ...posts.names import plain

@@ -13,9 +13,9 @@ from PySide import QtGui
 
 from ...core.geometry import frames
 from ...core.issues import InputError
-from ...core.kinematics import pendant, pose_figures
 from ...core.kinematics.chain import Chain
-from ...core.kinematics.pendant import Deviation, Suspect
+from ...core.kinematics.machines import pendant, pose_figures
+from ...core.kinematics.machines.pendant import Deviation, Suspect
 from ..background.later import Later
 from ..colours import WRONG
 from ..texts.translation import tr

@@ -13,12 +13,14 @@ from PySide import QtGui
 
 from ...core.geometry import frames
 from ...core.issues import InputError
-from ...core.kinematics import denavit_hartenberg, machine, machine_draft, opw_recognition
-from ...core.kinematics.machine_draft import Draft
-from ...core.kinematics.opw import OpwArm
-from ...core.kinematics.urdf import Urdf
-from ...core.kinematics.urdf_cell import UrdfCell
-from ...core.kinematics.urdf_reference import reference
+from ...core.kinematics.inverse import opw_recognition
+from ...core.kinematics.inverse.opw import OpwArm
+from ...core.kinematics.machines import denavit_hartenberg, machine
+from ...core.kinematics.machines import draft as machine_draft
+from ...core.kinematics.machines.draft import Draft
+from ...core.kinematics.urdf.cell import UrdfCell
+from ...core.kinematics.urdf.read import Urdf
+from ...core.kinematics.urdf.reference import reference
 from ...core.parameters.external import ROBOT
 from ...objects import user_machines
 from ..texts.translation import tr

@@ -9,7 +9,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ...core.kinematics.machine_draft import Draft
+from ...core.kinematics.machines.draft import Draft
 from .. import icons
 from ..texts.translation import tr
 from .frames_page import FramesPage

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.filled import GEODESIC
-from ...objects import preferences
+from ...objects.fields import preferences
 from .. import recorded
 from .proposal import DEVELOPABLE, REVOLUTION, SOLID, JobProposal
 

@@ -5,16 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from ...brep import kernel, part_depths
-from ...brep.revolution import find_wall
-from ...brep.wall_on import named_faces
+from ...brep.kernel import limits as kernel
+from ...brep.revolution.wall import find_wall
+from ...brep.shapes import part_depths
+from ...brep.walls.wall_on import named_faces
 from ...core.issues import InputError, Issue
 from ...core.parameters.filled import DevelopableParameters
-from ...core.process import deposit_balance
-from ...objects import deposit
+from ...core.process.deposit import balance as deposit_balance
+from ...objects.checks import deposit
 from ...objects.developable_feature import found_in
-from ...objects.proposed_family import COARSE
-from ...objects.shapes import Taken, taken
+from ...objects.planned.proposed_family import COARSE
+from ...objects.shapes.bodies import Taken, taken
 from .proposal import DEVELOPABLE, REVOLUTION, SURFACE, JobProposal
 
 

@@ -14,8 +14,8 @@ from PySide import QtCore, QtGui
 from ... import api
 from ...core.issues import AmError, Issue
 from ...core.parameters.filled import GEODESIC
-from ...objects import preferences
-from ...objects.progress import Cancelled
+from ...objects.fields import preferences
+from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.busy import carry_out
 from ..background.later import Background

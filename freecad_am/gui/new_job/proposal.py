@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ...core.parameters.filled import GEODESIC, PLANES
-from ...objects import deposit
-from ...objects.proposed_family import Proposal, proposed, stands_on_hub
-from ...objects.shapes import Taken, global_shape, taken
+from ...objects.checks import deposit
+from ...objects.planned.proposed_family import Proposal, proposed, stands_on_hub
+from ...objects.shapes.bodies import Taken, global_shape, taken
 from ..picking import picking
 from ..picking.picking import Pick
 from ..texts.translation import tr, translated

@@ -16,15 +16,15 @@ from ...core.kinematics import cell as cells
 from ...core.kinematics.arrangement import of_setup
 from ...core.kinematics.cell import Cell
 from ...core.kinematics.limits import Limits
-from ...core.kinematics.link_rods import Mesh
-from ...core.kinematics.link_solids import capsule
-from ...core.kinematics.machine import Machine
+from ...core.kinematics.links.rods import Mesh
+from ...core.kinematics.links.solids import capsule
+from ...core.kinematics.machines.machine import Machine
 from ...core.kinematics.torch import Torch
 from ...core.parameters.cell import CellParameters
 from ...core.simulation.placing import at_rest, placing
 from ...core.toolpath import Toolpath
-from ...objects.cell_obstacles import torch_of
-from ...objects.link_meshes import meshes_of
+from ...objects.shapes.cell_obstacles import torch_of
+from ...objects.shapes.link_meshes import meshes_of
 from .lines import Array, placed, turned
 from .machine_links import Links, MachineNodes, move, of_mesh, of_solid, plain_links
 from .wall import unpickable

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from pivy import coin
 
 from ...core.issues import InputError
-from ...core.kinematics import robot_links
-from ...core.kinematics.link_rods import Mesh
-from ...core.kinematics.link_shape import LinkShape
-from ...core.kinematics.link_solids import BRIGHT, DARK, Solid
-from ...core.kinematics.machine import Machine
+from ...core.kinematics.links import robot as robot_links
+from ...core.kinematics.links.rods import Mesh
+from ...core.kinematics.links.shape import LinkShape
+from ...core.kinematics.links.solids import BRIGHT, DARK, Solid
+from ...core.kinematics.machines.machine import Machine
 from ...core.simulation import table_links
-from ...objects import preferences
-from ...objects.link_meshes import mesh_of
+from ...objects.fields import preferences
+from ...objects.shapes.link_meshes import mesh_of
 from ..texts.translation import error_line
 from .lines import fill
 

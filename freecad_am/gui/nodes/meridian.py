@@ -7,7 +7,7 @@ import numpy as np
 from pivy import coin
 
 from ...core.geometry.curves.profile import RevolvedWall
-from ...core.strategies.revolution import Slices
+from ...core.strategies.revolution.plan import Slices
 from .lines import DASHED, Lines
 
 COLOUR = (0.96, 0.47, 0.0)

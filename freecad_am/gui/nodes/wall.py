@@ -10,7 +10,7 @@ import numpy as np
 from pivy import coin
 
 from ...core.issues import InputError
-from ...objects.shapes import Taken, taken
+from ...objects.shapes.bodies import Taken, taken
 from .lines import DASHED, Array, Faces, Lines
 
 COLOUR = (0.96, 0.47, 0.0)

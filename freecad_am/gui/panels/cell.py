@@ -12,17 +12,17 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ...core.issues import AmError, InputError
-from ...core.kinematics import machine as machines
 from ...core.kinematics.arrangement import of_setup
-from ...core.kinematics.machine import Machine
+from ...core.kinematics.machines import machine as machines
+from ...core.kinematics.machines.machine import Machine
 from ...core.kinematics.proposed_cell import cell_of
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.external import NONE
 from ...objects import user_machines
 from ...objects.cell import Cell
-from ...objects.progress import Cancelled
 from ...objects.stage import stage_of
 from ...objects.stage_parts import Outcome
+from ...objects.work.progress import Cancelled
 from ..background.busy import carry_out
 from ..background.later import Background, Later
 from ..background.worker import Worker

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...core.parameters.filled import CladdingParameters
 from ...objects.cladding_feature import CladdingFeature
-from ...objects.shapes import FIXTURES
+from ...objects.shapes.bodies import FIXTURES
 from ...objects.stage_parts import Link, Outcome
 from .. import recorded
 from ..nodes.wall import WallNodes

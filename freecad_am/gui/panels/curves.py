@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...objects.curves_feature import CurvesFeature
-from ...objects.shapes import FIXTURES
+from ...objects.shapes.bodies import FIXTURES
 from ...objects.stage_parts import Link, Outcome
 from .. import recorded
 from ..nodes.wall import WallNodes

@@ -8,8 +8,8 @@ from typing import Any
 
 from ...core.issues import AmError, Issue
 from ...core.parameters.strategy import RevolutionParameters
-from ...core.strategies.revolution import Slices, sliced
-from ...objects import deposit
+from ...core.strategies.revolution.plan import Slices, sliced
+from ...objects.checks import deposit
 from ...objects.feature import RevolutionFeature
 from ...objects.stage_parts import Outcome
 from ..nodes.meridian import MeridianNodes

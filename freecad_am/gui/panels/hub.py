@@ -11,10 +11,10 @@ import numpy as np
 from ...core.issues import AmError, Issue
 from ...core.parameters.filled import DevelopableParameters
 from ...core.strategies import size
-from ...objects import deposit
+from ...objects.checks import deposit
 from ...objects.developable_feature import DevelopableFeature
-from ...objects.proposed_family import COARSE
-from ...objects.shapes import FIXTURES
+from ...objects.planned.proposed_family import COARSE
+from ...objects.shapes.bodies import FIXTURES
 from ...objects.stage_parts import Link, Outcome
 from .. import recorded
 from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing

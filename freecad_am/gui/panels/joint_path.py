@@ -12,16 +12,17 @@ import numpy as np
 
 from ...core.issues import ERROR, InputError, Issue
 from ...core.kinematics import cell as cells
-from ...core.kinematics import machine as machines
+from ...core.kinematics.machines import machine as machines
 from ...core.parameters.external import externals
 from ...core.parameters.joints import LEVEL
 from ...core.planning.joint_path import JointPath as JointsOfBeads
-from ...core.planning.judgement import Judgement, judged
 from ...core.planning.plan import OF_ROBOTS, plan_joints
+from ...core.planning.rotation.headroom import Judgement, judged
 from ...core.planning.sampled import Sampled, sampled
-from ...objects import progress, user_machines
+from ...objects import user_machines
 from ...objects.joint_path import Job, JointPath
 from ...objects.stage_parts import Outcome
+from ...objects.work import progress
 from ..nodes.joint_path import JointPathNodes
 from ..path.colouring import CONDITION, MARGIN, RATIO
 from ..picking import inputs

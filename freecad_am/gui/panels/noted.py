@@ -12,7 +12,7 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import AmError, InputError
 from ...core.parameters.field import check_value
-from ...objects import expressions
+from ...objects.fields import expressions
 from ...objects.stage import Stage
 from ..colours import WRONG
 from ..picking import inputs

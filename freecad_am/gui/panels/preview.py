@@ -10,10 +10,11 @@ from typing import Any
 from PySide import QtCore
 
 from ...core.issues import AmError, InputError, has_errors
-from ...objects import expressions, hooks
+from ...objects.fields import expressions
 from ...objects.stage import Stage
 from ...objects.stage_parts import Outcome
 from ...objects.staleness import STALE
+from ...objects.work import hooks
 from ..background.later import Background
 from ..background.worker import Worker
 from ..colours import WRONG

@@ -15,7 +15,7 @@ from ...core.parameters.program import ProgramParameters
 from ...core.preflight.promise import Place, Promise
 from ...core.simulation.timeline import timeline
 from ...core.simulation.totals import Totals, totals
-from ...objects import preflight
+from ...objects.checks import preflight
 from ...objects.program import Job, Program, Written, posted
 from ...objects.stage_parts import Outcome
 from ...objects.staleness import UP_TO_DATE

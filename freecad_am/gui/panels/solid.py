@@ -11,13 +11,14 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ...core.issues import AmError
-from ...core.layers import along, guide_edges
+from ...core.layers.along import field as along
+from ...core.layers.along import guide_edges
 from ...core.layers.leaning import Leaning, leaning
-from ...core.layers.stacking import STANDING, stacked
+from ...core.layers.planes.stacking import STANDING, stacked
 from ...core.parameters.filled import SolidParameters
 from ...core.strategies import size
-from ...objects.proposed_family import COARSE
-from ...objects.shapes import FIXTURES
+from ...objects.planned.proposed_family import COARSE
+from ...objects.shapes.bodies import FIXTURES
 from ...objects.solid_feature import SolidFeature
 from ...objects.stage_parts import Link, Outcome
 from .. import recorded

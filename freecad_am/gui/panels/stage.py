@@ -14,11 +14,11 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ...core.issues import AmError, InputError
-from ...objects import expressions, preferences
-from ...objects.findings import issues_of
-from ...objects.progress import Cancelled
-from ...objects.rows import group_of, rows
+from ...objects.fields import expressions, preferences
+from ...objects.fields.rows import group_of, rows
+from ...objects.results.findings import issues_of
 from ...objects.stage import Stage
+from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.later import Later
 from ..colours import WRONG

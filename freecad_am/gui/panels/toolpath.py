@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
-from ...core.process import bead_model, bead_table
+from ...core.process.model import bead_model, bead_table
 from ...core.strategies.sequence import BY_FEATURE
 from ...objects.toolpath import Toolpath
 from ..background.later import Later

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...core.issues import Issue
-from ...objects import deposit
-from ...objects.shapes import taken
+from ...objects.checks import deposit
+from ...objects.shapes.bodies import taken
 from ...objects.stage_parts import Outcome
 from ...objects.surface_feature import SurfaceFeature
 from ..nodes.wall import WallNodes, drawn, first_curves

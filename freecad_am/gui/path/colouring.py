@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...core.process.spacing import local_distances
+from ...core.process.deposit.spacing import local_distances
 from ...core.toolpath import Bead, Toolpath
-from ...objects import preferences
+from ...objects.fields import preferences
 from ..colours import ramp
 from ..nodes.lines import Array
 from ..texts.translation import marked, translated

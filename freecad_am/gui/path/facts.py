@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...core.toolpath import Bead
-from ...objects import preferences
+from ...objects.fields import preferences
 from ..texts.translation import tr
 from .rows import Rows
 

@@ -17,7 +17,7 @@ import numpy as np
 from pivy import coin
 from PySide import QtCore, QtGui
 
-from ...objects import preferences
+from ...objects.fields import preferences
 from ..colours import ramp
 from ..nodes.lines import unshaded
 from ..preferences import watch

@@ -11,7 +11,7 @@ import numpy as np
 from PySide import QtCore
 
 from ...core.issues import InputError
-from ...objects import preferences
+from ...objects.fields import preferences
 from ..nodes.lines import Array
 from ..texts.translation import marked
 from ..views.base import StageView

@@ -9,10 +9,10 @@ from typing import Any
 
 import FreeCADGui as Gui
 
-from ...brep.standing import stand
+from ...brep.walls.standing import stand
 from ...core.issues import InputError
 from ...objects.job_group import is_group
-from ...objects.shapes import global_shape
+from ...objects.shapes.bodies import global_shape
 from ...objects.stage import stage_of
 from ..texts.translation import tr
 

@@ -15,9 +15,10 @@ from ...core.kinematics import cell as cells
 from ...core.parameters.place import PlaceParameters
 from ...core.placement.place import Placed
 from ...core.placement.reach import Reach, reach
-from ...objects import progress, user_machines
-from ...objects.placed import Placing, given, placing_of
-from ...objects.progress import Cancelled
+from ...objects import user_machines
+from ...objects.checks.placed import Placing, given, placing_of
+from ...objects.work import progress
+from ...objects.work.progress import Cancelled
 from .. import recorded
 from ..docks import places
 from ..docks.lookout import Lookout

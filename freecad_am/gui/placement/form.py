@@ -9,8 +9,8 @@ from PySide import QtCore, QtGui
 
 from ...core.parameters.place import SIDES, PlaceParameters
 from ...core.placement.place import Placed
-from ...objects.placed import given
-from ...objects.rows import flat, rows
+from ...objects.checks.placed import given
+from ...objects.fields.rows import flat, rows
 from ..colours import WRONG
 from ..texts.translation import tr, translated
 from ..widgets import fields

@@ -9,7 +9,7 @@ from typing import Any
 from PySide import QtCore
 
 from ...core.issues import AmError
-from ...objects.progress import Cancelled
+from ...objects.work.progress import Cancelled
 from ..background.later import Background
 from ..background.worker import Worker
 from ..texts.translation import tr, translated, translated_error

@@ -13,7 +13,7 @@ from ...core.motion import Motion
 from ...core.parameters.filled import SolidParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
-from ...core.planning import program as programs
+from ...core.planning.program import build as programs
 from ...core.simulation import deposit
 from ...core.simulation.margins import on_deposit
 from ...objects import user_machines

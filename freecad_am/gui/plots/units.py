@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...objects import preferences
+from ...objects.fields import preferences
 from ...plots.chart import Array, Bars, Chart, Picture, Quantity
 
 TRAVEL = ("travel", "spread")  # pictures by name whose speeds are those of the deposition point

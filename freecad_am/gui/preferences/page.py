@@ -11,9 +11,10 @@ import FreeCADGui as Gui
 from PySide import QtGui
 
 from ...core.issues import InputError
-from ...core.kinematics import machine
-from ...objects import preferences, user_machines
-from ...objects.rows import MIXED
+from ...core.kinematics.machines import machine
+from ...objects import user_machines
+from ...objects.fields import preferences
+from ...objects.fields.rows import MIXED
 from ...posts import catalogue
 from ..texts.translation import tr, translated
 from ..widgets import choices, fields

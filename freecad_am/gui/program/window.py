@@ -14,7 +14,7 @@ from PySide import QtCore, QtGui
 
 from ... import api
 from ...core.issues import AmError
-from ...objects import preferences
+from ...objects.fields import preferences
 from ...objects.staleness import UP_TO_DATE
 from .. import icons
 from ..colours import WRONG

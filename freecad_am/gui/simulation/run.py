@@ -19,12 +19,12 @@ from ...core.simulation.totals import Totals, totals
 from ...core.simulation.watch import Watch, watch
 from ...core.toolpath import Toolpath
 from ...objects import user_machines
-from ...objects.as_run import as_run
-from ...objects.cell_obstacles import resolved
-from ...objects.findings import issues_of
+from ...objects.checks.links_clear import arm_of
 from ...objects.joint_path import planned_of
-from ...objects.link_meshes import meshes_of
-from ...objects.links_clear import arm_of
+from ...objects.results.as_run import as_run
+from ...objects.results.findings import issues_of
+from ...objects.shapes.cell_obstacles import resolved
+from ...objects.shapes.link_meshes import meshes_of
 from ...objects.stage import stage_of
 from ...objects.staleness import STALE
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pivy import coin
 
 from ...core.geometry import frames
-from ...core.kinematics.arm_contact import NONE
+from ...core.kinematics.links.contact import NONE
 from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of

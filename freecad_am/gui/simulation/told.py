@@ -11,7 +11,7 @@ import numpy as np
 from ...core.simulation import watch
 from ...core.simulation.totals import MM3_PER_CM3
 from ...core.simulation.watch import Finding
-from ...objects import preferences
+from ...objects.fields import preferences
 from ..nodes.lines import Array
 from ..texts.touching import link_touches
 from ..texts.translation import tr, translated

@@ -9,9 +9,9 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from ...core.issues import AmError
-from ...objects import hooks
-from ...objects.progress import Cancelled
 from ...objects.stage import stage_of
+from ...objects.work import hooks
+from ...objects.work.progress import Cancelled
 from ..picking.selection import job_named, meant
 from ..texts.translation import error_line, tr, translated_error
 from . import dock

@@ -9,11 +9,11 @@ from typing import Any
 from PySide import QtCore
 
 from ...core.issues import AmError
-from ...core.planning import spin_curve
-from ...core.planning.spin_curve import Compared
+from ...core.planning.redundancy import curve as spin_curve
+from ...core.planning.redundancy.curve import Compared
 from ...core.planning.task import Task
-from ...objects import progress
-from ...objects.progress import Cancelled
+from ...objects.work import progress
+from ...objects.work.progress import Cancelled
 from ..background.later import Background
 from ..background.worker import Worker
 from ..texts.translation import tr, translated, translated_error

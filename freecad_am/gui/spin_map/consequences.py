@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ...core.planning import spin_curve
-from ...core.planning.spin_curve import Followed, Sums
+from ...core.planning.redundancy import curve as spin_curve
+from ...core.planning.redundancy.curve import Followed, Sums
 from ..background.later import Background
 from ..background.worker import Worker
 from ..texts.translation import tr

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
-from ...core.kinematics import opw
+from ...core.kinematics.inverse import opw
 from ...core.parameters.joints import HIGHEST
-from ...core.planning.spin_map import ROTATION, RZ
+from ...core.planning.redundancy.map import ROTATION, RZ
 from ..texts.translation import tr
 from .board import Board
 from .draft import CONSTANT, POLYNOMIALS, Draft

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.planning.spin_curve import Compared, Followed
+from ...core.planning.redundancy.curve import Compared, Followed
 from ..nodes.lines import Array
 from .board import Board
 from .draft import CONSTANT, Draft

@@ -11,8 +11,8 @@ import numpy as np
 from PySide import QtGui
 
 from ...core.issues import AmError
-from ...core.planning.spin_curve import Compared
-from ...objects.progress import Cancelled
+from ...core.planning.redundancy.curve import Compared
+from ...objects.work.progress import Cancelled
 from .. import recorded
 from ..background.later import Later
 from ..docks import places

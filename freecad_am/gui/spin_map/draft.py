@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
 from ...core.parameters.joints import OF_CELL, given_text
-from ...core.planning import spin_curve, spin_map
-from ...core.planning.given import METHOD
 from ...core.planning.joint_path import BeadPath
-from ...core.planning.planned_rotation import rotation_along
 from ...core.planning.points import TURN, Points
-from ...core.planning.spin_curve import Followed
-from ...core.planning.spin_map import Columns, in_turns
+from ...core.planning.redundancy import curve as spin_curve
+from ...core.planning.redundancy import map as spin_map
+from ...core.planning.redundancy.curve import Followed
+from ...core.planning.redundancy.map import Columns, in_turns
+from ...core.planning.rotation.given import METHOD
+from ...core.planning.rotation.planned import rotation_along
 from ..nodes.lines import Array
 from .source import Source
 

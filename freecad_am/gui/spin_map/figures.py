@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
-from ...core.planning.spin_curve import Sums
+from ...core.planning.redundancy.curve import Sums
 from ..colours import WRONG
 from ..texts.translation import tr
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.planning.spin_map import Picture
+from ...core.planning.redundancy.map import Picture
 from ..colours import ramp
 from ..path.colouring import NONE, TOO_FAR, TOO_NEAR, Scale, automatic
 from ..texts.translation import marked

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...core.kinematics.cell import Cell as Station
-from ...core.kinematics.machine import Machine
+from ...core.kinematics.machines.machine import Machine
 from ..nodes.lines import Array
 from ..texts.touching import link_touches
 from ..texts.translation import tr

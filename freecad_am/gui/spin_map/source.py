@@ -13,10 +13,11 @@ import numpy as np
 
 from ...core.collision.bead_ends import LINK_GRAIN, Beads
 from ...core.issues import InputError
-from ...core.kinematics import link_rods, opw
-from ...core.kinematics.arm_contact import ArmContact
 from ...core.kinematics.cell import Cell
-from ...core.kinematics.link_rods import Mesh
+from ...core.kinematics.inverse import opw
+from ...core.kinematics.links import rods as link_rods
+from ...core.kinematics.links.contact import ArmContact
+from ...core.kinematics.links.rods import Mesh
 from ...core.parameters.joints import JointParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.planning.joint_path import JointPath
@@ -24,10 +25,10 @@ from ...core.planning.plan import REVOLUTION
 from ...core.planning.task import Task
 from ...core.toolpath import Bead, Toolpath
 from ...objects import user_machines
-from ...objects.cell_obstacles import resolved
-from ...objects.findings import first_message, issues_of
 from ...objects.joint_path import planned_of
-from ...objects.link_meshes import meshes_of
+from ...objects.results.findings import first_message, issues_of
+from ...objects.shapes.cell_obstacles import resolved
+from ...objects.shapes.link_meshes import meshes_of
 from ...objects.stage import stage_of
 from ...objects.staleness import UP_TO_DATE
 from ..nodes.lines import Array

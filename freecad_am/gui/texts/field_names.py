@@ -14,7 +14,7 @@ from ...core.parameters.joints import JointParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
 from ...core.strategies.families import FAMILIES
-from ...objects.rows import group_of, rows
+from ...objects.fields.rows import group_of, rows
 
 _SECTIONS = (
     ("cell", CellParameters), *(("strategy", family.parameters) for family in FAMILIES),

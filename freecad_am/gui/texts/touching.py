@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...core.kinematics.arm_contact import DEPOSIT, NOZZLE, PART, PLATFORM, TORCH
+from ...core.kinematics.links.contact import DEPOSIT, NOZZLE, PART, PLATFORM, TORCH
 from .translation import tr
 
 

@@ -12,9 +12,9 @@ import FreeCADGui as Gui
 from ... import api
 from ...core.issues import AmError
 from ...objects.job_group import stages_in
-from ...objects.progress import Cancelled
 from ...objects.stage import stage_of
 from ...objects.staleness import UP_TO_DATE
+from ...objects.work.progress import Cancelled
 from .. import recorded, registry
 from ..texts.translation import error_line, tr
 

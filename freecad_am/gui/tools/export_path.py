@@ -12,8 +12,8 @@ from PySide import QtGui
 
 from ... import api
 from ...core.issues import AmError
-from ...objects.progress import Cancelled
 from ...objects.stage import stage_of
+from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..colours import WRONG
 from ..panels.stage import CLOSED

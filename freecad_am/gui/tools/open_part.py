@@ -11,11 +11,11 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
-from ...brep.read import READABLE
+from ...brep.files.read import READABLE
 from ...core.geometry.curves.bead_curves import POINT_FILES
 from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import AmError
-from ...objects.progress import Cancelled
+from ...objects.work.progress import Cancelled
 from .. import recorded
 from ..texts.translation import error_line, tr, translated_error
 

@@ -11,8 +11,8 @@ import numpy as np
 from ...core.issues import InputError
 from ...core.kinematics.cell import mounted
 from ...objects import user_machines
+from ...objects.results.store import Place
 from ...objects.stage import stage_of
-from ...objects.store import Place
 from ..nodes.cell import CellNodes, at_end, with_machine, without_machine
 from ..path import path_view
 from ..texts.translation import tr

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.issues import ERROR, InputError
-from ...core.kinematics import machine as machines
+from ...core.kinematics.machines import machine as machines
 from ...core.parameters.strategy import RevolutionParameters
 from ...core.simulation.margins import from_next, speed_ratios
 from ...objects import user_machines
-from ...objects.findings import issues_of
+from ...objects.results.findings import issues_of
 from ..nodes.lines import DASHED, Array, Lines, Points
 from ..path.colouring import CONDITION, JOINT_KINDS, MARGIN, RATIO, UNREACHABLE, Scale, by_machine, coloured, unknown
 from ..path.path_view import OPTIONS, TUBES, PathView

@@ -10,9 +10,9 @@ from typing import Any, TypeVar
 
 import FreeCADGui as Gui
 
-from ...objects import faults
 from ...objects.stage import Stage
 from ...objects.stage_parts import Work
+from ...objects.work import faults
 
 NAME = "RoboticAM_Preview"
 _VIEW = "Gui::View3DInventor"

@@ -9,7 +9,7 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
-from ...core.kinematics import machine
+from ...core.kinematics.machines import machine
 from ...objects import user_machines
 from ..texts.translation import marked, tr, translated
 

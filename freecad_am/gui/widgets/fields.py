@@ -13,9 +13,9 @@ from PySide import QtGui
 
 from ...core.issues import InputError
 from ...core.parameters import field as f
-from ...objects import preferences
-from ...objects.expressions import FOLLOW, is_expression
-from ...objects.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, split
+from ...objects.fields import preferences
+from ...objects.fields.expressions import FOLLOW, is_expression
+from ...objects.fields.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, split
 from ..texts.translation import tr, translated
 from . import choices
 from .quantity import PlainQuantity, QuantityField

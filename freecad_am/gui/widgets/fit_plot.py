@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from PySide import QtCore
 
-from ...core.process.bead_model import MINUTE, BeadModel
-from ...core.process.bead_table import Measured
+from ...core.process.model.bead_model import MINUTE, BeadModel
+from ...core.process.model.bead_table import Measured
 from ...plots.chart import Picture
 from ...plots.fit import fit
 from ..plots.canvas import Canvas

@@ -21,9 +21,9 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
-from ...objects.expressions import MARK, is_expression
-from ...objects.rows import plain_blanks
-from ...objects.rows import quantity as quantity_of
+from ...objects.fields.expressions import MARK, is_expression
+from ...objects.fields.rows import plain_blanks
+from ...objects.fields.rows import quantity as quantity_of
 from ..signals import connect
 from ..texts.translation import tr
 

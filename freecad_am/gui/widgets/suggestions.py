@@ -7,11 +7,12 @@ from collections.abc import Callable
 from typing import Any
 
 from ...core.issues import InputError
-from ...core.kinematics import machine
+from ...core.kinematics.machines import machine
 from ...core.parameters.program import ProgramParameters
-from ...core.process import bead_table
-from ...objects import preferences, user_machines
-from ...objects.controllers import written_by
+from ...core.process.model import bead_table
+from ...objects import user_machines
+from ...objects.checks.controllers import written_by
+from ...objects.fields import preferences
 from ...posts import catalogue
 from ..texts.translation import tr
 from .choices import machines

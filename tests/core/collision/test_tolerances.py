@@ -12,7 +12,7 @@ from freecad_am.core.collision.scene import scene
 from freecad_am.core.geometry.rods import Rod
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.arm_contact import ArmContact
+from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.parameters.cell import CellParameters
 
 RADIUS, LENGTH, UP = 3.0, 30.0, np.array([[0.0, 0.0, 1.0]])

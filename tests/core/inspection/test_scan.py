@@ -14,7 +14,7 @@ from freecad_am.core.inspection.fit_layers import fitted, moved_most
 from freecad_am.core.inspection.scan_heights import Scan
 from freecad_am.core.inspection.scanned_body import facing, scanned
 from freecad_am.core.issues import InputError
-from freecad_am.core.layers.stacking import stacked
+from freecad_am.core.layers.planes.stacking import stacked
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters

@@ -9,9 +9,11 @@ from scipy.spatial import cKDTree
 from freecad_am.core.collision.deposit import of_beads
 from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.surroundings import Body
-from freecad_am.core.kinematics import arm_contact, link_rods, robot_links
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.arm_contact import DEPOSIT, NONE, NOZZLE, PLATFORM, ArmContact
+from freecad_am.core.kinematics.links import contact as arm_contact
+from freecad_am.core.kinematics.links import robot as robot_links
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links.contact import DEPOSIT, NONE, NOZZLE, PLATFORM, ArmContact
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.simulation.placing import placing
 from tests.posts.driven import bead_body

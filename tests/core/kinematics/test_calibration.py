@@ -6,8 +6,8 @@ import pytest
 import yaml
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import machine
 from freecad_am.core.kinematics.jacobian import condition, jacobian
+from freecad_am.core.kinematics.machines import machine
 
 kdl = pytest.importorskip("PyKDL")
 

@@ -9,7 +9,7 @@ import pytest
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 
 SETUPS = ("part-on-robot", "tool-on-robot")

@@ -6,8 +6,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry import frames
-from freecad_am.core.kinematics import machine
 from freecad_am.core.kinematics.chain import Chain
+from freecad_am.core.kinematics.machines import machine
 
 
 def product(chain, q):

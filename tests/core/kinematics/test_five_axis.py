@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry import frames
-from freecad_am.core.kinematics import machine
 from freecad_am.core.kinematics.chain import Chain
-from freecad_am.core.kinematics.five_axis import FiveAxis
+from freecad_am.core.kinematics.inverse.five_axis import FiveAxis
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.kdl.chain import KdlArm, available
 
 NAMES = ["table-xyzac", "table-xyzbc", "head-table-xyzbc", "head-xyzab"]

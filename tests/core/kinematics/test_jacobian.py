@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.kinematics import eigen, machine
+from freecad_am.core.kinematics import eigen
 from freecad_am.core.kinematics import jacobian as jac
+from freecad_am.core.kinematics.machines import machine
 
 LENGTH = 1000.0
 

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 
 
 @pytest.fixture

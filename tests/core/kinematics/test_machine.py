@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 
 GOOD = json.loads((machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
 
@@ -236,7 +236,7 @@ READS_A_MACHINE = """
 import locale
 locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
 assert locale.localeconv()["decimal_point"] == ","
-from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.machines import machine
 print(repr(float(machine.load("staubli-tx2-60l").limits("maker").upper[1])))
 """
 

@@ -9,19 +9,15 @@ import pytest
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import (
-    external,
-    machine,
-    machine_draft,
-    opw_recognition,
-    pendant,
-    pose_figures,
-    urdf,
-    urdf_cell,
-    urdf_text,
-)
-from freecad_am.core.kinematics.pendant import Shown
-from freecad_am.core.kinematics.urdf_reference import reference
+from freecad_am.core.kinematics import external
+from freecad_am.core.kinematics.inverse import opw_recognition
+from freecad_am.core.kinematics.machines import draft as machine_draft
+from freecad_am.core.kinematics.machines import machine, pendant, pose_figures
+from freecad_am.core.kinematics.machines.pendant import Shown
+from freecad_am.core.kinematics.urdf import cell as urdf_cell
+from freecad_am.core.kinematics.urdf import read as urdf
+from freecad_am.core.kinematics.urdf import text as urdf_text
+from freecad_am.core.kinematics.urdf.reference import reference
 from freecad_am.kdl.chain import KdlArm
 from tests.core.kinematics import urdf_cells
 from tests.core.kinematics.arms import EXAMPLES

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import machine, machine_catalogue
+from freecad_am.core.kinematics.machines import catalogue as machine_catalogue
+from freecad_am.core.kinematics.machines import machine
 
 kdl = pytest.importorskip("PyKDL")
 FILES = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(machine.BUILT_IN.glob("*.json"))}

@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import denavit_hartenberg as dh
-from freecad_am.core.kinematics import machine, opw_recognition, urdf, urdf_text
 from freecad_am.core.kinematics.chain import Chain
-from freecad_am.core.kinematics.opw import OpwArm
+from freecad_am.core.kinematics.inverse import opw_recognition
+from freecad_am.core.kinematics.inverse.opw import OpwArm
+from freecad_am.core.kinematics.machines import denavit_hartenberg as dh
+from freecad_am.core.kinematics.machines import machine
+from freecad_am.core.kinematics.urdf import read as urdf
+from freecad_am.core.kinematics.urdf import text as urdf_text
 from freecad_am.kdl.chain import KdlArm
 from tests.core.kinematics.arms import EXAMPLES
 

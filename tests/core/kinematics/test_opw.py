@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics import machine, opw, opw_inverse
+from freecad_am.core.kinematics.inverse import opw, opw_inverse
+from freecad_am.core.kinematics.machines import machine
 from tests.core.kinematics.arms import EXAMPLES
 
 MACHINES = [name for name in EXAMPLES if machine.load(name).opw is not None]

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import opw
 from freecad_am.core.kinematics.chain import Chain
-from freecad_am.core.kinematics.five_axis import is_five_axis
-from freecad_am.core.kinematics.inverse import recognition
+from freecad_am.core.kinematics.inverse import opw, recognition
+from freecad_am.core.kinematics.inverse.five_axis import is_five_axis
 from freecad_am.core.kinematics.inverse.parallel_axes import CHUNK, ParallelAxesArm
 from tests.core.kinematics.arms import CROOKED_UR, UR5E, UR10E, apart, chain, numeric, second_opinion
 

@@ -6,9 +6,10 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from freecad_am.core.geometry import frames
-from freecad_am.core.kinematics import machine as machines
-from freecad_am.core.kinematics import opw, robot_links
 from freecad_am.core.kinematics.cell import resolve
+from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.links import robot as robot_links
+from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.kinematics.proposed_cell import BALL, cell_of, proposed, searched
 from freecad_am.core.parameters.cell import CellParameters
 from tests.core.kinematics.arms import EXAMPLES

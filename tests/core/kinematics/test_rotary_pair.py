@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.kinematics import rotary_pair
+from freecad_am.core.kinematics.inverse import rotary_pair
 
 X, Y, Z = np.eye(3)
 PAIRS = [(X, Z), (Y, Z), (X, Y), (Z, X), (Y, X), (np.array([math.sqrt(0.5), 0.0, math.sqrt(0.5)]), Z)]

@@ -10,8 +10,9 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.surroundings import Body, box
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import link_rods, torch
-from freecad_am.core.kinematics.arm_contact import NONE, TORCH, ArmContact
+from freecad_am.core.kinematics import torch
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links.contact import NONE, TORCH, ArmContact
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 
 NOZZLE = NozzleParameters(half_angle=np.radians(30.0), diameter=4.0, length=50.0)

@@ -8,8 +8,8 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import external
-from freecad_am.core.kinematics.urdf_cell import UrdfCell, texts_of
-from freecad_am.core.kinematics.urdf_reference import Reference, reference
+from freecad_am.core.kinematics.urdf.cell import UrdfCell, texts_of
+from freecad_am.core.kinematics.urdf.reference import Reference, reference
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.external import externals
 from tests.core.kinematics.urdf_cells import FINGERS, fixed, placed, whole_cell, with_prefix

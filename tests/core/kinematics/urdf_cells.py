@@ -6,7 +6,9 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 
-from freecad_am.core.kinematics import external, machine, urdf_text
+from freecad_am.core.kinematics import external
+from freecad_am.core.kinematics.machines import machine
+from freecad_am.core.kinematics.urdf import text as urdf_text
 
 ROBOT, TRACK, POSITIONER = "kuka-kr8-r2100-2-arc-hw", "kuka-kl100-2", "motoman-motopos-d500"
 WHERE_TRACK, WHERE_POSITIONER = ("0.3 0.2 0", "0 0 1.5707963267948966"), ("1.7 0.25 0.3", "0 0 0.4")

@@ -12,12 +12,12 @@ from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.mesh.refined import Edges
 from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
-from freecad_am.core.layers.carried_on import carried_on
-from freecad_am.core.layers.chart import Chart
-from freecad_am.core.layers.eikonal import arrival, links
-from freecad_am.core.layers.flattening import flattened, stretched, turned
-from freecad_am.core.layers.level import Cubes
-from freecad_am.core.layers.voxels import Voxels, voxels
+from freecad_am.core.layers.charts.chart import Chart
+from freecad_am.core.layers.charts.flattening import flattened, stretched, turned
+from freecad_am.core.layers.curved.carried_on import carried_on
+from freecad_am.core.layers.curved.eikonal import arrival, links
+from freecad_am.core.layers.curved.level import Cubes
+from freecad_am.core.layers.curved.voxels import Voxels, voxels
 
 from .shapes import box, icosphere
 

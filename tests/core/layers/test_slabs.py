@@ -10,8 +10,8 @@ from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.layers.leaning import leaning
-from freecad_am.core.layers.slabs import below, group_of, outline, slabs
-from freecad_am.core.layers.stacking import stacked
+from freecad_am.core.layers.planes.slabs import below, group_of, outline, slabs
+from freecad_am.core.layers.planes.stacking import stacked
 from freecad_am.core.parameters.filled import SolidParameters
 from tests.core.strategies.test_solids_in_planes import CONE, box, hull, tube
 

@@ -10,7 +10,8 @@ import pytest
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import jacobian, link_rods
+from freecad_am.core.kinematics import jacobian
+from freecad_am.core.kinematics.links import rods as link_rods
 from freecad_am.core.motion import DEPOSIT
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -24,7 +25,7 @@ from freecad_am.core.placement.place import Placed, placed, ranked
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.simulation.timeline import timeline
-from freecad_am.core.strategies import revolution
+from freecad_am.core.strategies.revolution import plan as revolution
 from tests.core.planning.conftest import sphere
 
 PROCESS = ProcessParameters(travel_speed=20.0, lead_on=0.3, between_layers=dataclasses.replace(

@@ -13,7 +13,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.strategies import revolution
+from freecad_am.core.strategies.revolution import plan as revolution
 
 R0 = 45.0
 

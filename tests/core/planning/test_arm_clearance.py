@@ -12,18 +12,20 @@ from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import link_rods
+from freecad_am.core.kinematics.links import rods as link_rods
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.planning import arm_clear, arm_kept, search
+from freecad_am.core.planning.arm import clear as arm_clear
+from freecad_am.core.planning.arm import kept as arm_kept
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
+from freecad_am.core.planning.rotation import search
 from freecad_am.core.planning.task import Task
-from freecad_am.core.strategies import revolution
+from freecad_am.core.strategies.revolution import plan as revolution
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.conftest import sphere
 

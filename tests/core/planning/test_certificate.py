@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
 from freecad_am.core.planning import criteria
 from freecad_am.core.planning.certificate import bound as certificate

@@ -13,7 +13,7 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import machine as machines
+from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.external import External, externals
 from freecad_am.core.parameters.joints import JointParameters

@@ -16,7 +16,7 @@ from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
-from freecad_am.posts import fanuc
+from freecad_am.posts.fanuc import post as fanuc
 from tests.programs import build
 
 CHORD_ERROR = 0.05

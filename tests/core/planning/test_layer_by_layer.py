@@ -6,13 +6,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
-from freecad_am.core.planning import comparison, constant, refine_state, search
+from freecad_am.core.planning import comparison
 from freecad_am.core.planning import plan as planner
+from freecad_am.core.planning.methods import constant
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.reserve import RESERVE
+from freecad_am.core.planning.rotation import refine_state, search
 from freecad_am.core.planning.task import Task
 from freecad_am.kdl import chain as kdl
 

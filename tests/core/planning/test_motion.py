@@ -9,20 +9,21 @@ import pytest
 from freecad_am import verify
 from freecad_am.core.collision.bead_ends import Beads
 from freecad_am.core.issues import InputError, has_errors
-from freecad_am.core.kinematics import machine, opw
+from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters, StartParameters
+from freecad_am.core.planning.beads.straight import kept_straight
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.rapids import Moves as Driven
-from freecad_am.core.planning.rapids import Surroundings
-from freecad_am.core.planning.straight import kept_straight
+from freecad_am.core.planning.rapids.clearance import Moves as Driven
+from freecad_am.core.planning.rapids.clearance import Surroundings
 from freecad_am.core.planning.task import Task
 from freecad_am.core.program import FIRST_TIME, Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
 from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl import chain as kdl
-from freecad_am.objects.controllers import check_controller
+from freecad_am.objects.checks.controllers import check_controller
 from freecad_am.posts import catalogue
 from tests.programs import build
 

@@ -12,7 +12,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.surroundings import box
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import link_rods
+from freecad_am.core.kinematics.links import rods as link_rods
 from freecad_am.core.motion import TRAVEL
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.obstacles import Obstacle, obstacles

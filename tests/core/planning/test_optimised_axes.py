@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import JointParameters, given_text
-from freecad_am.core.planning import optimised
-from freecad_am.core.planning.external_rule import least_margin
-from freecad_am.core.planning.level import on_face
+from freecad_am.core.planning.external import optimised
+from freecad_am.core.planning.external.freedom import FAR
+from freecad_am.core.planning.external.level import on_face
+from freecad_am.core.planning.external.rule import least_margin
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task
-from freecad_am.core.planning.whole_freedom import FAR
 
 from .test_external_axes import POSITIONER, UP, cell_for, file_of_built_in, in_the_world, levelled_to
 

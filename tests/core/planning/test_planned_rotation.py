@@ -6,8 +6,8 @@ import pytest
 
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.planned_rotation import PARTED, rotation_along
 from freecad_am.core.planning.points import TURN
+from freecad_am.core.planning.rotation.planned import PARTED, rotation_along
 
 
 def beads_of(toolpath):

@@ -15,10 +15,10 @@ from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.preflight.checks import Evidence, promises
 from freecad_am.core.preflight.written import ReadBack
-from freecad_am.core.process.deposit_balance import Balance
+from freecad_am.core.process.deposit.balance import Balance
 from freecad_am.core.simulation.arm import ArmTouches
 from freecad_am.core.simulation.rapid_look import looked_at
-from freecad_am.core.strategies import clearance_look
+from freecad_am.core.strategies.clearance import look as clearance_look
 
 WIDTH, HEIGHT = 3.0, 10.0
 LINKS = ("base", "q1", "q2", "q3", "q4", "q5", "q6", "part", "nozzle")

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.planning import turns
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task
+from freecad_am.core.planning.turns import unwrap as turns
 from freecad_am.core.toolpath import Layer
 
 

@@ -12,8 +12,8 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.slicing import wall_direction
-from freecad_am.core.strategies.least_turn import least
+from freecad_am.core.slicing.directions import wall as wall_direction
+from freecad_am.core.strategies.clearance.least_turn import least
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 TURN = 2.0 * np.pi

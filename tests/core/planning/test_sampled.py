@@ -9,9 +9,9 @@ import pytest
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics.jacobian import condition, jacobian
 from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.planning.given import coefficients
-from freecad_am.core.planning.judgement import judged
 from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.rotation.given import coefficients
+from freecad_am.core.planning.rotation.headroom import judged
 from freecad_am.core.planning.sampled import sampled
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 

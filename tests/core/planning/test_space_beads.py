@@ -8,12 +8,12 @@ import pytest
 from scipy.optimize import minimize
 
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.planning import refine, search
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
+from freecad_am.core.planning.rotation import refine, search
 from freecad_am.core.planning.task import Task
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 

@@ -11,12 +11,17 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.surroundings import Body, disc
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import link_rods, opw, robot_links
-from freecad_am.core.kinematics.arm_contact import ArmContact
+from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.links import robot as robot_links
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import BRANCHES, JointParameters, given_polynomials, given_text
-from freecad_am.core.planning import plan, spin_across, spin_curve, spin_map
+from freecad_am.core.planning import plan
 from freecad_am.core.planning.points import TURN, gather
+from freecad_am.core.planning.redundancy import across as spin_across
+from freecad_am.core.planning.redundancy import curve as spin_curve
+from freecad_am.core.planning.redundancy import map as spin_map
 from freecad_am.core.planning.task import Task
 from freecad_am.kdl.chain import KdlArm
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.motion import APPROACH, DEPOSIT, TRAVEL, Motion
-from freecad_am.core.planning import steps
+from freecad_am.core.planning.beads import steps
 from freecad_am.posts import catalogue
 
 UR = catalogue.controller("ur")

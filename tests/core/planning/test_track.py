@@ -12,13 +12,14 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import machine as machines
+from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.planning import external_remedies, remedies
-from freecad_am.core.planning.level import figures
+from freecad_am.core.planning import remedies
+from freecad_am.core.planning.external import remedies as external_remedies
+from freecad_am.core.planning.external.level import figures
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath

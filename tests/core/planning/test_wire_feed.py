@@ -19,7 +19,9 @@ from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.program import DepositOff, DepositOn, Moves, Program
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
-from freecad_am.posts import catalogue, fanuc, staubli
+from freecad_am.posts import catalogue
+from freecad_am.posts.fanuc import post as fanuc
+from freecad_am.posts.staubli import post as staubli
 from freecad_am.verify import verify
 from tests.programs import build
 

@@ -8,8 +8,8 @@ import pytest
 from scipy.optimize import least_squares
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.process import bead_speed, bead_table
-from freecad_am.core.process.bead_model import fit
+from freecad_am.core.process.model import bead_speed, bead_table
+from freecad_am.core.process.model.bead_model import fit
 
 TABLE = [  # Dai 2020, table 1: radius mm, travel speed mm/min, width mm, height mm
     (30, 300, 12.52, 3.40), (30, 600, 9.86, 2.68), (30, 900, 9.14, 2.52), (50, 300, 12.44, 3.26), (50, 600, 9.46, 2.50),

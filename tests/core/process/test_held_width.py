@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
-from freecad_am.core.process import bead_speed, bead_table, held_width
+from freecad_am.core.process.model import bead_speed, bead_table, held_width
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 M, P, T = 85.550, 52.742, -1.7542  # Dai 2020, table 1 refitted (errata)

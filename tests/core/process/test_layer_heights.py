@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.preflight import deposit
-from freecad_am.core.process import layer_heights
+from freecad_am.core.process.deposit import layer_heights
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 RADIUS, HEIGHT, SPACING = 60.0, 2.0, 5.0

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.process import spacing
+from freecad_am.core.process.deposit import spacing
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 

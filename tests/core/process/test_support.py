@@ -16,8 +16,9 @@ from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.process import support as pieces_of_beads
-from freecad_am.core.strategies import revolution, support
+from freecad_am.core.process.deposit import support as pieces_of_beads
+from freecad_am.core.strategies import support
+from freecad_am.core.strategies.revolution import plan as revolution
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 

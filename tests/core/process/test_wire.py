@@ -11,9 +11,9 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.bead_classes import BeadEnd, BeadStart
 from freecad_am.core.parameters.process import MaterialParameters, ProcessParameters, WireParameters
 from freecad_am.core.preflight import deposit
-from freecad_am.core.process import bead_table, wire_taken
-from freecad_am.core.process.material import speeds_told
-from freecad_am.core.process.wire import fed
+from freecad_am.core.process.model import bead_table, wire_taken
+from freecad_am.core.process.model.material import speeds_told
+from freecad_am.core.process.model.wire import fed
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 ENDS = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]])

@@ -8,8 +8,9 @@ import pytest
 
 from freecad_am.core.geometry.surroundings import disc
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import link_rods, robot_links
-from freecad_am.core.kinematics.arm_contact import NONE, ArmContact
+from freecad_am.core.kinematics.links import robot as robot_links
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links.contact import NONE, ArmContact
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation import arm as arms
 

@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.kinematics import link_rods, machine, robot_links
-from freecad_am.core.kinematics import link_solids as solids
+from freecad_am.core.kinematics.links import robot as robot_links
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import solids
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.simulation import table_links
 from tests.core.kinematics.arms import EXAMPLES
 

@@ -11,7 +11,7 @@ import pytest
 from freecad_am.core.geometry import surroundings
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import machine as machines
+from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.simulation import deposit, payload

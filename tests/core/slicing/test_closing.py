@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.implicit import HalfSpace
-from freecad_am.core.slicing import fronts
+from freecad_am.core.slicing.fronts import layers as fronts
 from tests.core.patch_walls import ball, samples, sheet, tube
 
 FLOOR = HalfSpace(np.array([0.0, 0.0, -5.0]), np.array([0.1, 0.3, 1.0]))

@@ -9,9 +9,9 @@ from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder
 from freecad_am.core.geometry.walls.tabulated import Tabulated
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing import constant_distance, iso_parameter
 from freecad_am.core.slicing.first_layer import on_implicit, on_polyline
-from freecad_am.core.slicing.wall_layer import even_grid, local_distances
+from freecad_am.core.slicing.tubes import constant_distance, iso_parameter
+from freecad_am.core.slicing.tubes.wall_layer import even_grid, local_distances
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
 END = 0.5 * np.pi

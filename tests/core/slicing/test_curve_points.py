@@ -8,10 +8,10 @@ from freecad_am.core.geometry.curves.outline import outline
 from freecad_am.core.geometry.curves.space_curve import SpaceCurve
 from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.walls.surface import Torus
-from freecad_am.core.slicing import constant_distance
 from freecad_am.core.slicing.curve_points import within_chord
 from freecad_am.core.slicing.first_layer import on_implicit, on_polyline
-from freecad_am.core.slicing.wall_layer import even_grid
+from freecad_am.core.slicing.tubes import constant_distance
+from freecad_am.core.slicing.tubes.wall_layer import even_grid
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
 

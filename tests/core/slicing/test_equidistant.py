@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull
 
 from freecad_am.core.geometry.developable import TURN, Developable
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing.equidistant import Facets
+from freecad_am.core.slicing.solids.equidistant import Facets
 
 
 def hull(points):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.developable import Developable
-from freecad_am.core.slicing.equidistant import Facets
+from freecad_am.core.slicing.solids.equidistant import Facets
 
 SIDES = (32, 64, 128, 256)
 CONE = Developable(60.0, 200.0)

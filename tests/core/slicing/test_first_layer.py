@@ -8,7 +8,7 @@ from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Torus, cylinder
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing.first_layer import on_implicit, on_polyline
-from freecad_am.core.slicing.wall_layer import even_grid
+from freecad_am.core.slicing.tubes.wall_layer import even_grid
 
 TORUS = Torus(60.0, 15.0)
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])

@@ -7,10 +7,11 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Torus
-from freecad_am.core.slicing import constant_distance, fronts
 from freecad_am.core.slicing.first_layer import on_implicit
-from freecad_am.core.slicing.rims import Rims
-from freecad_am.core.slicing.wall_layer import even_grid
+from freecad_am.core.slicing.fronts import layers as fronts
+from freecad_am.core.slicing.fronts.rims import Rims
+from freecad_am.core.slicing.tubes import constant_distance
+from freecad_am.core.slicing.tubes.wall_layer import even_grid
 from tests.core.patch_walls import ball, bend, brute, samples, sheet, tube
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])

@@ -8,9 +8,9 @@ from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder
 from freecad_am.core.geometry.walls.tabulated import Tabulated
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing import normal_layers
 from freecad_am.core.slicing.first_layer import on_implicit
-from freecad_am.core.slicing.wall_layer import WallLayer, even_grid, local_distances
+from freecad_am.core.slicing.tubes import normal_layers
+from freecad_am.core.slicing.tubes.wall_layer import WallLayer, even_grid, local_distances
 
 
 @pytest.mark.parametrize("bend, tube, height", [(60.0, 15.0, 5.0), (60.0, 25.0, 5.0), (60.0, 15.0, 1.0), (40.0, 5.0, 2.0)])

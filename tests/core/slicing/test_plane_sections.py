@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from freecad_am.core.slicing.plane_sections import PlaneCuts
+from freecad_am.core.slicing.solids.plane_sections import PlaneCuts
 
 
 def hull(points):
@@ -108,7 +108,7 @@ def test_a_solid_that_touches_itself_along_an_edge():
 
 
 def test_planes_in_blocks_are_the_same(monkeypatch):
-    from freecad_am.core.slicing import plane_sections
+    from freecad_am.core.slicing.solids import plane_sections
 
     solid = hull(np.random.default_rng(9).normal(size=(80, 3)) * 20.0)
     heights = np.linspace(-20.0, 20.0, 50)

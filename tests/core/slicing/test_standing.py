@@ -10,9 +10,9 @@ from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base, Seat, Stretch, middle_azimuth, upright
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
-from freecad_am.core.slicing.equidistant import Facets
-from freecad_am.core.slicing.laid_flat import count, cut, opened
-from freecad_am.core.slicing.standing import hub_among, on_hub
+from freecad_am.core.slicing.solids.equidistant import Facets
+from freecad_am.core.slicing.solids.standing import hub_among, on_hub
+from freecad_am.core.slicing.solids.unrolled import count, cut, opened
 
 LOWER = Base("Face1", Developable(50.0), np.eye(4))
 UPPER = Base("Face2", Developable(30.0), upright(np.array([0.0, 0.0, 100.0]), np.array([0.0, 0.0, 1.0])))

@@ -17,7 +17,7 @@ from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.strategies.solids import filling
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
-from freecad_am.objects.store import pack, unpack
+from freecad_am.objects.results.store import pack, unpack
 from tests.core.strategies.test_developable import collar
 
 HUBS = {"cylinder": Developable(30.0), "cone": Developable(60.0, 200.0)}

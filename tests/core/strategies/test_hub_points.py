@@ -9,8 +9,8 @@ from freecad_am.core.filling.curve import PlaneCurve
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
-from freecad_am.core.layers.plane_layer import PlaneLayer
-from freecad_am.core.layers.round_layer import RoundLayer
+from freecad_am.core.layers.planes.layer import PlaneLayer
+from freecad_am.core.layers.rotary.layer import RoundLayer
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.beyond_hub import volume_beyond
 from freecad_am.core.geometry.developable import Developable
-from freecad_am.core.process import deposit_balance
+from freecad_am.core.process.deposit import balance as deposit_balance
 from tests.core.strategies.test_developable import away, box, collar, planned, solids
 
 CYLINDER, CONE = Developable(45.0), Developable(60.0, 200.0)

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from freecad_am.core.strategies.least_turn import BARRED, least
+from freecad_am.core.strategies.clearance.least_turn import BARRED, least
 
 
 def cost(states, allowed, weight, change, way):

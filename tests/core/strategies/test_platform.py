@@ -12,7 +12,7 @@ from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub, upright
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
-from freecad_am.core.strategies import platform
+from freecad_am.core.strategies.revolution import platform
 
 FRAME = np.array([[0.0, -1.0, 0.0, 30.0], [1.0, 0.0, 0.0, 40.0], [0.0, 0.0, 1.0, 5.0], [0.0, 0.0, 0.0, 1.0]])
 WALL = RevolvedWall(Meridian.chained([line((20.0, 0.0), (20.0, 10.0))]), FRAME, label="Cup")

@@ -16,8 +16,11 @@ from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.filled import CladdingParameters, DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import MOST_LAYERS, RevolutionParameters, SurfaceParameters
-from freecad_am.core.strategies import cladding, revolution, size, surface, wall_fronts
+from freecad_am.core.strategies import cladding, size
+from freecad_am.core.strategies.revolution import plan as revolution
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
+from freecad_am.core.strategies.walls import fronts as wall_fronts
+from freecad_am.core.strategies.walls import plan as surface
 from tests.core.strategies.test_developable import CONE, CYLINDER, box, collar, solids
 from tests.core.strategies.test_surface import TILTED, bend, tube
 from tests.core.strategies.test_wall_fronts import WALLS

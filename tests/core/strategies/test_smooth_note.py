@@ -12,8 +12,8 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.slicing.first_layer import on_implicit
-from freecad_am.core.slicing.wall_layer import even_grid
-from freecad_am.core.strategies import surface
+from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.strategies.walls import plan as surface
 
 
 @pytest.mark.parametrize("band, level, words", [

@@ -12,11 +12,11 @@ from scipy.spatial import ConvexHull, cKDTree
 from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
-from freecad_am.core.layers.stacking import stacked
+from freecad_am.core.layers.planes.stacking import stacked
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.process import spacing
+from freecad_am.core.process.deposit import spacing
 from freecad_am.core.strategies.solids.plan import plan
 
 ERROR = 0.05

@@ -11,7 +11,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.strategies import revolution
+from freecad_am.core.strategies.revolution import plan as revolution
 
 TURN = 2.0 * np.pi
 SPHERE = Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)])

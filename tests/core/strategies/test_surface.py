@@ -10,8 +10,8 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.process.spacing import between_layers
-from freecad_am.core.strategies import surface
+from freecad_am.core.process.deposit.spacing import between_layers
+from freecad_am.core.strategies.walls import plan as surface
 
 BEND, TUBE, PIPE = 60.0, 15.0, 32.0
 TILTED = np.array([[0.36, 0.48, -0.8, 5.0], [-0.8, 0.6, 0.0, -7.0], [0.48, 0.64, 0.6, 11.0], [0, 0, 0, 1]])

@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.core.geometry.walls.patch_wall import FirstCurve
 from freecad_am.core.slicing.curve_points import within_chord
-from freecad_am.core.strategies.wall_beads import NEAREST, traced
+from freecad_am.core.strategies.walls.beads import NEAREST, traced
 
 TINY = 3.1e-5
 

@@ -16,9 +16,21 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.strategies import clearance_knots, clearance_room, surface, tilt_search, wall_clearance
-from freecad_am.core.strategies.clearance_look import touched_at
-from freecad_am.core.strategies.wall_clearance import kept_clear
+from freecad_am.core.strategies.clearance import (
+    knots as clearance_knots,
+)
+from freecad_am.core.strategies.clearance import (
+    places as clearance_room,
+)
+from freecad_am.core.strategies.clearance import (
+    tilt_back as wall_clearance,
+)
+from freecad_am.core.strategies.clearance import (
+    tilt_search,
+)
+from freecad_am.core.strategies.clearance.look import touched_at
+from freecad_am.core.strategies.clearance.tilt_back import kept_clear
+from freecad_am.core.strategies.walls import plan as surface
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 BEND, TUBE, PIPE = 60.0, 15.0, 32.0

@@ -10,9 +10,9 @@ from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.slicing.first_layer import on_implicit
-from freecad_am.core.slicing.wall_layer import even_grid
-from freecad_am.core.strategies import wall_comparison
-from freecad_am.core.strategies.wall_comparison import NORMAL, Refused
+from freecad_am.core.slicing.tubes.wall_layer import even_grid
+from freecad_am.core.strategies.walls import comparison as wall_comparison
+from freecad_am.core.strategies.walls.comparison import NORMAL, Refused
 
 
 def bend(tube=15.0):

@@ -11,9 +11,9 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.process.spacing import between_layers
-from freecad_am.core.slicing import fronts
-from freecad_am.core.strategies import wall_fronts
+from freecad_am.core.process.deposit.spacing import between_layers
+from freecad_am.core.slicing.fronts import layers as fronts
+from freecad_am.core.strategies.walls import fronts as wall_fronts
 from tests.core.patch_walls import ball, bend, grid, patch_wall, samples, sheet, tube
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])

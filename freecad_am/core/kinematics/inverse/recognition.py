@@ -11,10 +11,10 @@ import numpy as np
 from ...geometry import frames
 from ...geometry.frames import Array
 from ...issues import InputError
-from .. import opw_recognition
 from ..chain import Chain
-from ..opw_recognition import NEAR_MM, POSITION, ROTATION, STRAIGHT, clean
+from . import opw_recognition
 from .offset_wrist import OffsetWristArm
+from .opw_recognition import NEAR_MM, POSITION, ROTATION, STRAIGHT, clean
 from .parallel_axes import ParallelAxesArm
 from .serial_arm import SerialArm
 

@@ -19,9 +19,9 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process import classes
-from ...process.bead_model import BeadModel
-from ...process.bead_speed import followed, radii
-from ...process.held_width import at_speed, of_segments
+from ...process.model.bead_model import BeadModel
+from ...process.model.bead_speed import followed, radii
+from ...process.model.held_width import at_speed, of_segments
 from ...toolpath import Bead
 from .filling import bead_width
 from .lean import Course, Lean, Turned, held

@@ -27,7 +27,7 @@ from ...layers.margins import ARCS
 from ...layers.surface import Slice
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
-from ...process.bead_model import BeadModel
+from ...process.model.bead_model import BeadModel
 
 Same = TypeVar("Same", bound=FilledParameters)
 

@@ -21,7 +21,7 @@ from ...geometry.developable import TURN, Array
 from ...geometry.regions.region import simplified
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
-from ...slicing.wall_direction import turn_rates
+from ...slicing.directions.wall import turn_rates
 from .spread import Line, Zones, means, too_fast
 
 Mask = NDArray[np.bool_]

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from ...issues import NOTE, Issue
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
-from ...process.bead_model import BeadModel
-from ...process.model_notes import of_model
+from ...process.model.bead_model import BeadModel
+from ...process.model.notes import of_model
 from ...toolpath import Layer
 from .beads import Rolled
 

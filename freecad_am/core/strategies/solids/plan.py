@@ -18,7 +18,7 @@ from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
-from ...process.bead_model import BeadModel
+from ...process.model.bead_model import BeadModel
 from ...process.order import Laid, ordered, waited
 from ...toolpath import Toolpath
 from .. import size

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`layer_height: auto` and `bead_spacing: auto` of a job: what its bead model says of straight beads."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import field as f
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.process.model import bead_table
+from freecad_am.core.process.model.wire import with_model
+
+from . import quantity
+
+WORD = "auto"
+HEIGHT, SPACING = "layer_height", "bead_spacing"
+
+
+def asked(section: Any) -> bool:
+    """Whether a section `strategy` leaves one of them to the model."""
+    return isinstance(section, dict) and WORD in (section.get(HEIGHT), section.get(SPACING))
+
+
+def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, Any]:
+    """The section with numbers in their place. The layer height is that of a straight bead; beads lie so far apart that
+    spacing times layer height is the wire that a millimetre of bead gets, for then what is fed is what fills the layer.
+    InputError BAD_VALUE without a bead model, or where beads would lie farther apart than they are wide."""
+    key = HEIGHT if section.get(HEIGHT) == WORD else SPACING
+    model = bead_table.of_process(process)
+    if model is None:
+        raise InputError(
+            "BAD_VALUE", f"strategy.{key}", "auto is what a bead model says, and there is none; give a length, a "
+            "process.bead_model or a process.material that has one",
+        )
+    speed = model.straight_speed(process.bead_width)
+    found = dict(section)
+    if found.get(HEIGHT) == WORD:
+        height = float(model.heights(np.array([speed]), np.array([np.inf]))[0])
+        found[HEIGHT] = f"{height!r} mm"
+    if found.get(SPACING) == WORD:
+        height = quantity.read(found.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}")
+        if not height > 0.0:
+            raise InputError("BAD_VALUE", f"strategy.{HEIGHT}", f"{height:g} mm is out of range; give more than 0 mm")
+        spacing = process.wire.section * with_model(process, model) / speed / height
+        if spacing > process.bead_width:
+            raise InputError(
+                "BAD_VALUE", f"strategy.{SPACING}", f"layers of {height:.4g} mm take beads {spacing:.4g} mm apart to hold "
+                f"the wire fed, and beads are {process.bead_width:g} mm wide; make layers higher, or beads wider",
+            )
+        found[SPACING] = f"{spacing!r} mm"
+    return found

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The section `cell` of a job, and saved cells: files of their own that jobs share."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import os
+from typing import Any
+
+from freecad_am.core.geometry.located import is_there
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import arrangement, proposed_cell
+from freecad_am.core.kinematics.machines import calibration
+from freecad_am.core.kinematics.urdf import cell as urdf_cell
+from freecad_am.core.kinematics.urdf import machine as urdf_machine
+from freecad_am.core.kinematics.urdf import reference as urdf_reference
+from freecad_am.core.parameters import external, obstacles, touched
+from freecad_am.core.parameters import field as f
+from freecad_am.core.parameters.cell import NO_SHAPE, CellParameters
+from freecad_am.objects import user_machines
+
+from . import fields, quantity, tree
+from .part_source import absolute
+
+PAPERS = "paper"  # limits
+
+
+def read(section: Any, path: str) -> CellParameters | None:
+    """The cell of a job file `path`, of its section or of the cell file that this names; None where there is none.
+
+    Raises InputError about a key of the job or of the cell file.
+    """
+    if isinstance(section, str) and section.strip():
+        return _of_file(absolute(section.strip(), path))
+    return None if section is None else _of_section(section, path)
+
+
+def _of_file(path: str) -> CellParameters:
+    saved = tree.read(path, "a cell", "machine: ...", "machine: and setup:")
+    saved.lines = {f"cell.{key}": line for key, line in saved.lines.items()}
+    try:
+        return _of_section(saved.values, path)
+    except InputError as error:
+        raise saved.placed(error) from None
+
+
+def _of_section(section: Any, path: str) -> CellParameters:
+    section = dict(fields.mapping(section, "cell"))
+    if section.get("machine") is not None:
+        section["machine"] = _machine(section["machine"], path)
+    external_axes = section.pop("external", None)
+    if external_axes == urdf_machine.WHOLE:
+        section["machine"], section["external"] = urdf_cell.texts_of_machine(section.get("machine"))
+    elif external_axes not in (None, []):
+        section["external"] = _external(external_axes, path)
+    around = section.pop("obstacles", None)
+    if around not in (None, []):
+        section["obstacles"] = _obstacles(around, path)
+    if isinstance(section.get("nozzle"), dict) and section["nozzle"].get("shape") not in (None, {}, NO_SHAPE):
+        section["nozzle"] = {**section["nozzle"], "shape": _shape(section["nozzle"]["shape"], path)}
+    if section.get("touched") not in (None, []):
+        section["touched"] = _touched(section["touched"])
+    if isinstance(section.get("world_up"), list):
+        numbers = [quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]]
+        section["world_up"] = " ".join(f"{number:.15g}" for number in numbers)
+    cell = fields.build(CellParameters, section, "cell")
+    arrangement.planned_of(cell.setup)
+    return cell if section.get("deposition_point") is not None else _proposed(cell, section.get("branch") is not None)
+
+
+def _proposed(cell: CellParameters, own_branch: bool) -> CellParameters:
+    """The cell with the deposition point, or the platform, that suits its machine, and with such a branch but for its own;
+    within the limits of the papers their robot works where it did there."""
+    if (cell.machine, cell.limits) == (CellParameters().machine, PAPERS):
+        return cell
+    with contextlib.suppress(InputError):  # of the machine, which is told where it is planned for
+        return proposed_cell.proposed(cell, user_machines.folders(), own_branch)
+    return cell
+
+
+def _machine(value: Any, path: str, key: str = "cell.machine") -> Any:
+    """What `cell.machine` says, the path of a file made absolute: of a machine file, or of a URDF with the links meant."""
+    if isinstance(value, dict) and value:
+        fields.known_keys(value, ("file", "base", "tip", "name", "calibration"), key)
+        texts = {name: fields.text(one, f"{key}.{name}").strip() for name, one in value.items() if one is not None}
+        if "calibration" in texts or "name" in texts:
+            return _calibrated(texts, path)
+        if "file" not in texts:
+            raise InputError("BAD_VALUE", f"{key}.file", "there is no file; write machine: {file: robot.urdf}")
+        meant = urdf_reference.reference(texts["file"])
+        if meant is None or len(texts["file"]) != len(meant.file):
+            raise InputError(
+                "BAD_VALUE", f"{key}.file", f"{texts['file']} is no URDF, which alone has links; write machine: "
+                "{file: robot.urdf, base: base_link, tip: tool0}, or the path of a machine file without braces",
+            )
+        return str(urdf_reference.Reference(absolute(meant.file, path), texts.get("base"), texts.get("tip")))
+    if not isinstance(value, str):
+        return value
+    measured = calibration.named(value)
+    if measured is not None:
+        return _calibrated({"name": measured.machine, "calibration": measured.file}, path)
+    meant = urdf_reference.reference(value)
+    if meant is not None:
+        return str(dataclasses.replace(meant, file=absolute(meant.file, path)))
+    return absolute(value, path) if os.sep in value or value.lower().endswith(".json") else value
+
+
+def _calibrated(texts: dict[str, str], path: str) -> str:
+    """A machine with the calibration of one robot as the text that a cell keeps."""
+    if set(texts) != {"name", "calibration"}:
+        raise InputError("BAD_VALUE", "cell.machine", "a calibration is that of a machine; write machine: {name: ur-ur10e, "
+                         "calibration: my_robot.yaml}")
+    return str(calibration.Named(_machine(texts["name"], path), absolute(texts["calibration"], path)))
+
+
+def _external(value: Any, path: str) -> str:
+    """What `cell.external` says as the text that a cell keeps, paths of files made absolute."""
+    if not isinstance(value, list):
+        raise InputError("BAD_VALUE", external.WHERE, "give a list such as - {machine: motoman-motopos-d500, pose: "
+                         "[1500, 0, 0, 0, 0, 0], carries: part}")
+    return f"{external.MORE} ".join(str(_one_external(one, f"{external.WHERE}[{k}]", path)) for k, one in enumerate(value))
+
+
+def _one_external(value: Any, key: str, path: str) -> external.External:
+    section = fields.mapping(value, key)
+    fields.known_keys(section, ("machine", "pose", "carries"), key)
+    pose = _pose(section.get("pose"), f"{key}.pose")
+    told = section.get("machine")
+    if not isinstance(told, dict):
+        told = fields.text(told, f"{key}.machine").strip()
+    machine = _machine(told, path, f"{key}.machine")
+    return external.External(machine, pose, section.get("carries") or external.PART)
+
+
+def _shape(value: Any, path: str) -> str:
+    """What `cell.nozzle.shape` says, the path of its file made absolute."""
+    key = "cell.nozzle.shape"
+    if isinstance(value, dict):
+        fields.known_keys(value, ("file",), key)
+        value, key = value.get("file"), f"{key}.file"
+    file = absolute(fields.text(value, key).strip(), path)
+    if not is_there(file):
+        raise InputError("NO_FILE", key, f"there is no file {file}; paths are relative to the job file")
+    return file
+
+
+def _touched(value: Any) -> str:
+    """What `cell.touched` says as the text that a cell keeps."""
+    if isinstance(value, str):
+        return value
+    if not isinstance(value, list):
+        raise InputError("BAD_VALUE", touched.WHERE, "give a list such as - {part: [0, 0, 0], robot: [900.4, 2.1, -99.7]}")
+    found = []
+    for number, one in enumerate(value):
+        key = f"{touched.WHERE}[{number}]"
+        section = fields.mapping(one, key)
+        fields.known_keys(section, ("part", "robot"), key)
+        found.append(touched.Touched(*(_point(section.get(name), f"{key}.{name}") for name in ("part", "robot"))))
+    return f"{touched.MORE} ".join(map(str, found))
+
+
+def _point(value: Any, key: str) -> touched.Point:
+    """Three lengths of a job file."""
+    if not isinstance(value, list) or len(value) != 3:
+        raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is no point; give [x, y, z]")
+    x, y, z = (quantity.read(number, f.LENGTH, key) for number in value)
+    return x, y, z
+
+
+def _pose(value: Any, key: str) -> external.Pose:
+    """Six quantities of a job file."""
+    if not isinstance(value, list) or len(value) != 6:
+        raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is not a pose; give [x, y, z, RX, RY, RZ]")
+    kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
+    x, y, z, a, b, c = (quantity.read(number, kind, key) for number, kind in zip(value, kinds, strict=True))
+    return x, y, z, a, b, c
+
+
+def _obstacles(value: Any, path: str) -> str:
+    """What `cell.obstacles` says as the text that a cell keeps, paths of files made absolute."""
+    if not isinstance(value, list):
+        raise InputError("BAD_VALUE", obstacles.WHERE, "give a list such as - {file: table.step, pose: [0, 0, "
+                         "-200, 0, 0, 0]}")
+    found = [_obstacle(one, f"{obstacles.WHERE}[{k}]", k + 1, path) for k, one in enumerate(value)]
+    return f"{obstacles.MORE} ".join(map(str, found))
+
+
+def _obstacle(value: Any, key: str, number: int, path: str) -> obstacles.Obstacle:
+    section = fields.mapping(value, key)
+    fields.known_keys(section, ("name", "file", "box", "pose"), key)
+    file, size = "", None
+    if section.get("file") is not None:
+        file = absolute(fields.text(section["file"], f"{key}.file").strip(), path)
+        if not is_there(file):
+            raise InputError("NO_FILE", f"{key}.file", f"there is no file {file}; paths are relative to the job file")
+    edges = section.get("box")
+    if edges is not None:
+        if not isinstance(edges, list) or len(edges) != 3:
+            raise InputError("BAD_VALUE", f"{key}.box", f"{quantity.shown(edges)} is no box; give its edges along x, y "
+                             "and z such as [1200, 800, 30]")
+        width, depth, height = (quantity.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
+        size = (width, depth, height)
+    name = section.get("name")
+    called = obstacles.usual_name(file, number) if name is None else fields.text(name, f"{key}.name").strip()
+    pose = _pose(section["pose"], f"{key}.pose") if section.get("pose") is not None else (0.0,) * 6
+    return obstacles.Obstacle(called, pose, file, size)

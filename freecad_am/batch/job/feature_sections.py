@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Sections of a feature in a job file, as the parameters that they mean."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+from freecad_am.core.geometry.curves.bead_curves import POINT_FILES
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import field as f
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import LayerParameters
+from freecad_am.core.strategies.families import AUTO, KINDS, NEEDED, NONE, family_of
+
+from . import classes as job_classes
+from . import fields, material, quantity
+from .part_source import PartSource, absolute, part_of
+
+
+def kept_clear(kind: str) -> tuple[str, ...]:
+    """The keys of `strategy` that are no parameters of the family: its kind, and what is picked of the part."""
+    return ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
+
+
+def process_of(section: Any, strategy: LayerParameters, path: str) -> ProcessParameters:
+    """The process, what its material says filled in; where solids are filled a bead width that the job gives is meant,
+    whatever it is."""
+    given = job_classes.told(material.filled_in(fields.mapping(section, "process"), path))
+    if "bead_width" in given and family_of(strategy).filled:
+        given = {"fill_width": "bead_width", **given}
+    return fields.build(ProcessParameters, given, "process")
+
+
+def with_path(process: ProcessParameters, path: str) -> ProcessParameters:
+    """A process with the file of its bead table found from the folder of the job."""
+    if process.bead_model == "none":
+        return process
+    from freecad_am.core.process.model import bead_table
+
+    if process.bead_model not in bead_table.BUILT_IN:
+        process = dataclasses.replace(process, bead_model=absolute(process.bead_model, path))
+    bead_table.load(process.bead_model)
+    return process
+
+
+def refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -> None:
+    """InputError for a build direction that the family of layers does not know."""
+    family = family_of(strategy)
+    if build_direction.mode not in family.modes:
+        raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why.format(build_direction.mode))
+
+
+def substrate_of(section: Any, strategy: Any, part: PartSource, path: str) -> PartSource | None:
+    """Where what a feature grows on comes from; None where it stands on the platform."""
+    family = family_of(strategy)
+    if part.start_edges and not family.edges:
+        raise InputError("NOT_FOR_FAMILY", "part.start_edges", "only strategy.kind surface starts from edges; leave "
+        "them out")
+    table = part.file.lower().endswith(tuple(POINT_FILES))
+    if family.kind != "curves" and (part.edges or table):
+        where, what = ("part.edges", "edges") if part.edges else ("part.file", "tables of points")
+        raise InputError("NOT_FOR_FAMILY", where, f"only strategy.kind curves lays {what} as beads; use it")
+    if table and (part.edges or part.faces):
+        raise InputError("NOT_FOR_FAMILY", "part.edges" if part.edges else "part.faces", "a table of points has no edges "
+                         "and no faces; leave them out")
+    if part.faces and not family.faces:
+        raise InputError("NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out")
+    if family.substrate == NEEDED:
+        if section is None:
+            return None
+        found = part_of(fields.mapping(section, "substrate"), path, "substrate")
+        if found.faces:
+            raise InputError(
+                "NOT_YET", "substrate.faces", f"{', '.join(found.faces)!r} is not supported yet; use the whole solid"
+            )
+        return found
+    if section is not None and family.substrate == NONE:
+        raise InputError("NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out")
+    return None if section is None else part_of(fields.mapping(section, "substrate"), path, "substrate")
+
+
+def strategy_of(section: Any) -> LayerParameters:
+    """Layers of the kind that a section names."""
+    kind = fields.mapping(section, "strategy").get("kind", "revolution")
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise f.unknown_choice("strategy.kind", kind, (*KINDS, AUTO.kind))
+    if kind == "solid" and section.get("layers") == "developable":  # which has a name of its own
+        kind, section = "developable", {key: value for key, value in section.items() if key != "layers"}
+    if kind == "developable":
+        section = _with_base(section)
+    if kind in ("solid", "curves"):
+        section = with_direction(section)
+    factory: type[LayerParameters] = KINDS[kind].parameters
+    return fields.build(factory, section, "strategy", also=kept_clear(kind))
+
+
+def with_direction(section: dict[str, Any]) -> dict[str, Any]:
+    """The section with a direction, a list of three numbers, as their text."""
+    direction = section.get("direction")
+    if not isinstance(direction, list):
+        return section
+    numbers = [quantity.read(number, f.NUMBER, "strategy.direction") for number in direction]
+    return {**section, "direction": " ".join(f"{number:.15g}" for number in numbers)}
+
+
+def _with_base(section: dict[str, Any]) -> dict[str, Any]:
+    """The section with a base of `auto` left out, and the axis, a point and a direction, as the text of six numbers."""
+    base = section.get("base")
+    if base == "auto":
+        return {key: value for key, value in section.items() if key != "base"}
+    if not isinstance(base, dict) or not isinstance(base.get("axis"), list):
+        return section
+    rows = base["axis"] if all(isinstance(row, list) for row in base["axis"]) else [base["axis"]]
+    numbers = [
+        quantity.read(number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, "strategy.base.axis")
+        for k, row in enumerate(rows) for number in row
+    ]
+    return {**section, "base": {**base, "axis": " ".join(f"{number:.15g}" for number in numbers)}}

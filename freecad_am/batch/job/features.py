@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The features of a job: what is deposited, on what, cut how; each with keys of its own, over those of the job."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.filled import SolidParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import LayerParameters
+from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family
+
+from . import auto_layers, fields, material, tree
+from . import classes as job_classes
+from .feature_sections import (
+    kept_clear,
+    process_of,
+    refuse_direction,
+    strategy_of,
+    substrate_of,
+    with_direction,
+    with_path,
+)
+from .part_source import PartSource, faces_of, fixtures_of, guide_of, part_of
+from .scan_source import ScanSource, scan_of, split
+
+# what a job calls the links of a feature, which the window picks in a document
+_KEYS = {
+    "Feature": "substrate", "Feature.BaseFaces": "substrate.faces", "Feature.Source": "part.faces",
+    "Feature.StartEdges": "part.start_edges", "Feature.StartFaces": "strategy.start_faces",
+}
+KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", "process")
+
+
+@dataclass(frozen=True)
+class JobFeature:
+    """What is deposited, and how. `substrate` is there as the family of the strategy has it (`core.strategies.families`), or
+    where what was deposited before may be it. `guide` of layers along one; None: their centre line. `start_faces` of the
+    part, that curved layers start on. `scan` of the substrate, that layers are fitted to."""
+
+    name: str
+    part: PartSource
+    substrate: PartSource | None
+    fixtures: tuple[PartSource, ...]
+    strategy: LayerParameters
+    build_direction: BuildDirectionParameters
+    process: ProcessParameters
+    guide: PartSource | None = None
+    sections: Any = dataclasses.field(default=None, repr=False, compare=False)  # of the job, where the family is left to us
+    start_faces: tuple[str, ...] = ()
+    scan: ScanSource | None = None
+
+
+def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
+    """The feature of the sections of a job file `path`, or of a feature in it.
+    Raises InputError that names key and what to do."""
+    if values.get("part") is None:
+        raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
+    part_section = fields.mapping(values["part"], "part")
+    if auto_layers.asked(values.get("strategy")):
+        process = process_of_all(values.get("process") or {}, path)
+        values = {**values, "strategy": auto_layers.resolved(values["strategy"], process)}
+    section = values.get("strategy")
+    if isinstance(section, dict) and section.get("kind") == AUTO.kind:
+        return _left_open(values, section, name, path)
+    strategy = strategy_of(_with_fuse(values.get("strategy") or {}, part_section))
+    process = with_path(process_of(values.get("process") or {}, strategy, path), path)
+    build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
+    refuse_direction(strategy, build_direction)
+    part = part_of({key: value for key, value in part_section.items() if key != "fuse"}, path)
+    guide = guide_of((values.get("strategy") or {}).get("guide"), part_section, path)
+    if guide is not None and getattr(strategy, "layers", "") != "along":
+        raise InputError("NOT_FOR_FAMILY", "strategy.guide", "only layers: along have a guide; leave it out, or use them")
+    start_faces = faces_of((values.get("strategy") or {}).get("start_faces"), "strategy.start_faces")
+    if start_faces and getattr(strategy, "layers", "") not in ("geodesic", "offset"):
+        raise InputError(
+            "NOT_FOR_FAMILY", "strategy.start_faces", "only layers: geodesic and offset start from faces; leave them out, "
+            "or use those layers",
+        )
+    ground, scanned = split(values.get("substrate"))
+    return JobFeature(
+        name, part, substrate_of(ground, strategy, part, path), fixtures_of(values.get("fixtures"), path), strategy,
+        build_direction, process, guide, start_faces=start_faces, scan=scan_of(scanned, strategy, path),
+    )
+
+
+def _left_open(values: dict[str, Any], section: dict[str, Any], name: str, path: str) -> JobFeature:
+    """A feature whose family is chosen once its part is known; keys may be those of any family."""
+    fields.known_keys(section, ("kind", *sorted({key for family in KINDS.values() for key in _keys(family)})), "strategy")
+    common = {key: value for key, value in section.items() if key in _keys(AUTO)}
+    part = {key: value for key, value in fields.mapping(values["part"], "part").items() if key != "fuse"}
+    ground, _ = split(values.get("substrate"))
+    substrate = None if ground is None else part_of(fields.mapping(ground, "substrate"), path, "substrate")
+    return JobFeature(
+        name, part_of(part, path), substrate,
+        fixtures_of(values.get("fixtures"), path), fields.build(LayerParameters, common, "strategy"),
+        fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"),
+        process_of_all(values.get("process") or {}, path),
+        sections=values,
+    )
+
+
+def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str) -> JobFeature:
+    """The feature with the family that was left open: of its keys those that the family has. mend: mm across of the largest
+    hole that is closed where the job does not say, 0 for what is usual. Raises InputError as any."""
+    values, family = dict(feature.sections), KINDS[kind]
+    section = {key: value for key, value in values["strategy"].items() if key in _keys(family)}
+    proposed = {**({"layers": layers} if layers else {}), **({"mend": f"{mend!r} mm"} if mend else {})}
+    values["strategy"] = {**proposed, **section, "kind": kind}
+    if family.substrate == NONE:
+        values.pop("substrate", None)
+    if kind != "solid" and isinstance(values["part"], dict):
+        values["part"] = {key: value for key, value in values["part"].items() if key != "fuse"}
+    return one_feature(values, feature.name, path)
+
+
+def planes_of(feature: JobFeature) -> SolidParameters:
+    """The direction in which planes would be stacked and how far apart, of a feature whose family is left open."""
+    section = with_direction(feature.sections["strategy"])
+    given = {key: section[key] for key in ("direction", "layer_height") if key in section}
+    return fields.build(SolidParameters, given, "strategy")
+
+
+def _keys(family: Family) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(family.parameters))
+
+
+def process_of_all(section: Any, path: str) -> ProcessParameters:
+    """The process of a program of several features, which may differ from it."""
+    given = job_classes.told(material.filled_in(fields.mapping(section, "process"), path))
+    process = fields.build(ProcessParameters, given, "process")
+    return with_path(process, path)
+
+
+def several(values: dict[str, Any], path: str, lines: tree.Tree) -> tuple[JobFeature, ...]:
+    """The features listed in a job file. Raises InputError that names feature and key."""
+    entries = values["features"]
+    if not isinstance(entries, list) or not entries:
+        raise InputError(
+            "BAD_VALUE", "features", "features are a list; write features: [{name: hub, part: {file: hub.step}}, ...]"
+        )
+    made: list[JobFeature] = []
+    for number, entry in enumerate(entries):
+        here = f"features[{number}]"
+        own = fields.mapping(entry, here)
+        fields.known_keys(own, KEYS, here)
+        name = fields.text(own["name"], f"{here}.name").strip() if own.get("name") is not None else f"feature {number + 1}"
+        if name in [one.name for one in made]:
+            raise InputError("BAD_VALUE", f"{here}.name", f"{name!r} is the name of another feature; give each its own")
+        try:
+            made.append(one_feature(_with_defaults(own, values), name, path))
+        except InputError as error:
+            raise about_feature(error, number, name, lines) from None
+    return tuple(made)
+
+
+def in_words_of_job(error: InputError, label: str = "Feature") -> InputError:
+    """An error about a link of the feature with that label as one about a key of the job."""
+    where = f"Feature{error.where.removeprefix(label)}" if error.where.startswith(label) else error.where
+    return InputError(error.code, _KEYS[where], error.message) if where in _KEYS else error
+
+
+def about_feature(error: InputError, number: int, name: str, lines: tree.Tree) -> InputError:
+    """An error about a key of a feature as one about a key of the job, the top level's where that has it."""
+    error = in_words_of_job(error, name)
+    root = error.where.split(".")[0].split("[")[0]
+    if root not in KEYS:
+        return InputError(error.code, error.where, f"feature {name}: {error.message}")
+    where = f"features[{number}].{error.where}"
+    if error.where in lines.lines and where not in lines.lines:
+        where = error.where
+    return InputError(error.code, where, f"feature {name}: {error.message}")
+
+
+def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
+    """The sections of a feature over those of the top level; of these that is left out which its family does not have."""
+    found = {key: top[key] for key in KEYS[1:] if top.get(key) is not None}
+    if isinstance(own.get("part"), dict) and "file" in own["part"]:
+        found.pop("part", None)  # faces and objects are those of a file
+    if isinstance(own.get("substrate"), dict) and "file" in own["substrate"]:
+        found.pop("substrate", None)
+    mixed = {**found, **{key: _over(found.get(key), own[key]) for key in KEYS[1:] if key in own}}
+    strategy = mixed.get("strategy")
+    kind = strategy.get("kind", "revolution") if isinstance(strategy, dict) else None
+    if not isinstance(kind, str) or kind not in KINDS:
+        return mixed
+    assert isinstance(strategy, dict)
+    if kind == "solid" and strategy.get("layers") == "developable":
+        kind = "developable"
+    family = KINDS[kind]
+    given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
+    known = (*kept_clear(kind), *_keys(family))
+    mixed["strategy"] = {key: value for key, value in strategy.items() if key in known or key in given}
+    if "substrate" not in own and family.substrate == NONE:
+        mixed.pop("substrate", None)
+    direction = mixed.get("build_direction")
+    if isinstance(direction, dict) and "mode" not in (own.get("build_direction") or {}) and (
+        direction.get("mode") not in family.modes
+    ):
+        mixed["build_direction"] = {key: value for key, value in direction.items() if key != "mode"}
+    process = mixed.get("process")
+    if isinstance(process, dict) and not family.filled and "bead_model" not in (own.get("process") or {}):
+        mixed["process"] = {key: value for key, value in process.items() if key != "bead_model"}
+    return mixed
+
+
+def _over(base: Any, own: Any) -> Any:
+    """A section over another, key by key."""
+    if not isinstance(base, dict) or not isinstance(own, dict):
+        return own
+    return {**base, **{key: _over(base.get(key), value) for key, value in own.items()}}
+
+
+def _with_fuse(section: Any, part: dict[str, Any]) -> Any:
+    """The section of the strategy with what the part says about solids that touch."""
+    if "fuse" not in part:
+        return section
+    if fields.mapping(section, "strategy").get("kind") != "solid":
+        raise InputError("NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; leave it out")
+    return {**section, "fuse": part["fuse"]}

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The job file: read, checked and turned into the parameters of every stage, before any work starts."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import field as f
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.place import PlaceParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.strategy import LayerParameters
+from freecad_am.core.strategies.sequence import BY_FEATURE, BY_HEIGHT
+
+from . import cell as job_cell
+from . import fields, quantity, tree
+from .features import JobFeature, one_feature, process_of_all, several
+from .part_source import PartSource
+
+SEQUENCES = (BY_FEATURE, BY_HEIGHT)
+SECTIONS = (
+    "version", "name", "part", "substrate", "fixtures", "strategy", "build_direction", "features", "sequence", "cell",
+    "joints", "process", "program", "place",
+)
+_LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
+
+
+@dataclass(frozen=True)
+class Job:
+    """A checked job. features: one or more, in the order of the file; sequence: in which they are deposited. process: of the
+    program; features may differ from it. `cell` or `program` None: the stages that need them are left out.
+    place: where the command of that name tries to put the part."""
+
+    path: str
+    name: str
+    features: tuple[JobFeature, ...]
+    sequence: str
+    joints: JointParameters
+    process: ProcessParameters
+    cell: CellParameters | None
+    program: ProgramParameters | None
+    tree: tree.Tree = field(repr=False, compare=False)
+    place: PlaceParameters = field(default_factory=PlaceParameters)
+
+    @property
+    def part(self) -> PartSource:
+        """The part of the first feature."""
+        return self.features[0].part
+
+    @property
+    def substrate(self) -> PartSource | None:
+        """The substrate of the first feature."""
+        return self.features[0].substrate
+
+    @property
+    def fixtures(self) -> tuple[PartSource, ...]:
+        """The fixtures of the first feature."""
+        return self.features[0].fixtures
+
+    @property
+    def strategy(self) -> LayerParameters:
+        """The strategy of the first feature."""
+        return self.features[0].strategy
+
+    @property
+    def build_direction(self) -> BuildDirectionParameters:
+        """The build direction of the first feature."""
+        return self.features[0].build_direction
+
+    @property
+    def folder(self) -> str:
+        """The folder of the job file, absolute; where relative paths start."""
+        return os.path.dirname(os.path.abspath(self.path))
+
+
+def read_job(path: str) -> Job:
+    """The job of a file. Raises InputError that names file, key and what to do."""
+    return from_tree(tree.read(path), path)
+
+
+def from_tree(job: tree.Tree, path: str) -> Job:
+    """The job of the values read from `path`, which may have been changed since (a row of a batch table)."""
+    try:
+        return _checked(job, path)
+    except InputError as error:
+        raise job.placed(error) from None
+
+
+def _checked(job: tree.Tree, path: str) -> Job:
+    values = job.values
+    fields.known_keys(values, SECTIONS, "")
+    version = values.get("version", 1)
+    if version != 1 or isinstance(version, bool):
+        raise InputError("BAD_VERSION", "version", f"{quantity.shown(version)} is not understood; this program reads 1")
+    name = _name(values.get("name"), path)
+    if values.get("features") is None:
+        if values.get("sequence") is not None:
+            raise InputError("BAD_VALUE", "sequence", "there is one feature alone; leave it out, or list features")
+        features: tuple[JobFeature, ...] = (one_feature(values, name, path),)
+        process = features[0].process
+    else:
+        process = process_of_all(values.get("process") or {}, path)
+        features = several(values, path, job)
+    program = _program(values.get("program"))
+    scan = next((one.scan for one in features if one.scan is not None), None)
+    if scan is not None and len(features) > 1:
+        raise InputError("NOT_YET", "substrate.scan", "several features in one job are not fitted to a scan yet; leave it "
+                         "out, or give each feature a job of its own")
+    if scan is not None and program is not None:
+        program = _resumed(program, scan.parameters.first)
+    sequence = values.get("sequence") or SEQUENCES[0]
+    if sequence not in SEQUENCES:
+        raise f.unknown_choice("sequence", sequence, SEQUENCES)
+    return Job(
+        path=path,
+        name=name,
+        features=features,
+        sequence=sequence,
+        joints=_joints(values.get("joints") or {}),
+        process=process,
+        cell=job_cell.read(values.get("cell"), path),
+        program=program,
+        tree=job,
+        place=fields.build(PlaceParameters, values.get("place") or {}, "place"),
+    )
+
+
+def _name(value: Any, path: str) -> str:
+    if value is None:
+        value = os.path.splitext(os.path.basename(path))[0]
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        value = str(value)
+    name = fields.text(value, "name").strip()
+    if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable():
+        shown = quantity.shown(name)
+        raise InputError("BAD_NAME", "name", f"{shown} names files; use no slash, control sign or leading dot")
+    if len(name.encode()) > _LONGEST_NAME:
+        raise InputError("BAD_NAME", "name", f"the name is too long for a file; use at most {_LONGEST_NAME} letters")
+    return name
+
+
+def _joints(section: Any) -> JointParameters:
+    one = fields.mapping(section, "joints").get("compare")
+    return fields.build(JointParameters, {**section, "compare": [one]} if isinstance(one, str) else section, "joints")
+
+
+def _resumed(program: ProgramParameters, layer: int) -> ProgramParameters:
+    """The program from this layer on, unless it says itself where it resumes: what lies below is there."""
+    if program.start_at.layer or program.start_at.bead:
+        return program
+    return replace(program, start_at=replace(program.start_at, layer=layer))
+
+
+def _program(section: Any) -> ProgramParameters | None:
+    if section is None:
+        return None
+    program = fields.build(ProgramParameters, section, "program")
+    return None if program.post == "none" else program

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Material files: what is known of a wire and its beads, which fills in what the section `process` of a job leaves out.
+
+`process.material` names one that is built in, or the path of a YAML file from the job's folder.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from freecad_am.core.geometry.located import is_there
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import bead_classes
+from freecad_am.core.parameters import field as f
+from freecad_am.core.process.model import bead_table
+
+from . import fields, quantity, tree
+from .part_source import absolute
+
+KEY = "process.material"
+FOLDER = Path(__file__).resolve().parents[2] / "materials"
+ENDING = ".yaml"
+CARRIED = ("density", "temperature", "gas", "stand_off", "travel_speed")  # as the process has them
+KEYS = ("name", "source", *CARRIED, "wire", "speed_range", "schedules", "beads")
+NEEDED = ("source", "density")
+WIRE = ("diameter", "feed")
+ALL = "all"  # in schedules: of beads whose class is not named
+
+
+def built_in() -> list[str]:
+    """Names of the materials that come with the program."""
+    return sorted(path.stem for path in FOLDER.glob(f"*{ENDING}"))
+
+
+def filled_in(section: Any, path: str) -> Any:
+    """The section `process` of the job file `path` with what its material says and it does not itself; a section without a
+    file of one as it is. InputError about a key of the job or of the material file."""
+    if not isinstance(section, dict) or not isinstance(section.get("material"), str):
+        return section
+    file = _file(section["material"].strip(), path)
+    saved = tree.read(str(file), "a material", "source: and density:", "source: and density:")
+    try:
+        told = _defaults(saved.values, file)
+    except InputError as error:
+        raise saved.placed(error) from None
+    return _over(told, section)
+
+
+def _file(name: str, path: str) -> Path:
+    """The file that a name means: one in the job's folder, else one that is built in."""
+    own = Path(absolute(name, path))
+    if is_there(own):
+        return own
+    known = FOLDER / f"{name.removesuffix(ENDING)}{ENDING}"
+    if name.removesuffix(ENDING) in built_in():
+        return known
+    raise InputError(
+        "NO_FILE", KEY, f"there is no material {quantity.shown(name)}; give one of {', '.join(built_in())}, or the path of "
+        "a material file",
+    )
+
+
+def _defaults(values: dict[str, Any], file: Path) -> dict[str, Any]:
+    """What a material file says, as a section `process`. InputError about its keys."""
+    fields.known_keys(values, KEYS, "")
+    for key in NEEDED:
+        if values.get(key) in (None, {}):
+            raise InputError("BAD_VALUE", key, f"a material needs its {key}, and there is none; write {key}: ...")
+    source = " ".join(fields.text(values["source"], "source").split())
+    slowest, fastest = _range(values.get("speed_range"))
+    name = values.get("name")
+    told: dict[str, Any] = {
+        "material": {
+            "name": file.stem if name in (None, {}) else fields.text(name, "name"), "source": source,
+            **({} if slowest is None else {"slowest": slowest, "fastest": fastest}),
+        },
+        **{key: values[key] for key in CARRIED if values.get(key) not in (None, {})},
+    }
+    told |= _checked(told, values, slowest, fastest)
+    if values.get("schedules") not in (None, {}):
+        told |= _schedules(values["schedules"])
+    if values.get("beads") not in (None, {}):
+        told["bead_model"] = _beads(values, file, slowest, fastest)
+    return told
+
+
+def _range(value: Any) -> tuple[float | None, float | None]:
+    """The slowest and the fastest travel speed, mm/s."""
+    if value in (None, {}):
+        return None, None
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError("BAD_VALUE", "speed_range", f"{quantity.shown(value)} is not a range; give [slowest, fastest]")
+    low, high = (quantity.read(end, f.SPEED, "speed_range") for end in value)
+    if not 0.0 < low <= high < 1e9:
+        raise InputError("BAD_VALUE", "speed_range", f"{low:g} to {high:g} mm/s is not a range; give the slower speed "
+                         "first, both more than 0")
+    return low, high
+
+
+def _checked(told: dict[str, Any], values: dict[str, Any], slowest: float | None, fastest: float | None) -> dict[str, Any]:
+    """The wire; what numbers there are is looked at, so that it is told with the line of this file."""
+    for key, kind in (("density", f.NUMBER), ("temperature", f.NUMBER), ("stand_off", f.LENGTH), ("travel_speed", f.SPEED)):
+        number = quantity.read(told[key], kind, key) if key in told else 1.0
+        if key in ("density", "travel_speed") and not 0.0 < number < 1e9:
+            raise InputError("BAD_VALUE", key, f"{quantity.shown(told[key])} is out of range; give more than 0")
+        if key == "travel_speed" and key in told and slowest is not None and not slowest <= number <= (fastest or 0.0):
+            raise InputError("BAD_VALUE", key, f"{quantity.shown(told[key])} is outside of speed_range; mend one of them")
+    if values.get("wire") in (None, {}):
+        return {}
+    wire = fields.mapping(values["wire"], "wire")
+    fields.known_keys(wire, WIRE, "wire")
+    for key, kind in zip(WIRE, (f.LENGTH, f.SPEED), strict=True):
+        if key in wire and not 0.0 < quantity.read(wire[key], kind, f"wire.{key}") < 1e9:
+            raise InputError("BAD_VALUE", f"wire.{key}", f"{quantity.shown(wire[key])} is out of range; give more than 0")
+    return {"wire": dict(wire)}
+
+
+def _schedules(value: Any) -> dict[str, Any]:
+    """The table of schedules, by classes of beads."""
+    table = fields.mapping(value, "schedules")
+    fields.known_keys(table, (ALL, *bead_classes.CLASSES), "schedules")
+    for name, number in table.items():
+        if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= bead_classes.LARGEST_SCHEDULE:
+            raise InputError("BAD_VALUE", f"schedules.{name}", f"{quantity.shown(number)} is no number of a schedule; give "
+                             f"a whole number from 1 to {bead_classes.LARGEST_SCHEDULE}")
+    classes = {name: {"schedule": number} for name, number in table.items() if name != ALL}
+    return {**({"schedule": table[ALL]} if ALL in table else {}), **({"classes": classes} if classes else {})}
+
+
+def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: float | None) -> str:
+    """The bead table, which fits the wire feed and the speeds of the file."""
+    name = fields.text(values["beads"], "beads").strip()
+    if name not in bead_table.BUILT_IN:
+        name = absolute(name, str(file))
+    model = bead_table.load(name)
+    low, high = model.speeds
+    if slowest is not None and fastest is not None and (fastest < low or slowest > high):
+        raise InputError(
+            "BAD_VALUE", "beads", f"the beads of {os.path.basename(name)} were laid at {low:.4g} to {high:.4g} mm/s, and "
+            f"speed_range is {slowest:.4g} to {fastest:.4g} mm/s; mend one of them",
+        )
+    feed = (values.get("wire") or {}).get("feed")
+    if feed not in (None, "auto"):
+        given = quantity.read(feed, f.SPEED, "wire.feed")
+        least, most = model.feeds or (model.wire_feed, model.wire_feed)
+        if not 0.99 * least <= given <= 1.01 * most:
+            raise InputError(
+                "BAD_VALUE", "wire.feed", f"{given:.4g} mm/s is not a wire feed of {os.path.basename(name)}, whose beads "
+                f"were laid at {least:.4g} to {most:.4g} mm/s; leave it out, or give one of these",
+            )
+    return name
+
+
+def _over(told: dict[str, Any], section: dict[str, Any]) -> dict[str, Any]:
+    """What a job says over what its material does, key by key; classes that the job has as a text are its own."""
+    found = {**told, **{key: value for key, value in section.items() if key != "material"}}
+    for key in ("wire", "classes"):
+        own = section.get(key)
+        if isinstance(own, dict) and key in told:
+            found[key] = {**told[key], **own}
+            if key == "classes":
+                found[key] |= {
+                    name: {**told[key][name], **(one or {})} for name, one in own.items()
+                    if name in told[key] and (one is None or isinstance(one, dict))
+                }
+    return found

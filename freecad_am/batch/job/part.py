@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Brings a job's part into a document; of an FCStd part, sets properties first and recomputes it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import Any
+
+import FreeCAD as App
+
+from freecad_am import api
+from freecad_am.brep.files.apart import apart
+from freecad_am.brep.shapes.chosen import solids_of
+from freecad_am.core.geometry.mesh.file_unit import MESHES
+from freecad_am.core.issues import InputError
+from freecad_am.objects.shapes import document_file
+
+from .part_source import PartSource
+
+PATIENCE = 100.0  # times as long as reading a document may take; building a part of other values may be long work
+
+
+def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = False) -> Any:
+    """The part, or what else the job's section `key` names, as an object of the document. meshes: the part may be one.
+
+    Raises the InputErrors of `api.open_part`, NO_OBJECT and BAD_VALUE.
+    """
+    if key == "part" and not meshes and part.file.lower().endswith(MESHES):
+        raise _no_surfaces()
+    obj = _opened(document, part, key)
+    if key == "part" and not meshes and getattr(obj, "Mesh", None) is not None:
+        raise _no_surfaces()
+    return _only_solids(obj, part, key)
+
+
+def _no_surfaces() -> InputError:
+    return InputError(
+        "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces: a part of this family needs STEP, IGES, "
+        "BREP or FCStd; a mesh may be the substrate, or a fixture",
+    )
+
+
+def _opened(document: Any, part: PartSource, key: str) -> Any:
+    if not part.settings:
+        return api.open_part(document, part.file, part.object or "", part.scale)
+    with tempfile.TemporaryDirectory() as folder:
+        changed = os.path.join(folder, os.path.basename(part.file))
+        apart(lambda _: _save_changed(part, changed, key), part.file, patience=PATIENCE)
+        return api.open_part(document, changed, part.object or "")
+
+
+def _only_solids(obj: Any, part: PartSource, key: str) -> Any:
+    """The object, with those solids alone that are named. InputError BAD_VALUE for one that there is not."""
+    if not part.solids:
+        return obj
+    if getattr(obj, "Mesh", None) is not None:
+        raise InputError("BAD_VALUE", f"{key}.solids", f"{obj.Label} is a mesh, which has no solids; leave them out")
+    solids = obj.Shape.Solids
+    numbers = [int(name.removeprefix("Solid")) for name in part.solids]
+    wrong = [name for name, number in zip(part.solids, numbers) if number > len(solids)]
+    if wrong:
+        raise InputError(
+            "BAD_VALUE", f"{key}.solids", f"{obj.Label} has {len(solids)} solid(s), and no {', '.join(wrong)}; name others"
+        )
+    obj.Shape = solids_of(obj.Shape, numbers)
+    obj.Label = f"{obj.Label} {', '.join(part.solids)}"
+    obj.purgeTouched()
+    return obj
+
+
+def _save_changed(part: PartSource, path: str, section: str) -> None:
+    active = App.ActiveDocument
+    source = document_file.open_here(part.file, part.file)
+    try:
+        for name, key, text in part.settings:
+            _set(source, name, key, text, section)
+        source.recompute()
+        invalid = [obj.Label for obj in source.Objects if "Invalid" in obj.State]
+        if invalid:
+            names = ", ".join(invalid)
+            raise InputError("BAD_PART", f"{section}.set", f"with these values {names} cannot be built; change them")
+        source.saveAs(path)
+    finally:
+        App.closeDocument(source.Name)
+        if active is not None:
+            App.setActiveDocument(active.Name)
+
+
+def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
+    place = f"{section}.set.{name}.{key}"
+    name, constraints, _ = name.partition(".Constraints")
+    found = [obj for obj in document.Objects if obj.Name == name] or document.getObjectsByLabel(name)
+    if len(found) != 1:
+        names = ", ".join(obj.Label for obj in document.Objects)
+        raise InputError("NO_OBJECT", place, f"{len(found)} objects are called {name!r}; there are {names}")
+    obj = found[0]
+    try:
+        if constraints:
+            obj.setDatum(key, App.Units.Quantity(text))
+        elif key not in obj.PropertiesList:
+            raise AttributeError(key)
+        elif obj.TypeId == "Spreadsheet::Sheet":
+            obj.set(obj.getCellFromAlias(key) or key, text)
+        else:
+            obj.setExpression(key, None)  # a value that is set is meant, whatever it was computed from
+            setattr(obj, key, _typed(getattr(obj, key), text))
+    except AttributeError:
+        near = ", ".join(sorted(obj.PropertiesList))
+        raise InputError("BAD_VALUE", place, f"{name} has no property {key!r}; it has {near}") from None
+    except (ValueError, TypeError, ArithmeticError, RuntimeError, IndexError, NameError):
+        message = f"{text!r} does not fit this property; give a value such as it has now"
+        raise InputError("BAD_VALUE", place, message) from None
+
+
+def _typed(now: Any, text: str) -> Any:
+    """The text as a value of the kind that the property has now."""
+    if "," in text and not isinstance(now, str):
+        raise ValueError(text)
+    if isinstance(now, App.Units.Quantity):
+        quantity = App.Units.Quantity(text)
+        if quantity.Unit != now.Unit and quantity.Unit != App.Units.Unit():
+            raise ValueError(text)
+        return quantity
+    if isinstance(now, bool):
+        if text not in ("true", "false"):
+            raise ValueError(text)
+        return text == "true"
+    if isinstance(now, int):
+        return int(text)
+    return float(text) if isinstance(now, float) else text

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The folder of outputs: files appear whole or not at all, inside it alone, and only our own are ever removed."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from freecad_am.core.issues import InputError
+from freecad_am.posts import earlier as earlier_posts
+
+from .. import supervised
+from . import staging
+
+WAYPOINTS, REPORT, PAGE, PROGRAMS, WIRES = "waypoints.csv", "report.json", "report.html", "program", "wires"
+DOCUMENT_ENDING = ".FCStd"
+LARGEST_REPORT = 1 << 28  # bytes of a report that is looked into for what an earlier run wrote
+
+
+class Outputs:
+    """Collects the files of a run in a hidden folder of the target and moves them into place at the end.
+
+    Use as a context: leaving it without `publish` removes everything that was collected, and the target folder is as it
+    was. Raises InputError UNWRITABLE at once where the target cannot be written, or a link leads out of it. `session` is
+    told of other runs in the same folder, and that the files are there.
+    """
+
+    def __init__(self, folder: str, session: Any = None) -> None:
+        self.folder = os.path.abspath(folder)
+        self._session = session
+        self._made: list[str] = []
+        try:
+            self._make_folder()
+            staging.refuse(self.folder, [f"{inside}/any" for inside in (PROGRAMS, WIRES)])
+            self._staging = staging.Staging(self.folder)
+        except (OSError, ValueError) as error:
+            self._remove_made()
+            raise self._unwritable(getattr(error, "filename", None) or self.folder, error) from None
+        except BaseException:  # Ctrl-C
+            self._remove_made()
+            raise
+        supervised.tell_outputs(self.folder, self._made)
+        if self._staging.others and session is not None:
+            session.say(f"note[BUSY] {self.folder}: another run writes into this folder too; what ends last stays; give one "
+                        "of them another folder with -o")
+
+    def __enter__(self) -> Outputs:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._staging.remove()
+        self._remove_made()
+
+    def path(self, name: str) -> str:
+        """Where to write the file `name` (slashes for folders) of this run."""
+        path = os.path.join(self._staging.files, *name.split("/"))
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        return path
+
+    def write(self, name: str, data: bytes | Iterable[str]) -> None:
+        """Write a file of this run; text in pieces, as UTF-8 with the line ends it has."""
+        try:
+            with open(self.path(name), "wb") as stream:
+                stream.writelines([data] if isinstance(data, bytes) else (piece.encode() for piece in data))
+        except OSError as error:
+            raise self._unwritable(os.path.join(self.folder, *name.split("/")), error) from None
+
+    def publish(self, earlier: set[str]) -> list[str]:
+        """Move every file into place; the names, sorted. Ctrl-C and requests to end wait meanwhile.
+
+        What of `earlier` this run has not is removed first: no program must stay beside a report that does not know it. The
+        report comes last.
+        """
+        names = sorted(_files(self._staging.files))
+        with staging.uninterrupted():
+            try:
+                self._staging.publish(sorted(names, key=lambda name: (name == REPORT, name)), sorted(earlier - set(names)))
+            except OSError as error:
+                raise self._unwritable(error.filename or self.folder, error) from None
+            if self._session is not None:
+                self._session.outcome = "the outputs were in place already"
+        return names
+
+    def _unwritable(self, path: str, error: Exception) -> InputError:
+        reason = getattr(error, "strerror", None) or str(error)
+        message = f"outputs cannot be written here ({reason}); free it or choose another folder with -o"
+        return InputError("UNWRITABLE", path, message)
+
+    def _make_folder(self) -> None:
+        missing = []
+        path = self.folder
+        while not os.path.lexists(path):
+            missing.append(path)
+            path = os.path.dirname(path)
+        for path in reversed(missing):
+            try:
+                os.mkdir(path)
+                self._made.append(path)
+            except FileExistsError:
+                if not os.path.isdir(path):  # else another row of the batch was quicker
+                    raise
+
+    def _remove_made(self) -> None:
+        for path in reversed(self._made):
+            try:
+                os.rmdir(path)  # fails where something was published, which is what keeps it
+            except OSError:
+                return
+
+
+def earlier_programs(folder: str) -> set[str]:
+    """Names of the programs and applications of ours in program/ with their parts."""
+    if os.path.islink(os.path.join(folder, PROGRAMS)):
+        return set()
+    found = earlier_posts.programs(os.path.join(folder, PROGRAMS)).values()
+    return {f"{PROGRAMS}/{name}" for names in found for name in names}
+
+
+def earlier_outputs(folder: str) -> set[str]:
+    """Names of the outputs of an earlier run: those its report tells of, and programs of ours in program/."""
+    names = earlier_programs(folder)
+    report = _earlier_report(folder)
+    if report is None:
+        return names
+    told = {name for name in report["programs"] if staging.is_inside(name) and name.startswith(PROGRAMS + "/")}
+    whole = {name for name in told if not _is_behind_link(folder, name)}
+    return names | whole | {WAYPOINTS, REPORT, PAGE, report["name"] + DOCUMENT_ENDING}
+
+
+def _is_behind_link(folder: str, name: str) -> bool:
+    try:
+        staging.refuse(folder, [name])
+    except OSError:
+        return True
+    return False
+
+
+def _earlier_report(folder: str) -> dict[str, Any] | None:
+    path = os.path.join(folder, REPORT)
+    try:
+        if not os.path.isfile(path) or os.path.getsize(path) > LARGEST_REPORT:
+            return None
+        with open(path, encoding="utf-8") as stream:
+            report = json.load(stream)
+    except (OSError, ValueError, RecursionError):
+        return None
+    if not isinstance(report, dict) or not isinstance(report.get("programs"), list) or "issues" not in report:
+        return None  # somebody else's
+    name = report.get("name")
+    return report if staging.is_inside(name) and "/" not in str(name) else None
+
+
+def _files(folder: str) -> Iterator[str]:
+    for root, _, files in os.walk(folder):
+        for file in files:
+            yield os.path.relpath(os.path.join(root, file), folder).replace(os.sep, "/")

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What rows of a batch have come to, a line for each as it ends, so that a batch that was interrupted goes on.
+
+A row counts as done where its job, the files that this names, our code and FreeCAD are what they were, and its outputs are
+still there.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+from typing import Any
+
+from ..outputs.folder import REPORT
+from .process import CHECKED
+from .table import Row
+
+NAME = ".rows.jsonl"
+KEPT = (0, 3)  # how rows end that there is nothing to try again of
+
+
+class Journal:
+    """The journal of a folder. resume: whether what it knows counts; else it begins anew."""
+
+    def __init__(self, folder: str, made_by: str, resume: bool) -> None:
+        """made_by: what the results depend on besides jobs and their files."""
+        self._folder, self._made_by, self._path = folder, made_by, os.path.join(folder, NAME)
+        self._files: dict[str, str] = {}
+        self._known = dict(self._lines()) if resume else {}
+        if not resume:
+            with contextlib.suppress(OSError):
+                os.remove(self._path)
+
+    def known(self, row: Row, dry: bool) -> dict[str, Any] | None:
+        """The result of a row that was done before; None without one."""
+        found = self._known.get(self._digest(row, dry))
+        if found is None or found["folder"] != row.folder or (not dry and found["report"] != self._report(row)):
+            return None
+        result: dict[str, Any] = found["result"]
+        return result
+
+    def keep(self, row: Row, dry: bool, result: dict[str, Any]) -> None:
+        """Write down what a row has come to, whose outputs are in place."""
+        if result["exit"] not in KEPT:
+            return
+        told = {name: value for name, value in result.items() if name != "lines"}
+        line = json.dumps({"digest": self._digest(row, dry), "folder": row.folder,
+                           "report": "" if result.get("status") == CHECKED else self._report(row), "result": told})
+        with contextlib.suppress(OSError):  # then the row is done again
+            os.makedirs(self._folder, exist_ok=True)
+            flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+            with open(os.open(self._path, flags, 0o644), "a", encoding="utf-8") as stream:
+                stream.write(line + "\n")
+
+    def _lines(self) -> list[tuple[str, dict[str, Any]]]:
+        """What stands in the file; a line that a killed batch has not ended is left out."""
+        found = []
+        try:
+            with open(self._path, encoding="utf-8", errors="replace") as stream:
+                for text in stream:
+                    with contextlib.suppress(ValueError, TypeError, KeyError):
+                        line = json.loads(text)
+                        line["result"]["exit"], line["result"]["message"], line["folder"], line["report"]
+                        found.append((str(line["digest"]), line))
+        except OSError:
+            return []
+        return found
+
+    def _digest(self, row: Row, dry: bool) -> str:
+        files = {name: self._file(name) for name in sorted(row.files)}
+        told = json.dumps([self._made_by, row.tree().values, os.path.abspath(row.path), files, dry], sort_keys=True)
+        return hashlib.sha256(told.encode()).hexdigest()
+
+    def _file(self, name: str) -> str:
+        """The digest of a file, looked at once in a batch; '' where there is none."""
+        if name not in self._files:
+            self._files[name] = digest(name)
+        return self._files[name]
+
+    def _report(self, row: Row) -> str:
+        """The digest of a row's report, which is written last of its outputs."""
+        return digest(os.path.join(self._folder, row.folder, REPORT)) or "none"
+
+
+def digest(path: str) -> str:
+    """The SHA-256 of a file; '' where there is none to be read."""
+    if not os.path.isfile(path):
+        return ""
+    try:
+        with open(path, "rb") as stream:
+            return hashlib.sha256(stream.read()).hexdigest()
+    except OSError:
+        return ""

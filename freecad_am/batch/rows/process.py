@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A row of a batch in a process of its own: one that brings OpenCASCADE down takes no other with it."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from freecad_am.core.issues import AmError, Issue, has_errors
+
+from .. import run as planning
+from .. import supervised
+from ..console import Session
+from ..job import job, tree
+
+CHECKED = "checked"  # status of a row that was not planned
+
+
+@dataclass(frozen=True)
+class Order:
+    """What a process is to do: plan the job of these `values`, read from the file `path`, into a folder, or only look
+    whether there is anything to refuse (`dry`). label: what messages call the job."""
+
+    label: str
+    values: dict[str, Any]
+    path: str
+    folder: str
+    dry: bool
+
+
+def started(order: Order) -> tuple[Any, Any]:
+    """The end of a pipe that its result comes out of, and the process."""
+    context: Any = multiprocessing.get_context("fork" if sys.platform.startswith("linux") else "spawn")
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=_carry_out, args=(order, sender))
+    process.start()
+    sender.close()
+    return receiver, process
+
+
+def received(receiver: Any, process: Any) -> dict[str, Any]:
+    """The result of a row whose process has ended: exit, message, lines that it told, and `figures`."""
+    try:
+        result: dict[str, Any] = receiver.recv()
+    except EOFError:
+        process.join()
+        error = supervised.crash("row", process.exitcode)
+        result = {"exit": error.exit_status, "message": error.message, "lines": [error.line()]}
+    receiver.close()
+    process.join()
+    return result
+
+
+def left_by(receiver: Any) -> dict[str, Any] | None:
+    """The result of a process that has been stopped; None where it had come to none."""
+    try:
+        return receiver.recv() if not receiver.closed and receiver.poll() else None
+    except EOFError:
+        return None
+    finally:
+        receiver.close()
+
+
+def stop(process: Any) -> None:
+    """End a process; it removes what is unfinished."""
+    if process.is_alive():
+        os.kill(process.pid, signal.SIGINT)
+        process.join(10.0)
+    if process.is_alive():
+        process.kill()
+        process.join()
+
+
+def _carry_out(order: Order, sender: Any) -> None:
+    """The work of the process."""
+    supervised.end_with_parent()
+    quiet = _Quiet()
+    status, message, told = 1, "", {}
+    try:
+        status, told = _planned(order, quiet)
+    except KeyboardInterrupt:
+        status, message = 130, "interrupted"
+    except AmError as error:
+        status, message = error.exit_status, error.message
+        quiet.say(error.line())
+    except Exception as error:
+        message = f"{type(error).__name__}: {error}"
+        quiet.say(f"error[INTERNAL] {' '.join(message.split())}; this is our fault, please report it")
+    sender.send({"exit": status, "message": message or quiet.first, "lines": quiet.lines, **told})
+    sender.close()
+    os._exit(0)
+
+
+def _planned(order: Order, quiet: Session) -> tuple[int, dict[str, Any]]:
+    """The exit status and the figures."""
+    asked = job.from_tree(tree.Tree(order.label, order.values), order.path)
+    if order.dry:
+        with planning.told_by_keys(asked):
+            planning.check(asked)
+        return 0, {"status": CHECKED}
+    result = planning.run(asked, order.folder, quiet)
+    return result.exit_status, figures(result.report)
+
+
+def figures(report: dict[str, Any]) -> dict[str, Any]:
+    """What the summary of a batch tells of a report."""
+    joints = report["joints"] or {}
+    return {
+        "status": report["status"], **report["counts"], "length_mm": report["length_mm"], "duration_s": report["duration_s"],
+        "spacing_min_mm": report["spacing_mm"]["min"], "spacing_max_mm": report["spacing_mm"]["max"],
+        "condition_min": joints.get("condition_min"),
+    }
+
+
+class _Quiet(Session):
+    """Collects the messages of a row, to be told in one piece when it is done."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._handle(signal.SIGINT)
+        self._handle(signal.SIGTERM)
+        self.lines: list[str] = []
+        self.first = ""
+
+    def say(self, line: str) -> None:
+        self.lines.append(line)
+
+    def progress(self, text: str) -> None:
+        self.check()
+
+    def issues(self, found: Iterable[Issue]) -> None:
+        known = list(found)
+        if has_errors(known):
+            self.first = next(issue.message for issue in known if issue.level == "error")
+        super().issues(known)

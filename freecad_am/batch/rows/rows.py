@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Plans the rows of a table, some at the same time, and sums them up."""
+
+from __future__ import annotations
+
+import csv
+import io
+import multiprocessing.connection
+import os
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from .. import run as planning
+from .. import versions
+from ..console import Session, escaped
+from . import journal as row_journal
+from . import process as row_process
+from . import table
+
+FIGURES = ("layers", "beads", "points", "length_mm", "duration_s", "spacing_min_mm", "spacing_max_mm", "condition_min")
+_WORST_FIRST = (1, 130, 2, 3, 0)
+
+
+@dataclass(frozen=True)
+class How:
+    """How a batch is carried out. processes: rows at the same time on this machine; scheduler: address of that of a cluster
+    in its place. resume: rows that an earlier run has done are kept. dry: rows are looked at, not planned."""
+
+    processes: int = 1
+    scheduler: str = ""
+    resume: bool = False
+    dry: bool = False
+
+
+def run(path: str, job_path: str, output: str | None, how: How, session: Session) -> int:
+    """Plan every row; the summary goes to stdout. The exit status of the worst row: 1 over 130 over 2 over 3."""
+    planning.import_all()  # once for all rows
+    columns, rows = table.read(path, job_path)
+    folder = output or os.path.join(
+        os.path.dirname(os.path.abspath(job_path)), "out", os.path.splitext(os.path.basename(path))[0]
+    )
+    journal = row_journal.Journal(folder, versions.code() + str(versions.told()), how.resume)
+    results: dict[int, dict[str, Any]] = {}
+    waiting = []
+    for row in rows:
+        if row.error is not None:
+            session.say(row.error.line())
+            results[row.number] = {"exit": row.error.exit_status, "message": row.error.message}
+        elif (known := journal.known(row, how.dry) if how.resume else None) is not None:
+            results[row.number] = known
+        else:
+            waiting.append(row)
+    if how.resume:
+        session.say(f"note[RESUMED] batch: {len(rows) - len(waiting)} of {len(rows)} rows need not be planned again")
+    session.outcome = "rows that were done are whole, of the others nothing was written; --resume plans those"
+    began, before = time.monotonic(), len(results)
+    for row, result in _planned(waiting, folder, how, session, journal):
+        for line in result.pop("lines", []):
+            session.say(f"row {row.number}: {line}")
+        results[row.number] = result
+        session.progress(_progress(len(results), len(rows), len(results) - before, time.monotonic() - began))
+    session.out(_summary(columns, rows, results))
+    ends = {result["exit"] for result in results.values()}
+    return next((status for status in _WORST_FIRST if status in ends), 1)
+
+
+def _planned(
+    rows: list[table.Row], folder: str, how: How, session: Session, journal: row_journal.Journal
+) -> Iterable[tuple[table.Row, dict[str, Any]]]:
+    """Rows with their results, as they end; those that are done are written down."""
+    if not how.scheduler or not rows:
+        return _planned_here(rows, folder, how, session, journal)
+    return _planned_there(rows, folder, how, session, journal)
+
+
+def _planned_there(
+    rows: list[table.Row], folder: str, how: How, session: Session, journal: row_journal.Journal
+) -> Iterator[tuple[table.Row, dict[str, Any]]]:
+    from .. import cluster
+
+    with cluster.Cluster(how.scheduler, session) as workers:
+        yield from workers.planned(rows, folder, how.dry, journal)
+
+
+def _planned_here(
+    rows: list[table.Row], folder: str, how: How, session: Session, journal: row_journal.Journal
+) -> Iterator[tuple[table.Row, dict[str, Any]]]:
+    waiting = list(reversed(rows))
+    running: dict[Any, tuple[table.Row, Any]] = {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < how.processes:
+                row = waiting.pop()
+                receiver, process = row_process.started(row_process.Order(
+                    row.label, row.tree().values, row.path, os.path.join(folder, row.folder), how.dry
+                ))
+                running[receiver] = (row, process)
+            for receiver in multiprocessing.connection.wait(list(running)):
+                row, process = running[receiver]
+                result = row_process.received(receiver, process)
+                journal.keep(row, how.dry, result)
+                del running[receiver]
+                yield row, result
+            session.check()
+    finally:
+        for receiver, (row, process) in running.items():
+            row_process.stop(process)
+            if (last := row_process.left_by(receiver)) is not None:  # it was done in this moment
+                journal.keep(row, how.dry, last)
+
+
+def _progress(done: int, rows: int, now: int, seconds: float) -> str:
+    """How far it is, and how long the rest will take at the pace so far."""
+    left = (rows - done) * seconds / max(now, 1)
+    told = f"{left / 3600:.1f} h" if left > 5400 else f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
+    return f"{done} of {rows} rows done" + (f", about {told} left" if done < rows else "")
+
+
+def _summary(columns: list[str], rows: list[table.Row], results: dict[int, dict[str, Any]]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["row", *map(escaped, columns), "folder", "exit", "status", *FIGURES, "message"])
+    for row in rows:
+        result = results[row.number]
+        status = result.get("status", "failed")
+        figures = [_cell(result.get(figure)) for figure in FIGURES]
+        told = map(escaped, (*row.cells.values(), row.folder))
+        writer.writerow([row.number, *told, result["exit"], status, *figures, escaped(result["message"])])
+    return text.getvalue()
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    return f"{value:.6f}" if isinstance(value, float) else escaped(str(value))

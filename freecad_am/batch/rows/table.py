@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The table of a batch: one row, one job. Columns are dotted job keys; an empty cell keeps the job's own value."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import csv
+import io
+import os
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from freecad_am.core.geometry import located
+from freecad_am.core.issues import InputError
+
+from .. import run
+from ..job import job, tree
+
+SETTING = "part.set."
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row: its number (from 1), the cells by column, its folder's name, why there is no job if there is none, and
+    `files`, the absolute names of the files that the job names. The job itself is made anew where it is planned."""
+
+    number: int
+    cells: dict[str, str]
+    folder: str
+    base: tree.Tree = field(repr=False)
+    path: str
+    label: str
+    error: InputError | None = None
+    files: frozenset[str] = frozenset()
+
+    def tree(self) -> tree.Tree:
+        """The values of the job. Raises InputError for a cell that is not understood."""
+        changed = tree.Tree(self.label, copy.deepcopy(self.base.values))
+        for column, cell in self.cells.items():
+            if cell:
+                _put(changed.values, column, tree.scalar(cell, changed.where(column)), changed)
+        return changed
+
+
+def read(table: str, job_path: str) -> tuple[list[str], list[Row]]:
+    """Columns and rows. Raises InputError for a table or job file that cannot be read at all."""
+    label = os.path.basename(table)
+    base = tree.read(job_path)
+    columns, cells = _cells(tree.text_of(table, label), label)
+    folders = _folders(columns, cells)
+    known: dict[Any, frozenset[str]] = {}
+    return columns, [
+        _checked(Row(n, dict(zip(columns, row)), folder, base, job_path, f"{label} row {n}"), known)
+        for n, (row, folder) in enumerate(zip(cells, folders), 1)
+    ]
+
+
+def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
+    try:
+        lines = [[cell.strip() for cell in line] for line in csv.reader(io.StringIO(text, newline=""), strict=True)]
+    except csv.Error as error:
+        raise InputError("BAD_FILE", label, f"this is not a table: {error}; separate cells by commas") from None
+    lines = [line for line in lines if any(line)]
+    if len(lines) < 2:
+        raise InputError("EMPTY_FILE", label, "there are no rows; give a line of job keys and a line per job below it")
+    columns = lines[0]
+    for column in columns:
+        if not column or columns.count(column) > 1:
+            raise InputError("BAD_FILE", label, f"the column {column!r} is empty or stands twice; name each one once")
+        if ";" in column or "\t" in column:
+            raise InputError("BAD_FILE", label, "cells are not separated by commas; save the table with commas")
+        if column.split(".")[0] not in job.SECTIONS:
+            message = "there is no such key; use job keys such as strategy.layer_height"
+            raise InputError("UNKNOWN_KEY", f"{label}: {column}", message)
+    for number, line in enumerate(lines[1:], 1):
+        if len(line) != len(columns):
+            message = f"{len(line)} cells for {len(columns)} columns; quote cells with commas"
+            raise InputError("BAD_FILE", f"{label} row {number}", message)
+    return columns, lines[1:]
+
+
+def _folders(columns: list[str], cells: list[list[str]]) -> list[str]:
+    """The rows' names where they have different ones that can name a folder, else their numbers."""
+    width = max(3, len(str(len(cells))))
+    numbers = [f"row-{number:0{width}d}" for number in range(1, len(cells) + 1)]
+    names = [row[columns.index("name")] for row in cells] if "name" in columns else []
+    usable = len({name.lower() for name in names}) == len(cells) and all(
+        name and "/" not in name and "\\" not in name and name[0] != "." for name in names
+    )
+    return names if usable else numbers
+
+
+def _checked(row: Row, known: dict[Any, frozenset[str]]) -> Row:
+    """The row with its error or files; `known`: files of cells met before."""
+    try:
+        with located.recorded() as named:
+            found = job.from_tree(row.tree(), row.path)
+    except InputError as error:
+        return replace(row, error=error)
+    if found.cell not in known:
+        known[found.cell] = _files_of_cell(found)
+    files = named | known[found.cell]
+    return replace(row, files=known.setdefault(frozenset(files), frozenset(files)))  # one set for all rows alike
+
+
+def _files_of_cell(found: job.Job) -> frozenset[str]:
+    """Of its machines, with the shapes of their links. What is wrong with them is told as the row is planned."""
+    with located.recorded() as named, contextlib.suppress(InputError):
+        cell = run.resolved_cell(found)
+        for shape in () if cell is None else cell.machine.shapes:
+            if shape is not None:
+                located.located(shape.path)
+    return frozenset(named)
+
+
+def _put(values: dict[str, Any], column: str, value: Any, changed: tree.Tree) -> None:
+    keys = column.split(".")
+    if column.startswith(SETTING):
+        name, _, key = column[len(SETTING):].rpartition(".")  # a Label may have dots, a property has none
+        if not name:
+            raise InputError("UNKNOWN_KEY", changed.where(column), "write part.set.<object>.<property>")
+        keys = ["part", "set", name, key]
+    for key in keys[:-1]:
+        if not isinstance(values.get(key), dict):
+            values[key] = {}
+        values = values[key]
+    values[keys[-1]] = value

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Files from outside, read in a process that may crash, with limits of time and memory.
+
+FreeCAD and the geometry kernel crash on some damaged files, and on others read without end. Without a window the process is
+a copy of this one, made by fork in milliseconds. Beside a window, whose threads a fork would not copy, it is one of
+`kernel_process`, which is started once, and ended as soon as whoever waits for it is cancelled. What was read comes back as
+`answers` has it. Where there is neither, files are read here.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
+
+import FreeCAD
+
+from ...core.issues import InputError
+from ..kernel import process as kernel_process
+from . import answers
+
+if sys.platform != "win32":
+    import resource
+
+T = TypeVar("T")
+
+SECONDS, SECONDS_A_MB = 4.0, 10.0  # of the processor, for any file and for each MB of it
+MEMORY, MEMORY_A_MB = 600.0, 100.0  # MB, likewise, beside what this process has
+LARGEST = 2000  # MB of a file
+LONGER = 10.0  # times as long on the clock: the processor may have others to serve, but a file that keeps us waiting ends
+MB = 1e6
+NO_MEMORY = 77  # exit status of a copy that has come to its limit
+CRASHED = 1  # or any other
+
+_is_apart = False  # whether this is such a process
+
+
+def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, patience: float = 1.0) -> T:
+    """What `read(path, *rest)` returns or raises: a shape, a mesh, what pickles. `read` is a function of a module. patience:
+    times the limit of time.
+
+    Raises InputError BAD_FILE, naming the file, where reading crashes or takes more time or memory than a file of its size
+    may, and for one larger than LARGEST.
+    """
+    size = _size(path) / MB
+    where = os.path.basename(os.fspath(path)) or os.fspath(path)
+    if size > LARGEST:
+        message = f"the file is larger than {LARGEST} MB, the most that is read; is it the right one?"
+        raise InputError("BAD_FILE", where, message)
+    if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
+        return read(path, *rest)
+    seconds, memory = patience * (SECONDS + SECONDS_A_MB * size), patience**0.5 * (MEMORY + MEMORY_A_MB * size)
+    with _beside_a_window() if FreeCAD.GuiUp else _in_memory() as (told, geometry):
+        if FreeCAD.GuiUp:
+            question = (told, geometry, read.__module__, read.__qualname__, path, rest, seconds, memory)
+            how = kernel_process.limited(answer, question, LONGER * seconds)
+            if how is None:  # there is no other process
+                return read(path, *rest)
+        else:
+            how = _forked(lambda: answers.tell(told, geometry, read, path, rest), seconds, memory)
+        ended, used = how
+        if ended == 0:
+            found = answers.hear(told, geometry)
+            return read(path, *rest) if isinstance(found, str) and found == answers.AGAIN else found
+        raise _refused(where, ended, used, seconds, memory)
+
+
+@contextlib.contextmanager
+def _in_memory() -> Iterator[tuple[str, str]]:
+    """The paths of two files that only this process and its copies have."""
+    told, geometry = os.memfd_create("told"), os.memfd_create("geometry")
+    try:
+        yield f"/proc/self/fd/{told}", f"/proc/self/fd/{geometry}"
+    finally:
+        os.close(told)
+        os.close(geometry)
+
+
+@contextlib.contextmanager
+def _beside_a_window() -> Iterator[tuple[str, str]]:
+    """The paths of two files in a folder of their own."""
+    with tempfile.TemporaryDirectory(prefix="reading_") as folder:
+        yield os.path.join(folder, "told"), os.path.join(folder, "geometry")
+
+
+def answer(
+    told: str, geometry: str, module: str, function: str, path: Any, rest: tuple[Any, ...], seconds: float, memory: float
+) -> None:
+    """In a process of `kernel_process`: read within limits, and tell."""
+    global _is_apart
+    import importlib
+
+    _is_apart = True
+    read = getattr(importlib.import_module(module), function)
+    if sys.platform == "win32":
+        answers.tell(told, geometry, read, path, rest)
+        return
+    _take_no_signals()
+    spent = resource.getrusage(resource.RUSAGE_SELF)
+    with contextlib.ExitStack() as before:
+        limits = [(resource.RLIMIT_CPU, round(spent.ru_utime + spent.ru_stime + seconds)), (resource.RLIMIT_CORE, 0)]
+        if sys.platform.startswith("linux"):
+            limits.append((resource.RLIMIT_AS, _pages(0) + round(memory * MB)))
+        for kind, value in limits:
+            soft, hard = resource.getrlimit(kind)
+            before.callback(resource.setrlimit, kind, (soft, hard))
+            resource.setrlimit(kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard))
+        answers.tell(told, geometry, read, path, rest)
+
+
+def _size(path: str | os.PathLike[str]) -> float:
+    try:
+        return float(os.stat(path).st_size)
+    except (OSError, ValueError):
+        return 0.0
+
+
+def _forked(work: Callable[[], None], seconds: float, memory: float) -> tuple[int, float]:
+    """How a copy of this process ended that does the work within limits, as Popen tells it, and the memory, MB, that it used
+    beside what this process has."""
+    ours, theirs = os.pipe()
+    before = _pages(1)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    pid = os.fork()
+    if not pid:
+        _work(work, seconds, memory)
+    os.close(theirs)
+    ended = False
+    try:
+        until = time.monotonic() + LONGER * seconds
+        while not ended and time.monotonic() < until:
+            ended = bool(select.select([ours], [], [], 0.5)[0])  # the end of the copy closes it
+    finally:
+        os.close(ours)
+        if not ended:
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL)
+        _, status, usage = os.wait4(pid, 0)
+    code = os.waitstatus_to_exitcode(status)
+    return (code if ended else -signal.SIGXCPU), max(0.0, (1024.0 * usage.ru_maxrss - before) / MB)
+
+
+def _work(work: Callable[[], None], seconds: float, memory: float) -> None:
+    """In the copy: do the work and end."""
+    global _is_apart
+    _is_apart = True
+    status = CRASHED
+    try:
+        _take_no_signals()
+        _end_with_parent()
+        now = _pages(0)
+        _limit(resource.RLIMIT_CORE, 0)
+        _limit(resource.RLIMIT_CPU, round(seconds))
+        _limit(resource.RLIMIT_AS, now + round(memory * MB))
+        work()
+        status = 0
+    except MemoryError:
+        status = NO_MEMORY
+    except BaseException:
+        status = CRASHED
+    finally:
+        os._exit(status)
+
+
+def _take_no_signals() -> None:
+    """A fault of memory ends the process: FreeCAD and the kernel would go on with what is broken."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGXCPU):
+        signal.signal(number, signal.SIG_DFL)
+
+
+def _pages(column: int) -> int:
+    """Bytes of this process, all of them (0) or those in memory (1)."""
+    with open("/proc/self/statm", encoding="ascii") as stream:
+        return int(stream.read().split()[column]) * resource.getpagesize()
+
+
+def _limit(kind: int, value: int) -> None:
+    _, hard = resource.getrlimit(kind)
+    resource.setrlimit(kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard))
+
+
+def _end_with_parent() -> None:
+    import ctypes
+
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+
+
+def _refused(where: str, ended: int, used: float, seconds: float, memory: float) -> InputError:
+    if ended == -signal.SIGXCPU:
+        why = f"it takes more than {seconds:.0f} s of the processor to read, the limit of a file of its size"
+    elif ended == NO_MEMORY or used > 0.8 * memory:
+        why = f"it takes more than {memory:.0f} MB of memory to read, the limit of a file of its size"
+    else:
+        why = "FreeCAD crashes on it"
+    return InputError("BAD_FILE", where, f"it is damaged: {why}; export it again")

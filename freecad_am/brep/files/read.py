@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Shapes from files, without a document."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import FreeCAD  # before Part, which crashes the process without
+import Mesh
+import numpy as np
+import Part
+
+from ...core.geometry.located import located
+from ...core.geometry.mesh.file_unit import MESHES
+from ...core.issues import InputError
+from . import obj_polygons, three_mf
+from .apart import apart
+
+READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+FARTHEST = 1e7  # mm; what reaches farther has a damaged coordinate, on which the kernel works without end
+
+
+def read_shape(path: str | os.PathLike[str]) -> Any:
+    """The Part.Shape of a STEP, IGES or BREP file, in the file's coordinates, mm.
+
+    Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or 'BAD_FILE' naming the file.
+    """
+    file = located(path)
+    where = file.name or str(path)
+    suffix = file.suffix.lower()
+    if not file.exists():
+        raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
+    if not file.is_file():
+        raise InputError("NO_FILE", where, "it is a folder; name the file of the part")
+    if suffix in MESHES:
+        raise InputError(
+            "UNSUPPORTED_FILE", where,
+            "a mesh has no exact surfaces; a part of revolution needs a boundary representation: STEP, IGES or BREP",
+        )
+    if suffix not in READABLE:
+        raise InputError("UNSUPPORTED_FILE", where, f"{suffix or 'no ending'} is not read; use {', '.join(READABLE)}")
+    try:
+        size = file.stat().st_size
+        with file.open("rb") as stream:
+            stream.read(1)
+    except OSError as error:
+        raise InputError("BAD_FILE", where, f"it cannot be read: {error.strerror}") from error
+    if size == 0:
+        raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
+    return apart(_shape, file, where)
+
+
+def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
+    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. scale: mm of one unit of an STL or OBJ file,
+    which tells none; a 3MF file tells its own. InputErrors as `read_shape`."""
+    file = located(path)
+    where = file.name or str(path)
+    if not file.is_file():
+        raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
+    if file.stat().st_size == 0:
+        raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
+    return apart(_mesh, file, where, scale)
+
+
+def placed_mesh(mesh: Any, placement: Any) -> Any:
+    """A Mesh.Mesh where its own placement, and another after that, put it; it has none left itself."""
+    found = Mesh.Mesh()
+    found.addFacets(mesh.Topology)
+    found.transform(placement.toMatrix())
+    return found
+
+
+def _mesh(file: Path, where: str, scale: float) -> Any:
+    mesh = Mesh.Mesh()
+    if file.suffix.lower() == ".3mf":
+        points, corners = three_mf.triangles(file)
+        _refuse_far(float(np.abs(points).max()), where)
+        mesh.addFacets(([FreeCAD.Vector(*point) for point in points.tolist()], [tuple(row) for row in corners.tolist()]))
+        return mesh
+    try:
+        with _quiet():
+            mesh.read(str(file))
+        more = obj_polygons.left_out(file, mesh.CountFacets) if file.suffix.lower() == ".obj" else ()
+        if len(more):
+            mesh.addFacets([[FreeCAD.Vector(*corner) for corner in triangle] for triangle in more.tolist()])
+            mesh.removeDuplicatedPoints()
+    except Exception as error:
+        raise InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again") from error
+    if not mesh.CountFacets:
+        raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")
+    _refuse_far(_reach(mesh.BoundBox) * scale, where)
+    if scale != 1.0:
+        larger = FreeCAD.Matrix()
+        larger.scale(scale, scale, scale)
+        mesh.transform(larger)
+    return mesh
+
+
+def _shape(file: Path, where: str) -> Any:
+    bad = InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again")
+    shape = Part.Shape()
+    try:
+        with _quiet():
+            shape.read(str(file))
+    except (RuntimeError, OSError, ValueError, Part.OCCError) as error:
+        raise bad from error
+    if shape.isNull():
+        raise bad
+    if not (shape.Faces or shape.Edges):
+        raise InputError("EMPTY_FILE", where, "it holds no shape; export the part again")
+    _refuse_far(_reach(shape.BoundBox), where)
+    return shape
+
+
+def _reach(box: Any) -> float:
+    """The largest coordinate of a box, nan where one is."""
+    return float(np.abs([box.XMin, box.XMax, box.YMin, box.YMax, box.ZMin, box.ZMax]).max())
+
+
+def _refuse_far(reach: float, where: str) -> None:
+    if not reach <= FARTHEST:
+        raise InputError(
+            "BAD_FILE", where, f"it reaches to {reach:.3g} mm, farther than {FARTHEST:.3g} mm; a coordinate is damaged, or "
+            "its unit is wrong; export the part again",
+        )
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Sends what the geometry kernel prints on the process's standard output to standard error."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    try:
+        os.dup2(2, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Shapes on which the geometry kernel gives up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import FreeCAD
+import numpy as np
+import Part
+from scipy.spatial import cKDTree
+
+from ...core.geometry.mesh.triangle_mesh import Index
+from ...core.geometry.told import place
+from ...core.geometry.walls.patch import Array
+from ...core.geometry.walls.surface import dot
+from ...core.issues import InputError
+
+# since FreeCAD 1.0 some faults are a plain RuntimeError, the base of these
+FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError, RuntimeError)
+FAULTY = "BAD_SHAPE"
+SAMPLES = 720  # of an edge that may cross itself
+CROSSED = 1e-3  # of a step between samples; stretches of an edge nearer to each other than this cross
+
+
+@contextmanager
+def told(label: str) -> Iterator[None]:
+    """Faults of the geometry kernel within, as an InputError FAULTY that names `label`."""
+    try:
+        yield
+    except FAULTS as error:
+        what = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(
+            FAULTY, label, f"the geometry kernel cannot work with this shape ({what}); repair it (Part, Check "
+            "geometry), or draw its faces anew",
+        ) from error
+
+
+def refuse_bare(named: Sequence[tuple[str, Any]], owner: Index, label: str, narrow: float = 0.0) -> None:
+    """InputError where the kernel has made no triangles of a face: SELF_INTERSECTION if an edge of it crosses itself, else
+    BAD_SHAPE. owner: (m,) the number of the face of each triangle. narrow: a face no wider, mm, needs none."""
+    for k, (name, face) in enumerate(named):
+        if (owner == k).any() or face.Area < 0.5 * narrow * face.Length:
+            continue
+        for edge in face.Edges:
+            found = _crossing(np.array([tuple(point) for point in edge.discretize(SAMPLES)]))
+            if found is not None:
+                raise InputError(
+                    "SELF_INTERSECTION", f"{label} {name}", f"an edge of the face crosses itself at {place(found)}; draw "
+                    "it without crossings, or divide it there and deposit its parts one after the other",
+                )
+        raise InputError(
+            FAULTY, f"{label} {name}", "the geometry kernel cannot divide this face into triangles; repair it (Part, "
+            "Check geometry), or draw it anew",
+        )
+
+
+def _crossing(chain: Array) -> Array | None:
+    """Where a chain of points (n, 3) crosses itself; None where it does not."""
+    chord = np.diff(chain, axis=0)
+    step = float(np.linalg.norm(chord, axis=1).max())
+    pairs = cKDTree(chain[:-1] + 0.5 * chord).query_pairs(1.01 * step, output_type="ndarray")
+    apart = pairs[:, 1] - pairs[:, 0]
+    one, other = pairs[(apart > 2) & (apart < len(chord) - 2)].T
+    a, b, gap = chord[one], chord[other], chain[other] - chain[one]
+    system = np.stack([np.stack([dot(a, a), -dot(a, b)], axis=1), np.stack([-dot(a, b), dot(b, b)], axis=1)], axis=1)
+    plain = np.abs(np.linalg.det(system)) > 1e-4 * dot(a, a) * dot(b, b)
+    one, other, a, b, gap = (column[plain] for column in (one, other, a, b, gap))
+    if not len(one):
+        return None
+    at = np.linalg.solve(system[plain], np.stack([dot(a, gap), -dot(b, gap)], axis=1)[..., None])[..., 0]
+    at = np.clip(at, 0.0, 1.0)
+    miss = np.linalg.norm(gap + at[:, 1:] * b - at[:, :1] * a, axis=1)
+    best = int(np.argmin(miss))
+    found: Array = chain[one[best]] + at[best, 0] * a[best]
+    return found if miss[best] < CROSSED * step else None

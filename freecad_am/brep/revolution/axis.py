@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where the axis of a shape of revolution may be."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD  # noqa: F401  before Part, which crashes without
+import numpy as np
+import Part
+from numpy.typing import NDArray
+
+from ...core.geometry.curves.profile import Array
+from .cylindrical import as_array, edge_points
+
+Axis = tuple[Array, Array]
+
+# their axes are known, or they have none
+ANALYTIC = tuple(
+    "Part::Geom" + kind for kind in ("Plane", "Cylinder", "Cone", "Sphere", "Toroid", "SurfaceOfRevolution")
+)
+SAME_ANGLE = 1e-6  # rad
+SAME_LINE = 1e-4  # mm
+
+
+def candidates(faces: list[Any]) -> list[Axis]:
+    """Possible axes as (point (3,), unit direction (3,)), the likeliest first.
+
+    The axes of analytic and revolved surfaces weigh their area, those of circular edges less; last comes the axis that
+    the surface normals point to, which needs no knowledge of the kind of surface.
+    """
+    ordered = [axis for axis, _ in sorted(_weighed(faces), key=lambda pair: -pair[1])][:6]
+    free = [face for face in faces if face.Surface.TypeId not in ANALYTIC]
+    for group in [[face] for face in sorted(free, key=lambda face: -face.Area)[:3]] + [faces]:
+        fitted = from_normals(group)
+        if fitted is not None and not any(_same(fitted, axis) for axis in ordered):
+            ordered.append(fitted)
+    return ordered
+
+
+def _weighed(faces: list[Any]) -> list[tuple[Axis, float]]:
+    """Axes of faces and their edges, each once, with all that speaks for it."""
+    found: list[tuple[Axis, float]] = []
+    rows = np.zeros((64, 6))  # of those found, to be compared at once: a plate may have hundreds of holes
+    for face in faces:
+        for axis, weight in _of_face(face):
+            same = np.flatnonzero(_alike(rows[: len(found)], axis))
+            if len(same):
+                known, total = found[same[0]]
+                found[same[0]] = (known, total + weight)
+                continue
+            if len(found) == len(rows):
+                rows = np.vstack([rows, np.zeros_like(rows)])
+            rows[len(found)] = np.concatenate(axis)
+            found.append((axis, weight))
+    return found
+
+
+def _of_face(face: Any) -> list[tuple[Axis, float]]:
+    surface, area = face.Surface, face.Area
+    found = []
+    if surface.TypeId == "Part::GeomSurfaceOfRevolution":
+        found.append((_axis(surface.Location, surface.Direction), area + 1.0))
+    elif surface.TypeId in ("Part::GeomCylinder", "Part::GeomCone", "Part::GeomToroid"):
+        found.append((_axis(surface.Center, surface.Axis), area))
+    elif surface.TypeId == "Part::GeomSphere":
+        found.append((_axis(surface.Center, surface.Axis), 1e-6 * area))
+    for edge in face.Edges:
+        if edge.Degenerated or edge.isSeam(face):
+            continue
+        if edge.Curve.TypeId == "Part::GeomCircle":
+            found.append((_axis(edge.Curve.Center, edge.Curve.Axis), 1e-3 * edge.Length * edge.Curve.Radius))
+        elif edge.Curve.TypeId == "Part::GeomBSplineCurve":
+            fitted = _circle_through(edge_points(edge, 13))
+            if fitted is not None:
+                found.append((fitted, 1e-4 * edge.Length**2))
+    return found
+
+
+def _circle_through(points: Array) -> Axis | None:
+    """The axis of the circle that points (n, 3) lie on, None where they do not lie on one."""
+    middle = points.mean(axis=0)
+    _, sizes, basis = np.linalg.svd(points - middle, full_matrices=False)
+    if sizes[1] < 1e-6 * sizes[0] or sizes[2] > 1e-7 * sizes[0]:
+        return None
+    flat = (points - middle) @ basis[:2].T
+    # |p|^2 = 2 c.p + k is linear in the centre c and k
+    solved = np.linalg.lstsq(np.c_[2.0 * flat, np.ones(len(flat))], (flat**2).sum(axis=1), rcond=None)[0]
+    radii = np.hypot(*(flat - solved[:2]).T)
+    if np.ptp(radii) > 1e-6 * radii.mean():
+        return None
+    return middle + solved[:2] @ basis[:2], basis[2]
+
+
+def _axis(point: Any, direction: Any) -> Axis:
+    z = np.array(tuple(direction), dtype=np.float64)
+    return np.array(tuple(point), dtype=np.float64), z / np.linalg.norm(z)
+
+
+def _same(one: Axis, other: Axis) -> bool:
+    return bool(_alike(np.concatenate(one)[None], other)[0])
+
+
+def _alike(rows: Array, axis: Axis) -> NDArray[np.bool_]:
+    """Which of axes (n, 6), points and directions, are the same line as another."""
+    apart, along = rows[:, :3] - axis[0], rows[:, 3:]
+    across = apart - (apart * along).sum(axis=1)[:, None] * along
+    turned = np.linalg.norm(np.cross(along, axis[1]), axis=1)
+    return np.asarray((turned < SAME_ANGLE) & (np.linalg.norm(across, axis=1) < SAME_LINE))
+
+
+def from_normals(faces: list[Any]) -> Axis | None:
+    """The line that all surface normals meet, the upright one on a sphere, or None where there is none.
+
+    A normal n at p meets the axis (point c, direction a) when n . (c x a) + (p x n) . a = 0. With m = c x a that is
+    linear in (a, m): the axis is the null direction of all samples, of those the one without pitch (a . m = 0).
+    """
+    points, normals = [], []
+    for face in faces:
+        u0, u1, v0, v1 = face.ParameterRange
+        for u in np.linspace(u0, u1, 9)[1:-1]:
+            for v in np.linspace(v0, v1, 9)[1:-1]:
+                try:
+                    normals.append(face.Surface.normal(u, v))
+                except (RuntimeError, Part.OCCError):
+                    continue  # where the surface is degenerate
+                points.append(face.Surface.value(u, v))
+    p, n = as_array(points), as_array(normals)
+    good = np.isfinite(n).all(axis=1)
+    p, n = p[good], n[good]
+    if len(p) < 6:
+        return None
+    middle = p.mean(axis=0)
+    size = np.abs(p - middle).max()
+    rows = np.hstack([np.cross((p - middle) / size, n), n])
+    values, vectors = np.linalg.svd(rows, full_matrices=False)[1:]  # or it is as wide as the samples are many
+    exact = int((values < 1e-6 * values[0]).sum())
+    # a cylinder that is not quite round still slides along itself exactly: then the next best motion is asked for
+    for count in (max(exact, 1), max(exact, 1) + 1):
+        null = vectors[-count:]
+        directions = null[:, :3]
+        strength, basis = np.linalg.svd(directions)[1:]
+        if strength[0] > 1e-6:
+            break
+    else:
+        return None
+    if len(strength) > 1 and strength[1] > 1e-6:
+        return _through_centre(middle, size, null)
+    a = basis[0]
+    moment = np.linalg.lstsq(directions.T, a, rcond=None)[0] @ null[:, 3:]
+    moment = moment - (moment @ a) * a
+    return middle + size * np.cross(a, moment), a
+
+
+def _through_centre(middle: Array, size: float, null: Array) -> Axis | None:
+    """The upright axis through the point about which a shape may turn in every direction, None where there is none."""
+    # m = c x a for every null direction (a, m) is linear in the centre c
+    rows = np.vstack([np.cross(np.eye(3), a).T for a in null[:, :3]])
+    centre, _, rank, _ = np.linalg.lstsq(rows, null[:, 3:].ravel(), rcond=None)
+    off = np.abs(rows @ centre - null[:, 3:].ravel()).max()
+    return (middle + size * centre, np.array([0.0, 0.0, 1.0])) if rank == 3 and off < 1e-6 else None

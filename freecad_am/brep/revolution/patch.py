@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One face of a shape as a piece of meridian turned about an axis, and how far it is from being that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import FreeCAD
+import numpy as np
+import Part
+
+from ...core.geometry.curves.contour import Piece
+from ...core.geometry.curves.profile import Array
+from ...core.geometry.curves.sampling import Curve, arc, line
+from ..files.lost_pole import edges_of, has_lost_pole, restored
+from .cylindrical import AxisFrame, as_array, edge_points, flattened, pieces_of, smooth_pieces
+
+TOLERANCE = 1e-3  # mm a face may be off its own surface of revolution
+EDGE_TOLERANCE = 1e-2  # mm an edge may be off a parallel or a meridian
+FULL = 2.0 * np.pi - 1e-5
+# surfaces whose first parameter is the azimuth about their axis
+NATURAL = ("Part::GeomCylinder", "Part::GeomCone", "Part::GeomToroid", "Part::GeomSurfaceOfRevolution")
+
+
+@dataclass(frozen=True)
+class Patch:
+    """What a face is about an axis. pieces: its meridian, empty for a face that lies along the axis and only ends a
+    part of a turn. deviation: mm off a surface of revolution, inf where it has no meridian at all. what: that in words.
+    """
+
+    name: str
+    pieces: tuple[Piece, ...]
+    deviation: float
+    what: str = ""
+
+    @property
+    def sound(self) -> bool:
+        """True for a face of revolution within the tolerance."""
+        return self.deviation <= TOLERANCE
+
+
+def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
+    """The face about the axis of the frame."""
+    if has_lost_pole(face):
+        return _closed_on_axis(face, name, frame)
+    if _ends_a_turn(face, frame):
+        return Patch(name, (), 0.0)
+    try:
+        curves = _meridian(face, frame)
+    except (ValueError, RuntimeError, Part.OCCError):
+        curves = None  # a line that stands still is no meridian, and the kernel gives up on some surfaces
+    if curves is None:
+        return Patch(name, (), _spread(face, frame), "it does not turn about the axis")
+    deviation = _deviation(face, frame, curves)
+    if deviation > TOLERANCE:
+        return Patch(name, (), deviation, "it is not of revolution")
+    edge = _edge_deviation(face.Edges, frame)
+    if edge > EDGE_TOLERANCE:
+        return Patch(name, (), edge, "it is cut out or slanted: an edge runs neither around nor along it")
+    turn = _turn(face, frame)
+    return Patch(name, tuple(Piece(name, points, tangents, turn) for points, tangents in curves), deviation)
+
+
+def _closed_on_axis(face: Any, name: str, frame: AxisFrame) -> Patch:
+    """The patch of a face whose file has lost its pole."""
+    curves, edges = restored(face, frame), edges_of(face)
+    edge = _edge_deviation(edges, frame)
+    if curves is None or edge > EDGE_TOLERANCE:
+        what = "it has an edge but no area, so the file is damaged or it does not turn about the axis"
+        return Patch(name, (), max(edge, 2.0 * TOLERANCE), what)
+    points = np.vstack([edge_points(one, 181) for one in edges])
+    turn, off = _reach(frame, points), _distance(frame, points, curves)
+    return Patch(
+        name, tuple(Piece(name, samples, tangents, turn) for samples, tangents in curves), off, "it is not of revolution"
+    )
+
+
+def _ends_a_turn(face: Any, frame: AxisFrame) -> bool:
+    if not planar(face):
+        return False
+    points = np.vstack([frame.local(edge_points(edge, 5)) for edge in face.Edges])
+    far = points[np.argmax(np.hypot(points[:, 0], points[:, 1]))]
+    off = np.abs(points[:, 0] * far[1] - points[:, 1] * far[0]) / max(np.hypot(far[0], far[1]), 1e-12)
+    return bool(off.max() < EDGE_TOLERANCE)
+
+
+def planar(face: Any) -> bool:
+    """Whether a face is flat, whatever kind of surface it has."""
+    surface = face.Surface
+    if surface.TypeId in ("Part::GeomBSplineSurface", "Part::GeomBezierSurface"):
+        return bool(surface.isPlanar(1e-6))
+    return bool(surface.TypeId == "Part::GeomPlane")
+
+
+def _meridian(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
+    kind = face.Surface.TypeId
+    if planar(face):
+        return _flat(face, frame)
+    if kind == "Part::GeomSphere":
+        found = _sphere(face, frame)
+        if found is not None:
+            return found
+    return _along_parameter(face, frame) or _section(face, frame)
+
+
+def _boundary(face: Any, frame: AxisFrame, count: int = 9) -> tuple[Array, Array, Array]:
+    return frame.cylindrical(np.vstack([edge_points(edge, count) for edge in face.Edges]))
+
+
+def _flat(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
+    """A plane across the axis: a straight piece from its inner to its outer radius."""
+    radius, height, _ = _boundary(face, frame)
+    if np.ptp(height) > TOLERANCE:
+        return None
+    h = float(height.mean())
+    inner = 0.0 if len(face.Wires) == 1 and _turn(face, frame) is None else float(radius.min())
+    return [line((inner, h), (float(radius.max()), h))]
+
+
+def _sphere(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
+    """A sphere centred on the axis, whichever way its own poles lie."""
+    centre = frame.local([face.Surface.Center])[0]
+    if np.hypot(centre[0], centre[1]) > TOLERANCE:
+        return None
+    radius, height, _ = _boundary(face, frame)
+    latitude = np.arctan2(height - centre[2], radius)
+    low, high = float(latitude.min()), float(latitude.max())
+    for sign in (-1.0, 1.0):
+        pole = frame.origin + frame.rotation @ [0.0, 0.0, centre[2] + sign * face.Surface.Radius]
+        if face.distToShape(Part.Vertex(*pole.tolist()))[0] < 1e-6:
+            low, high = (-0.5 * np.pi, high) if sign < 0.0 else (low, 0.5 * np.pi)
+    low, high = (_snapped(angle) for angle in (low, high))
+    return [arc((0.0, centre[2]), face.Surface.Radius, low, high)] if high > low else None
+
+
+def _snapped(angle: float) -> float:
+    """Latitudes within rounding of a pole, put on it: a file may say a pole with ten digits."""
+    return float(np.copysign(0.5 * np.pi, angle)) if abs(abs(angle) - 0.5 * np.pi) < 1e-9 else angle
+
+
+def _along_parameter(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
+    """The meridian as a line of one parameter of the surface, where such lines lead across all parallels."""
+    u0, u1, v0, v1 = face.ParameterRange
+    surface = face.Surface
+    middle_u, middle_v = 0.5 * (u0 + u1), 0.5 * (v0 + v1)
+    best, span = None, TOLERANCE
+    for along_v, first, last in ((True, v0, v1), (False, u0, u1)):
+        t = np.linspace(first, last, 17)
+        r, h, _ = frame.cylindrical([
+            surface.value(middle_u, value) if along_v else surface.value(value, middle_v) for value in t.tolist()
+        ])
+        steps = np.hypot(np.diff(r), np.diff(h))
+        if steps.sum() > span:
+            best, span = (along_v, first, last, steps.min()), float(steps.sum())
+    if best is None or best[3] < 1e-6 * span:
+        return None
+    along_v, first, last, _ = best
+    if surface.TypeId == "Part::GeomOffsetSurface":
+        return smooth_pieces(_offset_line(face, frame, along_v, first, last), [first, last], [])
+    return pieces_of(surface.uIso(middle_u) if along_v else surface.vIso(middle_v), frame, first, last)
+
+
+def _offset_line(face: Any, frame: AxisFrame, along_v: bool, first: float, last: float) -> Curve:
+    """A parameter line of a surface whose own curves the kernel only approximates."""
+    u0, u1, v0, v1 = face.ParameterRange
+    surface, order = face.Surface, (0, 1) if along_v else (1, 0)
+
+    def evaluate(t: Array) -> tuple[Array, Array]:
+        places = [(0.5 * (u0 + u1), value) if along_v else (value, 0.5 * (v0 + v1)) for value in t.tolist()]
+        d = as_array([surface.getDN(u, v, *order) for u, v in places]) @ frame.rotation
+        return flattened(frame.local([surface.value(u, v) for u, v in places]), d, t > 0.5 * (first + last))
+
+    return evaluate
+
+
+def _section(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
+    """The meridian cut by the half plane through the face's middle, each point brought back onto the exact surface; the
+    tangent is across the surface normal.
+    """
+    radius, _, azimuth = frame.cylindrical(_grid(face, True) or _grid(face, False))
+    at = float(azimuth[np.argmax(radius)])
+    across = frame.rotation @ [-np.sin(at), np.cos(at), 0.0]
+    outward = frame.rotation @ [np.cos(at), np.sin(at), 0.0]
+    wires = face.slice(FreeCAD.Vector(*across.tolist()), float(across @ frame.origin))
+    edges = [edge for wire in wires for edge in wire.Edges if not edge.Degenerated]
+    surface = face.Surface
+
+    def of_edge(edge: Any) -> list[tuple[Array, Array]]:
+        first, last = edge.ParameterRange
+
+        def evaluate(t: Array) -> tuple[Array, Array]:
+            places = [surface.parameter(edge.valueAt(value)) for value in t.tolist()]
+            p = frame.local([surface.value(u, v) for u, v in places])
+            n = as_array([surface.normal(u, v) for u, v in places]) @ frame.rotation
+            forward = as_array([edge.tangentAt(value) for value in t.tolist()]) @ frame.rotation
+            d = np.cross(np.cross(n, forward), n)
+            return flattened(p, d, t > 0.5 * (first + last))
+
+        return smooth_pieces(evaluate, [first, last], [])
+
+    kept = [edge for edge in edges if float(np.mean((as_array([edge.valueAt(
+        0.5 * sum(edge.ParameterRange))]) - frame.origin) @ outward)) > 0.0]
+    return [piece for edge in kept for piece in of_edge(edge)] or None
+
+
+def _grid(face: Any, inside_only: bool) -> list[Any]:
+    u0, u1, v0, v1 = face.ParameterRange
+    return [
+        face.Surface.value(u, v) for u in np.linspace(u0, u1, 13).tolist() for v in np.linspace(v0, v1, 13).tolist()
+        if not inside_only or face.isPartOfDomain(u, v)
+    ]
+
+
+def _deviation(face: Any, frame: AxisFrame, curves: list[tuple[Array, Array]]) -> float:
+    """Largest distance, mm, between the face and what its meridian makes when turned about the axis."""
+    if planar(face):
+        return 0.0
+    off = _distance(frame, _grid(face, False), curves)
+    if off > TOLERANCE:
+        # the surface goes on past the face's edges: only the face itself counts
+        off = _distance(frame, _grid(face, True) or _grid(face, False), curves)
+    return max(off, _distance(frame, np.vstack([edge_points(edge, 9) for edge in face.Edges]), curves))
+
+
+def _distance(frame: AxisFrame, points: Any, curves: list[tuple[Array, Array]]) -> float:
+    radius, height, _ = frame.cylindrical(points)
+    p = np.stack([radius, height], axis=1)[:, None, :]
+    nearest = np.full(len(radius), np.inf)
+    for samples, _ in curves:
+        a, ab = samples[None, :-1], np.diff(samples, axis=0)[None]
+        share = np.clip(((p - a) * ab).sum(-1) / np.maximum((ab * ab).sum(-1), 1e-30), 0.0, 1.0)
+        nearest = np.minimum(nearest, np.linalg.norm(p - a - share[..., None] * ab, axis=-1).min(axis=1))
+    return float(nearest.max())
+
+
+def _spread(face: Any, frame: AxisFrame) -> float:
+    """How far a face without a meridian is from turning about the axis: the play of its radius or height, mm."""
+    radius, height, _ = frame.cylindrical(_grid(face, True) or _grid(face, False))
+    return float(max(min(np.ptp(radius), np.ptp(height)), 2.0 * TOLERANCE))
+
+
+def _edge_deviation(edges: list[Any], frame: AxisFrame) -> float:
+    """Largest distance, mm, of an edge from the nearer of a parallel and a meridian."""
+    worst = 0.0
+    for edge in edges:
+        if edge.Degenerated:
+            continue
+        p = frame.local(edge_points(edge, 9))
+        radius = np.hypot(p[:, 0], p[:, 1])
+        far = p[np.argmax(radius)] / max(radius.max(), 1e-12)
+        off_meridian = np.abs(p[:, 0] * far[1] - p[:, 1] * far[0]).max()
+        off_parallel = np.hypot(np.ptp(radius), np.ptp(p[:, 2]))
+        worst = max(worst, float(min(off_meridian, off_parallel)))
+    return worst
+
+
+def _turn(face: Any, frame: AxisFrame) -> tuple[float, float] | None:
+    """Azimuths (start, end) rad of a part of a turn, None for a full one."""
+    u0, u1, v0, v1 = face.ParameterRange
+    if face.Surface.TypeId in NATURAL and u1 - u0 > FULL:
+        return None
+    flat = planar(face)
+    kept = [edge_points(edge, 181) for edge in face.Edges]
+    for t in np.linspace(0.0, 1.0, 181)[1:-1].tolist():
+        for u, v in ((u0 + t * (u1 - u0), 0.5 * (v0 + v1)), (0.5 * (u0 + u1), v0 + t * (v1 - v0))):
+            if not flat:
+                kept.append(as_array([face.Surface.value(u, v)]))
+    return _reach(frame, np.vstack(kept))
+
+
+def _reach(frame: AxisFrame, points: Array) -> tuple[float, float] | None:
+    """Azimuths (start, end) rad between which points lie: what they leave out is the widest stretch without any."""
+    radius, _, azimuth = frame.cylindrical(points)
+    azimuth = np.sort(np.mod(azimuth[radius > 1e-3 * max(radius.max(), 1e-9)], 2.0 * np.pi))
+    gaps = np.diff(np.r_[azimuth, azimuth[0] + 2.0 * np.pi])
+    widest = int(np.argmax(gaps))
+    if gaps[widest] < np.radians(2.5):
+        return None
+    start = float(azimuth[(widest + 1) % len(azimuth)])
+    end = start + 2.0 * np.pi - float(gaps[widest])
+    return start, end

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The wall of a part of revolution: which faces, about which axis, with which meridian."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ...core.geometry.curves import contour
+from ...core.geometry.curves.contour import Chain, Piece
+from ...core.geometry.curves.profile import Array, Meridian, RevolvedWall
+from ...core.issues import NOTE, WARNING, InputError, Issue
+from ..files.lost_pole import has_lost_pole
+from .axis import candidates
+from .cylindrical import AxisFrame, axis_frame
+from .patch import Patch, patch_of, planar
+from .turn import common_turn, merged
+from .turning import normals_of, surely_off
+from .wire import pieces_of_edges
+
+SLIVER = 1e-3  # mm; faces narrower than this are ignored
+MOSTLY = 0.5  # of the surface of several solids, that the one with a wall has at least
+JUDGED = 24  # faces that are off an axis, looked at for the one to tell of
+
+Named = tuple[str, Any]
+
+
+def find_wall(
+    shape: Any, faces: Sequence[str] = (), wall: str = "outer", axis: tuple[Any, Any] | None = None, label: str = "part"
+) -> RevolvedWall:
+    """The wall of a Part.Shape as a meridian turned about its axis, in the shape's own coordinates.
+
+    faces: names such as 'Face3' of the wall's faces; all when left out: of a solid or closed shell then the outer or
+    inner wall without its flat end faces, or the middle, halfway between the two. axis: point and direction, needed by
+    wires and sketches, found on surfaces. Raises InputError 'NO_WALL', 'NOT_REVOLUTION' (naming face and deviation in
+    mm), 'NO_AXIS', 'UNKNOWN_FACE', 'SEVERAL_SOLIDS', 'NOT_OF_REVOLUTION' where most of several solids are not.
+    """
+    if shape is None or shape.isNull():
+        raise InputError("NO_WALL", label, "the shape is empty; choose an object with a shape")
+    if not shape.Faces:
+        return _from_edges(shape, wall, axis, label)
+    named = [(f"Face{index}", face) for index, face in enumerate(shape.Faces, start=1)]
+    if faces:
+        return _from_faces(_chosen(named, faces, label), wall, axis, label, selected=True)
+    if len(shape.Solids) > 1:
+        return _only_solid(shape, named, wall, axis, label)
+    return _from_faces(named, wall, axis, label, selected=False)
+
+
+def _chosen(named: list[Named], faces: Sequence[str], label: str) -> list[Named]:
+    known = dict(named)
+    for name in faces:
+        if name not in known:
+            raise InputError("UNKNOWN_FACE", label, f"it has no {name}; its faces are Face1 to Face{len(named)}")
+    return [(name, known[name]) for name in dict.fromkeys(faces)]
+
+
+def _only_solid(shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str) -> RevolvedWall:
+    """The wall of the one solid that has one, where that is most of the shape."""
+    found: list[tuple[str, RevolvedWall, float]] = []
+    area = sum(solid.Area for solid in shape.Solids)
+    for index, solid in enumerate(shape.Solids, start=1):
+        own = [(name, face) for name, face in named if any(face.isSame(other) for other in solid.Faces)]
+        try:
+            made = _from_faces(own, wall, axis, label, False)
+            found.append((f"Solid{index} ({own[0][0]} to {own[-1][0]})", made, solid.Area / area))
+        except InputError:
+            continue
+    if len(found) == 1:
+        name, made, share = found[0]
+        if share < MOSTLY:
+            raise InputError(
+                "NOT_OF_REVOLUTION", label, f"of its {len(shape.Solids)} solids {name} alone turns about an axis, "
+                f"{share:.0%} of its surface; name the faces of that one to deposit it alone, and deposit the others as "
+                "walls on a part or solids on a hub",
+            )
+        return made
+    if not found:
+        raise InputError(
+            "NO_WALL", label, f"none of its {len(shape.Solids)} solids is of revolution; name the faces of the wall"
+        )
+    names = ", ".join(name for name, *_ in found)
+    raise InputError("SEVERAL_SOLIDS", label, f"{names} all have a wall; name the faces of the one to deposit")
+
+
+def _from_faces(
+    named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str, selected: bool
+) -> RevolvedWall:
+    wide = [
+        (name, face) for name, face in named if 2.0 * face.Area > SLIVER * face.Length or has_lost_pole(face)
+    ]
+    if not wide:
+        raise InputError("NO_WALL", label, "it has no face of any width; choose another object")
+    lines = [axis] if axis is not None else list(candidates([face for _, face in wide]))
+    if not lines:
+        raise InputError("NO_WALL", label, "no axis was found that its faces turn about; give it, or name the faces")
+    frame, patches = _about_best(wide, lines)
+    if not all(patch.sound for patch in patches) and all(planar(face) for _, face in wide):
+        raise InputError("NO_WALL", label, "all its faces are flat; choose a part, or faces, of revolution")
+    worst = max(patches, key=lambda patch: patch.deviation)
+    if not worst.sound:
+        hint = "choose other faces" if selected else "name the faces of the wall if it is not part of it"
+        raise InputError(
+            "NOT_REVOLUTION", f"{label} {worst.name}", f"{worst.what}: {worst.deviation:.4g} mm off; {hint}"
+        )
+    pieces = merged([piece for patch in patches for piece in patch.pieces], label)
+    if not pieces:
+        raise InputError("NO_WALL", label, "it has no face that turns about the axis; name the faces of the wall")
+    return _assembled(pieces, frame, wall, label, selected)
+
+
+def _about_best(wide: Sequence[Named], lines: Sequence[tuple[Any, Any]]) -> tuple[AxisFrame, list[Patch]]:
+    """The axis about which all faces turn, and what they are about it; else the one that the least of their area is off, and
+    the largest of the faces that are."""
+    normals = normals_of([face for _, face in wide])
+    area = np.array([face.Area + SLIVER for _, face in wide])
+    large = np.argsort(-area, kind="stable").tolist()
+    least, frame, off = np.inf, None, []
+    for point, direction in lines:
+        about = axis_frame(point, direction)
+        leaning = surely_off(normals, about)
+        patches: list[Patch] = []
+        if not leaning.any():
+            for name, face in wide:
+                patches.append(patch_of(face, name, about))
+                if not patches[-1].sound:
+                    break
+            else:
+                return about, patches
+            leaning[len(patches) - 1] = True
+        if area[leaning].sum() < least:
+            least, frame, off = float(area[leaning].sum()), about, [k for k in large if leaning[k]]
+    assert frame is not None
+    return frame, [patch_of(wide[k][1], wide[k][0], frame) for k in off[:JUDGED]]
+
+
+def _from_edges(shape: Any, wall: str, axis: tuple[Any, Any] | None, label: str) -> RevolvedWall:
+    if not shape.Edges:
+        raise InputError("NO_WALL", label, "it has neither faces nor edges; choose another object")
+    if axis is None:
+        raise InputError("NO_AXIS", label, "a wire or sketch needs an axis to turn about; give one")
+    frame = axis_frame(*axis)
+    return _assembled(pieces_of_edges(shape, frame, label), frame, wall, label, selected=False)
+
+
+def _assembled(pieces: list[Piece], frame: AxisFrame, wall: str, label: str, selected: bool) -> RevolvedWall:
+    """The wall made of pieces about the axis of the frame."""
+    chains, gap = contour.chains(pieces)
+    if len(chains) > 1:
+        names = " and ".join("-".join(dict.fromkeys((chain[0].name, chain[-1].name))) for chain in chains)
+        raise InputError(
+            "NO_WALL", label, f"{names} do not join to one wall; name the faces of the wall, or deposit them one by one"
+        )
+    chain, issues = chains[0], []
+    if gap > contour.JOIN:
+        issues.append(Issue(NOTE, "GAP", f"a gap of {gap:.3g} mm between faces of {label} is bridged"))
+    if contour.is_closed(chain) and (not selected or _loops(chain)):
+        chain, meridian = _wall_of_contour(chain, wall, label)
+    else:
+        if wall != "outer":
+            text = f"{label} is a surface: it has no {wall} wall, and is taken as it is"
+            issues.append(Issue(WARNING, "OPEN_WALL", text))
+        chain = contour.upright(chain)
+        meridian = contour.meridian_of(chain)
+    issues += _step_notes(chain, label)
+    turn = common_turn(chain, label)
+    base = float(meridian.points[0, 1])
+    lowered = Meridian(meridian.s, meridian.points - [0.0, base], meridian.tangents)
+    start, end = turn if turn is not None else (0.0, 2.0 * np.pi)
+    return RevolvedWall(
+        lowered, _pose(frame, base), start, end, turn is None, tuple(issues), label,
+        tuple(dict.fromkeys(piece.name for piece in chain)),
+    )
+
+
+def _loops(chain: Chain) -> bool:
+    first, last = contour.ends(chain)
+    return bool(np.hypot(*(first - last)) < contour.JOIN)
+
+
+def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridian]:
+    """The wall asked for of a closed contour: its pieces and its meridian."""
+    walls = contour.walls(chain)
+    if not walls:
+        raise InputError("NO_WALL", label, "it has only flat faces across the axis; name the faces of the wall")
+    if wall == "outer":
+        return walls[0], contour.meridian_of(walls[0])
+    if len(walls) == 1:
+        raise InputError("NO_WALL", label, f"it is solid and has no {wall} wall; use wall: outer")
+    if wall == "inner":
+        return walls[-1], contour.meridian_of(walls[-1])
+    return walls[0] + walls[-1], Meridian.chained(contour.halfway(walls[0], walls[-1]))
+
+
+def _step_notes(chain: Chain, label: str) -> list[Issue]:
+    """Notes on tiny faces inside the wall, such as the step of a curve given in two formulas."""
+    return [
+        Issue(NOTE, "STEP", f"{piece.name} of {label} is a step of {span:.3g} mm in the wall; it is kept")
+        for piece in chain
+        if (span := float(np.hypot(*(piece.points[-1] - piece.points[0])))) < contour.BRIDGE and len(chain) > 1
+    ]
+
+
+def _pose(frame: AxisFrame, base: float) -> Array:
+    pose = np.eye(4)
+    pose[:3, :3] = frame.rotation
+    origin = frame.origin + base * frame.rotation[:, 2]
+    pose[:3, 3] = np.where(np.abs(origin) < 1e-11, 0.0, origin)
+    return pose

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Exact distances of points from the faces of a shape, their place on it found by triangles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.geometry.mesh.solid import Search, SolidMesh
+from ...core.issues import InputError
+from ..kernel.process import beside
+
+Array = NDArray[np.float64]
+
+FINEST, SHARE = 0.02, 2e-4  # mm, and of the extent: deflection of the triangles
+OFF = 4.0  # deflections between the two feet of a point on a bent face, beyond which it is past the edge of the face,
+TURNED = 0.1  # and this share of its distance: triangles are turned against the face
+
+
+@dataclass(frozen=True)
+class Skin:
+    """Triangles of a shape, vertices (n, 3) mm and corners (m, 3), within `deflection` mm of it; `exact` gives distances
+    (k,) of points (k, 3), outside with a plus, and the unit normals (k, 3) along which they count."""
+
+    vertices: Array
+    triangles: NDArray[np.intp]
+    deflection: float
+    exact: Callable[[Array], tuple[Array, Array]]
+
+
+def skin(shape: Any, label: str) -> Skin:
+    """The faces of a Part.Shape, to measure from. InputError NO_FACES."""
+    if not shape.Faces:
+        raise InputError("NO_FACES", label, "it has no faces to compare points with; choose a solid or a surface")
+    deflection = max(FINEST, SHARE * shape.BoundBox.DiagonalLength)
+    vertices, triangles, face = beside(_by_face, shape, deflection)
+    mesh = SolidMesh(vertices, triangles)
+    search = mesh.searched(0.02 * float(np.ptp(vertices, axis=0).max()))
+    closed = bool(shape.Solids)
+    faces = shape.Faces
+
+    def exact(asked: Array) -> tuple[Array, Array]:
+        return _exact(asked, faces, face, mesh, search, deflection, closed)
+
+    return Skin(vertices, triangles, deflection, exact)
+
+
+def _by_face(shape: Any, deflection: float) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
+    """Vertices (n, 3), triangles (m, 3), and the number of the face (m,) of each."""
+    points, corners = shape.tessellate(deflection)
+    face = np.repeat(np.arange(len(shape.Faces)), [len(one.tessellate(deflection)[1]) for one in shape.Faces])
+    return np.array([tuple(point) for point in points]), np.array(corners, dtype=np.intp), face
+
+
+def _exact(
+    points: Array, faces: list[Any], face: NDArray[np.intp], mesh: SolidMesh, search: Search, deflection: float,
+    closed: bool,
+) -> tuple[Array, Array]:
+    import FreeCAD
+
+    rough, near, triangle = search.signed(points)
+    foot, normal = np.empty_like(points), np.empty_like(points)
+    for k, point in enumerate(points.tolist()):
+        own = faces[face[triangle[k]]]
+        u, v = own.Surface.parameter(FreeCAD.Vector(*point))
+        foot[k], normal[k] = tuple(own.Surface.value(u, v)), tuple(own.normalAt(u, v))
+    distance = ((points - foot) * normal).sum(axis=1)
+    if closed:  # what is past the edge of its face is nearest to the edge
+        flat = np.array([one.Surface.TypeId == "Part::GeomPlane" for one in faces])[face[triangle]]
+        slack = np.where(flat, 1e-6, OFF * deflection + TURNED * np.abs(rough))
+        past = np.linalg.norm(foot - near, axis=1) > slack
+        away = points[past] - near[past]
+        size = np.maximum(np.abs(rough[past]), 1e-12)[:, None]
+        normal[past] = np.where(size > 1e-9, np.sign(rough[past])[:, None] * away / size, mesh.units[triangle[past]])
+        distance[past] = rough[past]
+    return distance, normal

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How a part lies about the surface that its beads run on, from its shape."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import Part
+
+from ...core.collision.depths import grain, measured
+from ...core.geometry.curves.profile import RevolvedWall
+from ...core.geometry.mesh.solid import spread
+from ...core.geometry.surroundings import Body
+from ...core.geometry.walls.part_depths import Array, PartDepths, Surface
+from ..kernel.limits import FAULTS
+from ..kernel.process import beside
+from .tessellate import tessellated
+
+CHORD = 1e-3  # of the part's size, between it and its triangles
+FINEST, COARSEST = 0.02, 0.5  # mm of that
+PLACES = 4000  # of the surface
+
+
+def of_revolved(shape: Any, wall: RevolvedWall, label: str) -> PartDepths | None:
+    """Of the part that a wall of revolution was found on; None where it has no faces."""
+    return _of(shape, wall.faces, label, revolved_places(wall), None)
+
+
+def of_faces(shape: Any, faces: Sequence[str], label: str, substrate: Body | None) -> PartDepths | None:
+    """Of the part that faces are the wall of; what lies in the substrate does not count."""
+    return _of(shape, faces, label, None, substrate)
+
+
+def revolved_places(wall: RevolvedWall) -> Surface:
+    """Places spread over a wall of revolution."""
+    s = (np.arange(400) + 0.5) / 400 * wall.meridian.length
+    radius = wall.meridian.at(s)[0]
+    turn = wall.end - wall.start
+    area = float((radius * turn).mean() * wall.meridian.length)
+    step = max(np.sqrt(max(area, 1e-9) / PLACES), 1e-3)
+    rows = min(max(2, round(wall.meridian.length / step)), PLACES)
+    s = (np.arange(rows) + 0.5) / rows * wall.meridian.length
+    radius, height, tangent = wall.meridian.at(s)
+    counts = np.clip(np.round(radius * turn / step).astype(int), 3, PLACES)
+    row = np.repeat(np.arange(rows), counts)
+    number = np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
+    azimuth = wall.start + (number + 0.5) / counts[row] * turn
+    across = np.stack([tangent[row, 1], np.zeros(len(row)), -tangent[row, 0]], axis=1)
+    areas = (radius * turn * wall.meridian.length / rows / counts)[row]
+    return Surface(wall.points(radius[row], height[row], azimuth), wall.directions(across, azimuth), areas)
+
+
+def _of(
+    shape: Any, faces: Sequence[str], label: str, surface: Surface | None, substrate: Body | None
+) -> PartDepths | None:
+    if not shape.Faces:
+        return None
+    solids = _solids(shape)
+    size = shape.BoundBox.DiagonalLength
+    chord = float(np.clip(CHORD * size, min(FINEST, 10.0 * CHORD * size), COARSEST))
+    try:
+        made = beside(tessellated, shape.copy(), chord)
+    except FAULTS:
+        return None  # told by who needs the triangles
+    names = [f"Face{number + 1}" for number in range(len(shape.Faces))]
+    body = Body(label, made.vertices, made.triangles.astype(np.int64))
+    on = np.isin(made.owner, [k for k, name in enumerate(names) if name in set(faces)])
+    surface = _places(body, on) if surface is None else surface
+    if not len(surface.points):
+        return None
+    depths, thickness, by_face, share = measured(body, made.owner, names, surface, 3.0 * chord, substrate)
+    codes = {face.hashCode(): name for name, face in zip(names, shape.Faces, strict=True)}
+    owned = [[codes.get(face.hashCode(), "") for face in solid.Faces] for solid in solids]
+    left = [k for k, own in enumerate(owned) if not set(own) & set(faces)] if len(solids) > 1 else []
+    known = {name for k in left for name in owned[k]} | set(faces)
+    rest = [k for k, name in enumerate(names) if name not in known]
+    volumes = [abs(float(solid.Volume)) for solid in solids]
+    return PartDepths(
+        label, share * sum(volumes), float(surface.areas.sum()), depths, thickness,
+        tuple(names[k] for k in rest), tuple(float(by_face[k]) for k in rest),
+        tuple(float(shape.Faces[k].Area) for k in rest),
+        tuple((f"Solid{k + 1}", volumes[k]) for k in left),
+    )
+
+
+def _solids(shape: Any) -> list[Any]:
+    """Its solids, or what its closed shells enclose."""
+    if shape.Solids:
+        return list(shape.Solids)
+    return [Part.Solid(shell) for shell in shape.Shells if shell.isClosed()]
+
+
+def _places(body: Body, on: Any) -> Surface:
+    """Places spread over the triangles of a wall."""
+    corners = body.corners()[on]
+    if not len(corners):
+        return Surface(*(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)))
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    twice: Array = np.linalg.norm(across, axis=1)
+    points, of = spread(corners, grain(corners, float(2.0 * np.sqrt(0.5 * twice.sum() / PLACES))))
+    areas = (0.5 * twice / np.maximum(np.bincount(of, minlength=len(corners)), 1))[of]
+    return Surface(points, (across / np.maximum(twice, 1e-300)[:, None])[of], areas)

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a wall of several faces must not be: apart, creased, or bent too tightly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD
+import numpy as np
+import Part
+from scipy.spatial import cKDTree
+
+from ...core.geometry.mesh.refined import Edges, boundary
+from ...core.geometry.mesh.triangle_mesh import Index, Mask
+from ...core.geometry.told import place
+from ...core.geometry.walls.patch import Array
+from ...core.geometry.walls.patch_wall import PatchWall
+from ...core.geometry.walls.rims import parts
+from ...core.geometry.walls.surface import dot, normals
+from ...core.geometry.walls.surface_wall import SurfaceWall
+from ...core.issues import InputError
+from .sheet import SEWN
+
+CREASE = np.radians(1.0)  # of the normals of two faces along their common edge
+SLIT = 0.2  # mm; boundaries of two faces nearer than this are a gap between them, not a design
+STEP = 1e-5  # of the size of a parameter's step, for curvatures
+PLACES = 96  # up and around a tube at which its radii are taken
+
+
+def refuse_gaps(wall: PatchWall, label: str) -> None:
+    """InputError GAP where faces that should join do not, or are nowhere near each other."""
+    ends, _ = boundary(wall.triangles)
+    if not len(ends):
+        return
+    owner = _owners(wall, ends)
+    corner = wall.vertices[ends]
+    middle = corner.mean(axis=1)
+    tree = cKDTree(middle)
+    count, part = parts(wall, np.ones(len(wall.vertices), dtype=bool))
+    near = np.asarray(tree.query(middle, k=min(16, len(middle)))[1]).reshape(len(middle), -1)
+    other = (owner[near] != owner[:, None]) | (part[ends[near, 0]] != part[ends[:, 0]][:, None])
+    apart = ~(ends[near][:, :, :, None] == ends[:, None, None, :]).any(axis=(2, 3))
+    gap = _to_segments(middle, corner[near])
+    gap[~(other & apart)] = np.inf
+    best = gap.min(axis=1)
+    if best.min() < SLIT:
+        row = int(np.argmax(np.where(best < SLIT, best, -1.0)))
+        k = near[row, int(np.argmin(gap[row]))]
+        raise InputError(
+            "GAP", label, f"{wall.faces[owner[row]]} and {wall.faces[owner[k]]} are {best[row]:.3g} mm apart at "
+            f"{place(middle[row])}; close the gap: edges must meet within {SEWN:g} mm",
+        )
+    if count > 1:
+        one, other = (np.flatnonzero(part == k) for k in (0, 1))
+        distance, index = cKDTree(wall.vertices[one]).query(wall.vertices[other])
+        k = int(np.argmin(distance))
+        names = [wall.faces[wall.patch[np.flatnonzero((wall.triangles == v).any(axis=1))[0]]]
+                 for v in (one[index[k]], other[k])]
+        raise InputError(
+            "GAP", label, f"the faces form {count} separate pieces: {names[0]} and {names[1]} are {distance[k]:.4g} "
+            f"mm apart at {place(wall.vertices[other[k]])}; choose connected faces, edges meeting within {SEWN:g} mm",
+        )
+
+
+def _owners(wall: PatchWall, ends: Index) -> Index:
+    edges = Edges(wall.triangles)
+    face = edges.faces[edges.count == 1, 0]
+    keys = edges.ends[edges.count == 1]
+    base = len(wall.vertices)
+    order = np.argsort(keys[:, 0] * base + keys[:, 1])
+    pair = np.sort(ends, axis=1)
+    at = np.searchsorted((keys[:, 0] * base + keys[:, 1])[order], pair[:, 0] * base + pair[:, 1])
+    owner: Index = wall.patch[face[order[at]]]
+    return owner
+
+
+def _to_segments(points: Array, segments: Array) -> Array:
+    """Distances (n, k) of points (n, 3) to segments (n, k, 2, 3)."""
+    start, chord = segments[:, :, 0], segments[:, :, 1] - segments[:, :, 0]
+    t = np.clip(dot(points[:, None] - start, chord) / np.maximum(dot(chord, chord), 1e-300), 0.0, 1.0)
+    distance: Array = np.linalg.norm(points[:, None] - start - t[..., None] * chord, axis=-1)
+    return distance
+
+
+def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
+    """InputError CREASE where two faces meet at an angle, BRANCHING_FACES where three meet."""
+    edges = Edges(wall.triangles)
+    middle = wall.vertices[edges.ends].mean(axis=1)
+    if (edges.count > 2).any():
+        at = middle[np.argmax(edges.count > 2)]
+        raise InputError(
+            "BRANCHING_FACES", label, f"more than two faces meet in one edge at {place(at)}; a wall branches by smooth "
+            "faces with openings: leave one of them out",
+        )
+    two = edges.count == 2
+    pair = wall.patch[edges.faces]
+    joint = np.flatnonzero(two & (pair[:, 0] != pair[:, 1]))
+    if not len(joint):
+        return
+    ends = wall.vertices[edges.ends[joint, 0]]
+    normals = np.empty((2, len(joint), 3))
+    for side in (0, 1):
+        for k in np.unique(pair[joint, side]):
+            mine = pair[joint, side] == k
+            normals[side, mine] = wall.patches[k].at(wall.patches[k].inverse(ends[mine]))[1]
+    angle = np.arctan2(np.linalg.norm(np.cross(normals[0], normals[1]), axis=1), dot(normals[0], normals[1]))
+    worst = int(np.argmax(angle))
+    if angle[worst] > CREASE:
+        names = [wall.faces[k] for k in pair[joint[worst]]]
+        raise InputError(
+            "CREASE", f"{label} {_edge_at(shape, ends[worst])}".strip(), f"{names[0]} and {names[1]} meet at an angle of "
+            f"{np.degrees(angle[worst]):.3g} deg at {place(ends[worst])}; a wall's faces must run on smoothly, within "
+            f"{np.degrees(CREASE):g} deg: round the edge, or deposit the faces one after the other",
+        )
+
+
+def _edge_at(shape: Any, point: Array) -> str:
+    vertex = Part.Vertex(FreeCAD.Vector(*point))
+    found = min(enumerate(shape.Edges, start=1), key=lambda one: one[1].distToShape(vertex)[0], default=(0, None))
+    return f"Edge{found[0]}" if found[0] else ""
+
+
+def refuse_tight(wall: PatchWall, chosen: Mask, height: float, label: str) -> None:
+    """InputError LAYER_HEIGHT where the smaller principal radius of the vertices `chosen` (n,) is below the layer height."""
+    radius, patch = smallest_radii(wall)
+    radius = np.where(chosen, radius, np.inf)
+    at = int(np.argmin(radius))
+    _refuse_below(height, float(radius[at]), wall.vertices[at], f"{label} {wall.faces[patch[at]]}")
+
+
+def refuse_tight_tube(tube: SurfaceWall, height: float, label: str) -> None:
+    """InputError LAYER_HEIGHT where the smaller principal radius of a tube, from its first layer to its end, is below the
+    layer height."""
+    surface = tube.surface()
+    low, around = surface.inverse(tube.first[:: max(1, len(tube.first) // PLACES)])
+    rise = np.linspace(0.0, 1.0, PLACES)[1:-1, None]  # steps stay inside
+    u = low + rise * (tube.end - low)
+    v = np.broadcast_to(around, u.shape)
+    slopes = surface.derivatives(u, v)[1:]
+    turns = []
+    for step_u, step_v in ((STEP * tube.end, 0.0), (0.0, STEP * tube.period)):
+        ahead, back = normals(surface, u + step_u, v + step_v), normals(surface, u - step_u, v - step_v)
+        turns.append((ahead - back) / (2.0 * (step_u + step_v)))
+    radius = principal_radii(slopes, turns)
+    at = np.unravel_index(int(np.argmin(radius)), radius.shape)
+    named = f"{label} {tube.faces[0]}" if len(tube.faces) == 1 else label
+    _refuse_below(height, float(radius[at]), surface.point(u[at], v[at]), named)
+
+
+def _refuse_below(height: float, radius: float, point: Array, where: str) -> None:
+    if radius < height * (1.0 - 1e-6):
+        raise InputError(
+            "LAYER_HEIGHT", where, f"layers of {height:g} mm are higher than the wall's smallest radius of curvature, "
+            f"{radius:.3g} mm at {place(point)}; use lower layers, or a larger radius there",
+        )
+
+
+def smallest_radii(wall: PatchWall) -> tuple[Array, Index]:
+    """Smallest principal radius (n,) mm at each vertex, and the patch (n,) it was taken from."""
+    first = np.zeros(len(wall.vertices), dtype=np.intp)
+    first[wall.triangles.ravel()] = np.arange(wall.triangles.size)
+    patch = wall.patch[first // 3]
+    uv = wall.uv.reshape(-1, 2)[first]
+    radius = np.full(len(wall.vertices), np.inf)
+    for k in np.unique(patch):
+        mine = np.flatnonzero(patch == k)
+        one, at = wall.patches[k], uv[mine]
+        reach = np.maximum(np.ptp(wall.uv[wall.patch == k].reshape(-1, 2), axis=0), 1e-9)
+        middle = wall.uv[wall.patch == k].reshape(-1, 2).mean(axis=0)
+        at = middle + (1.0 - 4.0 * STEP) * (at - middle)  # steps stay inside
+        slopes, turns = [], []
+        for axis in (0, 1):
+            step = STEP * reach[axis] * np.eye(2)[axis]
+            (ahead, up), (back, down) = one.at(at + step), one.at(at - step)
+            slopes.append((ahead - back) / (2.0 * STEP * reach[axis]))
+            turns.append((up - down) / (2.0 * STEP * reach[axis]))
+        radius[mine] = principal_radii(slopes, turns)
+    return radius, patch
+
+
+def principal_radii(slopes: Sequence[Array], turns: Sequence[Array]) -> Array:
+    """Smaller principal radius (...,) mm, given the derivatives (..., 3) of point and unit normal along both parameters;
+    infinite at poles."""
+    a, b, c = dot(slopes[0], slopes[0]), dot(slopes[0], slopes[1]), dot(slopes[1], slopes[1])
+    e, g = dot(slopes[0], turns[0]), dot(slopes[1], turns[1])
+    f = 0.5 * (dot(slopes[0], turns[1]) + dot(slopes[1], turns[0]))
+    area = a * c - b * b
+    plain = area > 1e-10 * np.median(area)
+    safe = np.where(plain, area, 1.0)
+    mean, gauss = 0.5 * (e * c - 2.0 * f * b + g * a) / safe, (e * g - f * f) / safe
+    bend = np.abs(mean) + np.sqrt(np.maximum(mean * mean - gauss, 0.0))
+    radius: Array = np.where(plain, 1.0 / np.maximum(bend, 1e-12), np.inf)
+    return radius

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether a wall of several faces is cut by itself: faces that fold back, and triangles that cross."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...core.geometry.mesh.near_pairs import near_pairs
+from ...core.geometry.mesh.triangle_mesh import Index
+from ...core.geometry.mesh.triangles import closest
+from ...core.geometry.told import place
+from ...core.geometry.walls.patch import SPLINE, Array
+from ...core.geometry.walls.patch_wall import PatchWall
+from ...core.geometry.walls.surface import dot
+from ...core.issues import InputError
+
+BENT, FOLDED = 0.3, -0.7  # cosines between the normals at the ends of an edge, and of a small part of it
+STEPS, CLOSER = np.linspace(0.0, 1.0, 33), 4  # on an edge at which normals are asked for, and how often between two of them
+ASKED, CLOSING = 12, 20  # cuts of triangles that are followed up, and steps to the place where the faces meet
+CROSSING = 0.05  # rad; faces that touch at less run into each other, or are the same one
+
+
+def refuse_folded(wall: PatchWall, label: str) -> None:
+    """InputError SELF_INTERSECTION where the surface of a face folds back: its normal turns over at once."""
+    for k, patch in enumerate(wall.patches):
+        uv = wall.uv[wall.patch == k]
+        if patch.kind != SPLINE or not len(uv):
+            continue
+        normal = patch.at(uv.reshape(-1, 2))[1].reshape(-1, 3, 3)
+        start, end = uv, np.roll(uv, -1, axis=1)
+        bent = dot(normal, np.roll(normal, -1, axis=1)) < BENT
+        if not bent.any():
+            continue
+        start, end = start[bent], end[bent]
+        # a sharp nose turns over within a part of a step, a fold at once however small the step is
+        for _ in range(CLOSER):
+            line = start[:, None] + STEPS[None, :, None] * (end - start)[:, None]
+            normal = patch.at(line.reshape(-1, 2))[1].reshape(line.shape[:2] + (3,))
+            plain = (patch.area(line.reshape(-1, 2)) > 1e-6).reshape(line.shape[:2])
+            turn = np.where(plain[:, 1:] & plain[:, :-1], dot(normal[:, 1:], normal[:, :-1]), 1.0)
+            at = np.argmin(turn, axis=1)
+            row = np.flatnonzero(turn.min(axis=1) < FOLDED)
+            start, end = line[row, at[row]], line[row, at[row] + 1]
+            if not len(row):
+                break
+        if len(row):
+            raise InputError(
+                "SELF_INTERSECTION", f"{label} {wall.faces[k]}", f"the face folds back and cuts itself at "
+                f"{place(patch.at(start[:1])[0][0])}; a bend must have a larger radius than the tube",
+            )
+
+
+def refuse_crossing(wall: PatchWall, label: str) -> None:
+    """InputError SELF_INTERSECTION where triangles of the wall that are no neighbours cut each other, and the exact faces
+    do so too."""
+    corner = wall.vertices[wall.triangles]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    middle = corner.mean(axis=1)
+    reach = np.linalg.norm(corner - middle[:, None], axis=2).max(axis=1)
+    for pairs in near_pairs(middle, reach):
+        chord = middle[pairs[:, 1]] - middle[pairs[:, 0]]
+        length = np.maximum(np.linalg.norm(chord, axis=1), 1e-300)
+        # neighbours on a smooth wall are about level with each other
+        odd = np.abs(dot(chord, normal[pairs[:, 0]])) > 0.3 * length
+        odd |= dot(normal[pairs[:, 0]], normal[pairs[:, 1]]) < 0.7
+        pairs = pairs[odd]
+        shared = (wall.triangles[pairs[:, 0]][:, :, None] == wall.triangles[pairs[:, 1]][:, None, :]).any(axis=(1, 2))
+        pairs = pairs[~shared]
+        for one, other in (pairs.T, pairs.T[::-1]):
+            _refuse_cuts(wall, corner, normal, one, other, label)
+
+
+def _refuse_cuts(wall: PatchWall, corner: Array, normal: Array, one: Index, other: Index, label: str) -> None:
+    """InputError SELF_INTERSECTION where edges of the triangles `one` (k,) cut the triangles `other` (k,), and so do their
+    faces."""
+    for k in range(3):
+        start, end = corner[one, k], corner[one, (k + 1) % 3]
+        a, b, c = (corner[other, j] for j in range(3))
+        low, high = dot(start - a, normal[other]), dot(end - a, normal[other])
+        across = np.flatnonzero(low * high < 0.0)
+        t = (low[across] / (low[across] - high[across]))[:, None]
+        point = start[across] + t * (end[across] - start[across])
+        cut = closest(a[across], b[across], c[across], point)[0] < 1e-9 + 1e-9 * wall.mesh.longest_edge
+        for at in np.flatnonzero(cut)[:: max(1, int(cut.sum()) // ASKED)]:
+            faces = one[across[at]], other[across[at]]
+            found = _crossing(wall, faces, point[at])
+            if found is None:
+                continue
+            names = sorted({wall.faces[wall.patch[face]] for face in faces})
+            raise InputError(
+                "SELF_INTERSECTION", label, f"the wall cuts itself at {place(found)} ({' and '.join(names)}); a bend "
+                "must have a larger radius than the tube, and faces must not cross",
+            )
+
+
+def _crossing(wall: PatchWall, triangles: tuple[int, int], point: Array) -> Array | None:
+    """Where the exact faces cut each other near two triangles that do so at a point; None where they do not."""
+    near = point[None]
+    patches = [wall.patches[wall.patch[k]] for k in triangles]
+    uv = [wall.uv[k].mean(axis=0)[None] for k in triangles]
+    for _ in range(CLOSING):
+        uv = [patch.inverse(near, start) for patch, start in zip(patches, uv)]
+        (one, one_up), (other, other_up) = (patch.at(at) for patch, at in zip(patches, uv))
+        apart = float(np.linalg.norm(one - other))
+        if apart < 1e-6 or np.linalg.norm(one[0] - point) > 2.0 * wall.mesh.longest_edge:
+            break
+        # where the two tangent planes meet, nearest to the middle between the feet
+        planes = np.stack([one_up[0], other_up[0]])
+        gap = np.array([one_up[0] @ (one[0] - near[0]), other_up[0] @ (other[0] - near[0])])
+        near = near + (np.linalg.pinv(planes, rcond=1e-3) @ gap)[None]
+    steep = float(np.linalg.norm(np.cross(one_up[0], other_up[0]))) > CROSSING
+    return one[0] if apart < 1e-6 and steep else None

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Walls of any connected smooth faces: full tubes and open shells, with openings and slanted ends, on any substrate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import Part
+
+from ...core.geometry.mesh.triangle_mesh import Mask
+from ...core.geometry.told import at_least, count, deviation, place
+from ...core.geometry.walls import contact
+from ...core.geometry.walls.ground import nearest
+from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
+from ...core.geometry.walls.rims import outward_volume, parts, rims_of, with_ends
+from ...core.issues import NOTE, InputError, Issue
+from .checks import refuse_creases, refuse_gaps, refuse_tight, smallest_radii
+from .cuts import refuse_crossing, refuse_folded
+from .sheet import MOST, sheet
+from .standing import standing_edges
+from .start_edges import curves_along, curves_of
+from .substrate import Substrate
+
+EQUAL = 0.433  # area of a triangle with equal sides of 1
+COARSE, SHARE = 4.0, 0.04  # edges of a first mesh, which tells the radii: of the layer height, of the size of the wall
+
+
+def find_patch_wall(
+    shape: Any, named: Sequence[tuple[str, Any]], substrate: Substrate | None, height: float, label: str = "part",
+    start_edges: Sequence[str] = (),
+) -> PatchWall:
+    """The wall of the faces `named` of a shape, for layers of `height` mm, on a substrate, from edges of its own, or
+    from those that stand on the platform.
+
+    All curves in which it leaves the substrate are taken; an issue tells where when there are several. Raises InputError
+    GAP, CREASE, BRANCHING_FACES, SELF_INTERSECTION, LAYER_HEIGHT, ROUGH_WALL, TOO_FINE, NOT_ORIENTABLE, NO_CONTACT, INSIDE,
+    NO_START, UNKNOWN_EDGE.
+    """
+    _refuse_fine(named, height)
+    wall = sheet(named, _edge(named, height, label), label)
+    refuse_creases(wall, shape, label)
+    refuse_gaps(wall, label)
+    refuse_crossing(wall, label)
+    wall = _outward(wall, shape)
+    rims = rims_of(wall)
+    issues: list[Issue] = []
+    if start_edges:
+        first = curves_of(shape, start_edges, wall, label)
+        behind = np.zeros(len(wall.vertices), dtype=bool)
+    elif substrate is None:
+        first, issues = _from_platform(wall, [face for _, face in named], label)
+        behind = np.zeros(len(wall.vertices), dtype=bool)
+    else:
+        first, behind, issues = from_substrate(wall, substrate, rims, label)
+    refuse_tight(wall, ~behind, height, label)
+    issues += several_loops(first, label)
+    return replace(
+        wall, first=tuple(first), behind=behind, rims=with_ends(wall, rims, tuple(first), behind), issues=tuple(issues),
+    )
+
+
+def _from_platform(wall: PatchWall, faces: Sequence[Any], label: str) -> tuple[list[FirstCurve], list[Issue]]:
+    """The edges that stand on the platform, and a note. InputError NO_SUBSTRATE."""
+    lowest = wall.vertices[np.argmin(wall.vertices[:, 2])]
+    edges = standing_edges(faces, float(lowest[2]))
+    if not edges:
+        raise InputError(
+            "NO_SUBSTRATE", label, f"there is nothing to grow on: none of its edges lies on the platform, the plane Z = "
+            f"{lowest[2]:.4g} mm through its lowest place {place(lowest)}; choose a substrate, or the edges to start from",
+        )
+    first = curves_along(edges, wall)
+    told = f"the first layer is the edge of {label} at {place(first[0].points.mean(axis=0))}, which stands on the platform"
+    return first, [Issue(NOTE, "FIRST_LAYER", told)]
+
+
+def several_loops(first: Sequence[FirstCurve], label: str) -> list[Issue]:
+    """A note where there are several first curves."""
+    if len(first) < 2:
+        return []
+    places = ", ".join(place(curve.points.mean(axis=0)) for curve in first)
+    return [Issue(
+        NOTE, "SEVERAL_LOOPS", f"{label} starts in {len(first)} curves, about {places}: layers grow from all of them; "
+        "choose the edges to start from if only some are meant",
+    )]
+
+
+def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
+    """InputError TOO_FINE where even triangles with sides of a layer height are more than a mesh may have."""
+    area = sum(face.Area for _, face in named)
+    about, enough = area / (EQUAL * height) / height, at_least(float(np.sqrt(area / (EQUAL * MOST))))
+    if about > MOST:
+        raise InputError(
+            "TOO_FINE", "strategy.layer_height", f"layers of {height:g} mm ask for a mesh of the wall of about "
+            f"{count(about)} triangles, and more than {MOST:,} cannot be worked with; give more than {enough:g} mm, or "
+            "deposit the wall in parts",
+        )
+
+
+def _edge(named: Sequence[tuple[str, Any]], height: float, label: str) -> float:
+    """Longest edge of the mesh: the layer height, a quarter of the wall's smallest radius if that is less."""
+    # checked early: where a surface is bent that tightly, a finer mesh takes long
+    radius = float(smallest_radii(sound(named, label, COARSE * height))[0].min())
+    return float(np.clip(0.25 * radius, 0.25 * height, height))
+
+
+def sound(named: Sequence[tuple[str, Any]], label: str, edge: float = 0.0) -> PatchWall:
+    """A coarse mesh of the faces, edges not longer than `edge` mm or a share of their size, that has been found not to cut
+    itself. InputError SELF_INTERSECTION, and those of `sheet`."""
+    size = Part.Compound([face for _, face in named]).BoundBox.DiagonalLength
+    coarse = sheet(named, max(edge, SHARE * size), label)
+    refuse_folded(coarse, label)
+    refuse_crossing(coarse, label)
+    return coarse
+
+
+def _outward(wall: PatchWall, shape: Any) -> PatchWall:
+    """The wall with its outer side outwards: as the faces of a solid look, or away from what the wall surrounds."""
+    if shape.Solids:
+        return wall
+    if outward_volume(wall) >= 0.0:
+        return wall
+    return replace(
+        wall, triangles=wall.triangles[:, ::-1].copy(), uv=wall.uv[:, ::-1].copy(),
+        patches=tuple(replace(patch, sign=-patch.sign) for patch in wall.patches),
+    )
+
+
+def from_substrate(
+    wall: PatchWall, substrate: Substrate, rims: Any, label: str
+) -> tuple[list[FirstCurve], Mask, list[Issue]]:
+    """Where a wall leaves its substrate, which of its vertices (n,) lie behind that, and notes. InputError NO_CONTACT,
+    INSIDE."""
+    ground = substrate.ground(wall.mesh.typical_edge)
+    value = contact.levels(wall, ground)
+    outside = value >= 0.0
+    if outside.all():
+        at, gap = nearest(wall.vertices, ground, value)
+        raise InputError(
+            "NO_CONTACT", label, f"the wall does not touch {substrate.label}: it comes nearest at "
+            f"{place(wall.vertices[at])}, {gap:.4g} mm away; move it so that it reaches in, at most "
+            f"{contact.TOUCH:g} mm may be missing",
+        )
+    if not outside.any():
+        at, depth = nearest(wall.vertices, ground, value)
+        raise InputError(
+            "INSIDE", label, f"the wall lies wholly in {substrate.label} (at {place(wall.vertices[at])} it is "
+            f"{depth:.4g} mm deep, and nowhere less); a wall starts on the substrate and ends outside of it",
+        )
+    dropped = _stays_in(wall, outside, substrate)
+    value[dropped] = np.minimum(value[dropped], -1e-6)
+    first, off = contact.first_curves(wall, ground, value, rims)
+    if not first:
+        raise InputError(
+            "NO_CONTACT", label, f"the wall meets {substrate.label} in no curve that a layer can start from (shorter than "
+            f"a few {wall.mesh.typical_edge:.2g} mm); let it reach in all around, or choose the edges to start from",
+        )
+    found = f"the first layer lies on the wall and on {substrate.label}"
+    if ground.facets:
+        found += (f"; between the edges of its triangles it runs smoothly, up to {deviation(off)} mm off them, about as far "
+                  "as they are off what they stand for" if off > 0.0 else "")
+    else:
+        found += f" within {deviation(off)} mm"
+    return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]
+
+
+def _stays_in(wall: PatchWall, outside: Mask, substrate: Substrate) -> Mask:
+    """Vertices of the parts of the wall that are out of the substrate but never leave its box (a stub in the bore of a
+    pipe), while another part does."""
+    low, high = substrate.solid.vertices.min(axis=0), substrate.solid.vertices.max(axis=0)
+    leaves = ((wall.vertices < low - 1e-3) | (wall.vertices > high + 1e-3)).any(axis=1)
+    count, part = parts(wall, outside)
+    goes = np.zeros(count, dtype=bool)
+    goes[part[outside & leaves]] = True
+    dropped = outside.copy()
+    dropped[outside] = not_kept = ~goes[part[outside]]
+    return dropped if goes.any() and not_kept.any() else np.zeros(len(outside), dtype=bool)

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Connected faces as one sheet: a patch for each face and a watertight mesh over all of them, turned to one side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import FreeCAD  # noqa: F401  Part crashes the process when it is loaded before FreeCAD
+import numpy as np
+import Part
+
+from ...core.geometry.mesh.collapsed import collapsed
+from ...core.geometry.mesh.refined import Edges, count_halved, flipped, refined
+from ...core.geometry.mesh.triangle_mesh import Index
+from ...core.geometry.walls.patch import Array, Patch
+from ...core.geometry.walls.patch_wall import PatchWall
+from ...core.geometry.walls.surface import dot
+from ...core.issues import InputError
+from ..kernel.limits import refuse_bare
+from ..kernel.process import beside
+from ..shapes.tessellate import ANGLE, Tessellation, tessellated
+from .sheet_places import Places
+from .surface_patch import patch_of
+
+SEWN = 0.01  # mm; edges of faces that lie closer than this are one
+MOST = 1_500_000  # triangles
+FEW = 15000  # triangles that are not worth a second try
+TRIED = (1.0, 0.84, 0.71, 0.59)  # first meshes of edges shorter by these shares
+ASKED = 200  # triangles of a face that tell its side
+SHORT = 0.55  # of the longest edge; shorter ones are drawn together
+
+
+def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWall:
+    """The faces as a wall that neither starts nor ends anywhere yet, its edges not longer than `edge` mm.
+
+    Triangles are turned as the faces are, and all to one side. Raises InputError ROUGH_WALL, NOT_ORIENTABLE,
+    TOO_FINE, and those of `kernel.refuse_bare`.
+    """
+    names, faces = [name for name, _ in named], [face for _, face in named]
+    shape, order = _sewn(faces)
+    names = [names[k] for k in order]
+    faces = shape.Faces
+    patches = [patch_of(face, f"{label} {name}") for name, face in zip(names, faces)]
+    (vertices, triangles, owner, nodes), about = beside(tessellated_for, shape, edge)
+    refuse_bare(list(zip(names, faces)), owner, label)
+    triangles = _turned(triangles, owner, names, label)
+    places = Places(shape, patches, nodes, vertices, edge)
+    made = refined(vertices, triangles, owner, edge, places.middles, MOST) if about < 2 * MOST else None
+    if made is None and about < MOST:  # long needles, as on slanted tubes: edges turned reach across from side to side
+        places = Places(shape, patches, nodes, vertices, edge)
+        made = refined(vertices, triangles, owner, edge, places.middles, MOST, turned=False)
+    if made is None:
+        raise InputError(
+            "TOO_FINE", label, f"with edges of {edge:.3g} mm, by layer height and smallest radius, the mesh of the wall has "
+            f"more than {MOST} triangles, about {about:.2g}; use a larger layer height, round sharp bends more, or deposit "
+            "the wall in parts",
+        )
+    vertices, triangles, owner = made
+    triangles, owner = collapsed(vertices, triangles, owner, SHORT * edge, edge)
+    triangles = flipped(vertices, triangles, owner)
+    uv = np.empty((len(triangles), 3, 2))
+    turned = []
+    for k, patch in enumerate(patches):
+        mine = owner == k
+        used, index = np.unique(triangles[mine], return_inverse=True)
+        found = places.parameters(k, vertices, used)
+        uv[mine] = patch.unwrapped(found[np.ravel(index)].reshape(-1, 3, 2))
+        turned.append(facing(patch, vertices[triangles[mine]]))
+    used, index = np.unique(triangles, return_inverse=True)
+    vertices, triangles = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
+    return PatchWall(
+        vertices, triangles, owner, uv, tuple(turned), (), np.zeros(len(vertices), dtype=bool), (), label, tuple(names)
+    )
+
+
+def facing(patch: Patch, corners: Array) -> Patch:
+    """The patch with its normals on the side from which the triangles (m, 3, 3) are counter-clockwise."""
+    corners = corners[:: max(1, len(corners) // ASKED)]
+    facets = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = patch.at(patch.inverse(corners.mean(axis=1)))[1]
+    return replace(patch, sign=patch.sign if dot(facets, normals).sum() > 0.0 else -patch.sign)
+
+
+def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
+    """The faces as one shape that shares edges, and for each of its faces which of the given ones it is."""
+    shape = Part.Compound(faces)
+    if len(faces) > 1:
+        shape.sewShape(SEWN)
+    if len(shape.Faces) != len(faces):
+        shape = Part.Compound(faces)
+    given = [(face.CenterOfMass, face.Area) for face in faces]
+    order = []
+    for face in shape.Faces:
+        middle, area = face.CenterOfMass, face.Area
+        order.append(min(range(len(faces)), key=lambda k: given[k][0].distanceToPoint(middle) + abs(given[k][1] - area)))
+    return shape, order if len(set(order)) == len(order) else list(range(len(faces)))
+
+
+def tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
+    """Of some tessellations, the one of which the fewest triangles become by halving edges until none is longer than
+    `edge`, and about how many: halves of what is a little too long are far too short."""
+    made: list[tuple[float, Tessellation]] = []
+    for share in TRIED:
+        one = tessellated(shape, max(0.1 * edge * share**2, 1e-3), ANGLE * share)
+        made.append((count_halved(one[0][one[1]], edge), one))
+        if made[0][0] < FEW or made[0][0] > 4 * MOST:
+            break
+    about, best = min(made, key=lambda one: one[0])
+    return best, about
+
+
+def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Index:
+    """The triangles with those of some faces turned, so that neighbours agree. InputError NOT_ORIENTABLE."""
+    edges = Edges(triangles)
+    half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
+    forward = half[:, :, 0] < half[:, :, 1]
+    two = np.flatnonzero(edges.count == 2)
+    one, other = edges.faces[two].T
+    ways = [forward[face, np.argmax(edges.of[face] == two[:, None], axis=1)] for face in (one, other)]
+    against = ways[0] == ways[1]
+    count = len(names)
+    links: dict[int, list[tuple[int, bool]]] = {k: [] for k in range(count)}
+    pairs = np.sort(owner[np.stack([one, other], axis=1)], axis=1)
+    for a, b in np.unique(pairs, axis=0):
+        share = float(against[(pairs == (a, b)).all(axis=1)].mean())
+        if (a == b and share > 0.0) or 0.02 < share < 0.98:
+            raise _twisted(label, names[a], names[b])
+        turn = share > 0.5
+        links[int(a)].append((int(b), turn))
+        links[int(b)].append((int(a), turn))
+    turned = np.full(count, -1)
+    for start in range(count):
+        if turned[start] >= 0:
+            continue
+        turned[start], waiting = 0, [start]
+        while waiting:
+            at = waiting.pop()
+            for near, turn in links[at]:
+                wanted = int(turned[at]) ^ int(turn)
+                if turned[near] < 0:
+                    turned[near] = wanted
+                    waiting.append(near)
+                elif turned[near] != wanted:
+                    raise _twisted(label, names[at], names[near])
+    triangles = triangles.copy()
+    flip = turned[owner] == 1
+    triangles[flip] = triangles[flip][:, ::-1]
+    return triangles
+
+
+def _twisted(label: str, one: str, other: str) -> InputError:
+    named = one if one == other else f"{one} and {other}"
+    return InputError(
+        "NOT_ORIENTABLE", label, f"{named} cannot be turned to one side (a twisted band has no outside); divide the band, "
+        "or leave one of its faces out",
+    )

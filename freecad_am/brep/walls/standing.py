@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Edges on which faces stand on the platform, in which a wall on no substrate starts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import Part
+
+from ...core.geometry.walls.contact import TOUCH
+from ..shapes.tessellate import DEFLECTION, triangles_of
+
+SAMPLES = 9
+DIGITS = 3  # of mm; edges of faces that are not sewn lie nearer than that
+
+
+def standing_edges(faces: Sequence[Any], lowest: float) -> list[Any]:
+    """Those edges of faces that lie in the plane Z = `lowest` mm, through the lowest place of these, within TOUCH, and that
+    bound only one of them."""
+    found: dict[tuple[float, ...], list[Any]] = {}
+    for face in faces:
+        for edge in face.Edges:
+            if edge.Degenerated or edge.isSeam(face):
+                continue
+            points = np.array([tuple(edge.valueAt(t)) for t in np.linspace(*edge.ParameterRange, SAMPLES)])
+            if points[:, 2].max() < lowest + TOUCH:
+                at = np.round([*points[SAMPLES // 2], edge.Length], DIGITS) + 0.0
+                found.setdefault(tuple(at.tolist()), []).append(edge)
+    return [edges[0] for edges in found.values() if len(edges) == 1]
+
+
+def stand(faces: Sequence[Any]) -> bool:
+    """Whether faces have such edges."""
+    vertices, _ = triangles_of(Part.Compound([face.copy(False) for face in faces]), DEFLECTION)
+    return len(vertices) > 0 and bool(standing_edges(faces, float(vertices[:, 2].min())))

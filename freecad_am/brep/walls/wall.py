@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A wall around one closed direction from the faces of a shape: torus, cylinder, cone, or any closed surface as a table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...core.geometry.walls.surface_wall import CONE, TABLE, TORUS, Array, Placed, own_surface
+from ...core.issues import InputError
+
+TURN = 2.0 * np.pi
+SAME = 1e-6  # mm; faces of one surface agree within this
+TABLE_ERROR = 5e-5  # mm, between the places a table was taken from
+SMALLEST_TABLE, LARGEST_TABLE = (24, 48), (384, 768)
+SMOOTH = 1e-6  # rad of turn allowed where a closed surface meets itself
+_ANALYTIC = {"Part::GeomToroid": TORUS, "Part::GeomCylinder": CONE, "Part::GeomCone": CONE}
+
+
+@dataclass(frozen=True)
+class Tube:
+    """A tube-like surface in part coordinates, u from 0 at its lower end to `end`. See `SurfaceWall` for the rest."""
+
+    kind: str
+    sizes: tuple[float, ...]
+    frame: Array
+    end: float
+    faces: tuple[str, ...]
+    u: Array | None = None
+    v: Array | None = None
+    table: Array | None = None
+    period: float = TURN
+
+    def surface(self) -> Placed:
+        """The surface in part coordinates."""
+        return Placed(own_surface(self.kind, self.sizes, self.u, self.v, self.table, self.period), self.frame)
+
+
+def tubes(shape: Any, names: Sequence[str], label: str) -> tuple[list[tuple[str, Any]], tuple[Tube, Tube]]:
+    """The faces of the wall and its surface, told once from each end: (named faces, (from one end, from the other)).
+
+    names: of the wall's faces; when left out the only face that is not flat. Raises InputError NO_WALL, UNKNOWN_FACE,
+    NOT_ONE_SURFACE (faces of different surfaces), NOT_CLOSED (the wall has no closed direction).
+    """
+    named = _chosen(shape, names, label)
+    first_name, first = named[0]
+    kind = _ANALYTIC.get(first.Surface.TypeId, TABLE)
+    if kind == TABLE and len(named) > 1:
+        raise InputError(
+            "NOT_ONE_SURFACE", label, f"{first_name} is no torus, cylinder or cone: a wall of several faces must be of one "
+            "of these; choose one face",
+        )
+    for name, face in named[1:]:
+        _refuse_other(first, face, f"{label} {name}", first_name)
+    whole = tuple(name for name, _ in named)
+    if kind == TABLE:
+        return named, _tables(first, whole, label)
+    low, high = _ranges([face for _, face in named], kind, label)
+    made = _torus if kind == TORUS else _cone
+    return named, (made(first.Surface, low, high, whole), made(first.Surface, high, low, whole))
+
+
+def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any]:
+    """The faces of a shape by their names, Face1 and on. InputError NO_WALL without any, UNKNOWN_FACE when one of `names`
+    is none of them."""
+    if shape is None or shape.isNull() or not shape.Faces:
+        raise InputError("NO_WALL", label, "it has no faces; choose a part with the faces of the wall")
+    known = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
+    for name in names:
+        if name not in known:
+            raise InputError("UNKNOWN_FACE", label, f"it has no {name}; its faces are Face1 to Face{len(known)}")
+    return known
+
+
+def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
+    known = faces_by_name(shape, names, label)
+    if names:
+        return [(name, known[name]) for name in dict.fromkeys(names)]
+    curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != "Part::GeomPlane"]
+    if len(curved) != 1:
+        raise InputError("NO_WALL", label, f"it has {len(curved)} faces that are not flat; name the wall's in part.faces")
+    return curved
+
+
+def _refuse_other(first: Any, face: Any, where: str, first_name: str) -> None:
+    """InputError unless both faces lie on one surface."""
+    surface = first.Surface
+    low_u, high_u, low_v, high_v = face.ParameterRange
+    points = [face.valueAt(a, b) for a in np.linspace(low_u, high_u, 4) for b in np.linspace(low_v, high_v, 4)]
+    off = max((surface.value(*surface.parameter(point)) - point).Length for point in points)
+    if surface.TypeId != face.Surface.TypeId or off > SAME:
+        raise InputError(
+            "NOT_ONE_SURFACE", where, f"it is not on the surface of {first_name} ({off:.3g} mm off); walls of several "
+            "surfaces cannot be deposited yet: choose faces of one torus, cylinder or cone",
+        )
+
+
+def _ranges(faces: list[Any], kind: str, label: str) -> tuple[float, float]:
+    """Range of the rising parameter of the first face's surface; NOT_CLOSED where the faces do not close around."""
+    surface, rising, around = faces[0].Surface, [], []
+    for face in faces:
+        low_u, high_u, low_v, high_v = face.ParameterRange
+        along, turn = ((low_u, high_u), (low_v, high_v)) if kind == TORUS else ((low_v, high_v), (low_u, high_u))
+        middle = face.valueAt(0.5 * (low_u + high_u), 0.5 * (low_v + high_v))
+        at = surface.parameter(middle)
+        rising.append(_about(at[0] if kind == TORUS else at[1], along, TURN if kind == TORUS else 0.0))
+        around.append(_about(at[1] if kind == TORUS else at[0], turn, TURN))
+    if not _covered(around):
+        raise InputError(
+            "NOT_CLOSED", label, "the faces of the wall do not close around; walls that are open (half shells) cannot be "
+            "deposited yet: choose a full tube",
+        )
+    low, high = min(low for low, _ in rising), max(high for _, high in rising)
+    if kind == TORUS and high - low > TURN - 1e-6:
+        raise InputError("NO_WALL", label, "a whole ring has no end to start from; cut it where it stands on the substrate")
+    return low, high
+
+
+def _about(middle: float, own: tuple[float, float], period: float) -> tuple[float, float]:
+    """A range as wide as the face's own about a middle given on the first surface, near the face's own middle."""
+    half, at = 0.5 * (own[1] - own[0]), 0.5 * (own[0] + own[1])
+    if period and abs(np.remainder(middle - at + 0.5 * period, period) - 0.5 * period) < 1e-6:
+        middle = at
+    return middle - half, middle + half
+
+
+def _covered(ranges: list[tuple[float, float]]) -> bool:
+    """Whether ranges of an angle cover the full turn."""
+    ends = sorted((float(np.mod(low, TURN)), high - low) for low, high in ranges)
+    reached = ends[0][0]
+    for low, width in ends:
+        if low > reached + 1e-6:
+            return False
+        reached = max(reached, low + width)
+    return bool(reached >= ends[0][0] + TURN - 1e-6)
+
+
+def _torus(surface: Any, start: float, end: float, faces: tuple[str, ...]) -> Tube:
+    centre = _array(surface.Center)
+    turn = _array(surface.tangent(start, 0.0)[0]) * np.sign(end - start)
+    out = _unit(_array(surface.value(start, 0.0)) - centre)
+    up = _unit(turn - (turn @ out) * out)
+    frame = np.eye(4)
+    frame[:3, :3] = np.column_stack([out, np.cross(up, out), up])
+    frame[:3, 3] = centre + surface.MajorRadius * out
+    return Tube(TORUS, (float(surface.MajorRadius), float(surface.MinorRadius)), frame, abs(end - start), faces)
+
+
+def _cone(surface: Any, start: float, end: float, faces: tuple[str, ...]) -> Tube:
+    centre, axis = _array(surface.Center), _unit(_array(surface.Axis))
+    low, high = _array(surface.value(0.0, start)), _array(surface.value(0.0, end))
+    axis = axis if (high - low) @ axis > 0.0 else -axis
+    heights = [(point - centre) @ axis for point in (low, high)]
+    feet = [centre + height * axis for height in heights]
+    radius, upper = (float(np.linalg.norm(point - foot)) for point, foot in zip((low, high), feet, strict=True))
+    slope = float(np.arctan2(upper - radius, heights[1] - heights[0]))
+    out = _unit((low - feet[0]) if radius > upper else (high - feet[1]))
+    frame = np.eye(4)
+    frame[:3, :3] = np.column_stack([out, np.cross(axis, out), axis])
+    frame[:3, 3] = feet[0]
+    return Tube(CONE, (radius, slope), frame, abs(end - start), faces)
+
+
+def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
+    surface = face.Surface
+    low_u, high_u, low_v, high_v = face.ParameterRange
+    closed_u = surface.isUClosed() and _spans(surface.bounds()[:2], low_u, high_u)
+    closed_v = surface.isVClosed() and _spans(surface.bounds()[2:], low_v, high_v)
+    if closed_u == closed_v:
+        what = "closes on itself both ways" if closed_u else "has no closed direction"
+        raise InputError("NOT_CLOSED", f"{label} {faces[0]}", f"it {what}; choose a tube that is closed around")
+    along, around = ((low_v, high_v), (low_u, high_u)) if closed_u else ((low_u, high_u), (low_v, high_v))
+
+    def value(a: float, b: float) -> Any:
+        return surface.value(b, a) if closed_u else surface.value(a, b)
+
+    def sampled(rows: Array, columns: Array) -> Array:
+        return np.array([[tuple(value(a, b)) for b in columns] for a in rows])
+
+    _refuse_seam(surface, closed_u, along, around, f"{label} {faces[0]}")
+    n, m = SMALLEST_TABLE
+    span, period = along[1] - along[0], around[1] - around[0]
+    while True:
+        u, v = np.linspace(0.0, span, n + 1), period * np.arange(m) / m
+        points = sampled(along[0] + u, around[0] + v)
+        rows, columns = (u[:-1] + 0.5 * u[1])[:: max(1, n // 16)], (v + 0.5 * v[1])[:: max(1, m // 16)]
+        made = own_surface(TABLE, (), u, v, points, period)
+        found = made.point(*np.meshgrid(rows, columns, indexing="ij"))
+        error = float(np.linalg.norm(found - sampled(along[0] + rows, around[0] + columns), axis=-1).max())
+        if error <= TABLE_ERROR:
+            break
+        if n >= LARGEST_TABLE[0]:
+            raise InputError(
+                "ROUGH_WALL", f"{label} {faces[0]}", f"the wall bends too sharply: {error:.3g} mm off between {n} x {m} "
+                "samples; smooth it, or cut it where it has an edge",
+            )
+        n, m = 2 * n, 2 * m
+    turned = points[::-1, ::-1]  # both ways, so that the outside stays outside
+    return (
+        Tube(TABLE, (), np.eye(4), span, faces, u, v, points, period),
+        Tube(TABLE, (), np.eye(4), span, faces, u, v, np.ascontiguousarray(turned), period),
+    )
+
+
+def _spans(bounds: Any, low: float, high: float) -> bool:
+    return bool(abs(abs(bounds[1] - bounds[0]) - (high - low)) < 1e-9 * max(1.0, high - low))
+
+
+def _refuse_seam(
+    surface: Any, closed_u: bool, along: tuple[float, float], around: tuple[float, float], where: str
+) -> None:
+    """InputError where a closed surface has an edge along its seam."""
+    for a in np.linspace(*along, 5)[1:-1]:
+        ends = [surface.tangent(b, a)[0] if closed_u else surface.tangent(a, b)[1] for b in around]
+        one, other = (_unit(_array(end)) for end in ends)
+        if np.linalg.norm(one - other) > SMOOTH:
+            raise InputError("ROUGH_WALL", where, "it has an edge along its seam; walls with edges cannot be deposited yet")
+
+
+def _array(vector: Any) -> Array:
+    return np.array([vector.x, vector.y, vector.z])
+
+
+def _unit(vector: Array) -> Array:
+    unit: Array = vector / np.linalg.norm(vector)
+    return unit

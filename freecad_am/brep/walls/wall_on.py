@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The wall on a substrate, as the layers of the most exact kind that its faces allow."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...core.geometry.surroundings import Body
+from ...core.geometry.walls.patch_wall import PatchWall
+from ...core.geometry.walls.surface_wall import SurfaceWall
+from ...core.issues import InputError
+from ..kernel.limits import FAULTS, told
+from .checks import CREASE, refuse_tight_tube
+from .first_layer import find_wall
+from .mesh_wall import find_mesh_wall
+from .patch_wall import find_patch_wall
+from .substrate import Substrate, substrate_of
+from .wall import faces_by_name, tubes
+
+FLAT = "Part::GeomPlane"
+TOLD = 8  # faces named in a message
+BELOW = 9  # places up the tube at which it is told whether it stays in the substrate's box
+# what is no closed tube of one surface that starts in one loop may still be a wall
+OTHER_KIND = frozenset({"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"})
+
+
+def wall_on(
+    shape: Any, faces: Sequence[str], substrate: Any, height: float, label: str = "part",
+    substrate_label: str = "substrate", start_edges: Sequence[str] = (), mend: float = 0.0,
+) -> SurfaceWall | PatchWall:
+    """The wall of a Part.Shape, or of a mesh (Body), for layers of `height` mm, in its coordinates. mend: the largest hole
+    of a mesh that is closed, mm.
+
+    substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from edges of the part, those
+    that stand on the platform if none are named. A SurfaceWall where the faces are one surface that closes around, its end
+    straight across, and the first layer one loop; a PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and
+    `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
+    """
+    with told(substrate_label):
+        carrier = None if substrate is None else substrate_of(substrate, substrate_label, mend)
+    with told(label):
+        wall = _wall_on(shape, faces, carrier, height, label, start_edges, mend)
+    return wall if carrier is None else replace(wall, issues=(*carrier.issues, *wall.issues))
+
+
+def _wall_on(
+    shape: Any, faces: Sequence[str], carrier: Substrate | None, height: float, label: str, start_edges: Sequence[str],
+    mend: float,
+) -> SurfaceWall | PatchWall:
+    if isinstance(shape, Body):
+        return find_mesh_wall(shape, carrier, height, label, start_edges, mend)
+    if carrier is not None and carrier.shape is not None and not start_edges:
+        try:
+            tube = find_wall(shape, faces, carrier.shape, label, carrier.label)
+            if _starts_all_around(tube, carrier.shape):
+                refuse_tight_tube(tube, height, label)
+                return tube
+        except InputError as error:
+            if error.code not in OTHER_KIND:
+                raise
+        except FAULTS:
+            pass  # the wall as a sheet asks less of the kernel
+    named = named_faces(shape, faces, label)
+    found = find_patch_wall(shape, named, carrier, height, label, start_edges)
+    if carrier is None or carrier.shape is not None or start_edges:
+        return found
+    return _as_tube(found, shape, faces, carrier, label) or found
+
+
+def _starts_all_around(tube: SurfaceWall, solid: Any) -> bool:
+    """Whether the first layer runs around the tube, and what is below it stays within the box of the substrate: there the
+    wall's other loops lie in it, such as in the bore of a pipe."""
+    surface = tube.surface()
+    u, v = surface.inverse(np.vstack([tube.first, tube.first[:1]]))
+    turn = np.remainder(np.diff(v) + 0.5 * tube.period, tube.period) - 0.5 * tube.period
+    if abs(abs(turn.sum()) - tube.period) > 1e-3 * tube.period:
+        return False
+    if not any(issue.code == "SEVERAL_LOOPS" for issue in tube.issues):
+        return True
+    below = surface.point(np.linspace(0.0, 1.0, BELOW)[:, None] * u, np.broadcast_to(v, (BELOW, len(v)))).reshape(-1, 3)
+    box = solid.BoundBox
+    low, high = np.array([box.XMin, box.YMin, box.ZMin]), np.array([box.XMax, box.YMax, box.ZMax])
+    return bool(((below > low - 1e-3) & (below < high + 1e-3)).all())
+
+
+def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
+    """The faces chosen: those named, else all of a shape without solids, else those of a solid that are not flat, if they
+    hang together and no flat one joins them smoothly.
+
+    Raises InputError NO_WALL, UNKNOWN_FACE.
+    """
+    known = faces_by_name(shape, names, label)
+    if names:
+        return [(name, known[name]) for name in dict.fromkeys(names)]
+    if not shape.Solids:
+        return list(known.items())
+    curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != FLAT]
+    if not curved or not _one_piece([face for _, face in curved]):
+        told = ", ".join(name for name, _ in curved[:TOLD]) + (", ..." if len(curved) > TOLD else "") or "none"
+        raise InputError(
+            "NO_WALL", label, f"it is a solid whose faces that are not flat ({told}) are not one wall; name the faces "
+            "of the wall: part.faces of a job, or select them"
+        )
+    flat = next((name for name, face in known.items() if face.Surface.TypeId == FLAT
+                 and any(_runs_on(face, other) for _, other in curved)), "")
+    if flat:
+        raise InputError(
+            "NO_WALL", label, f"its faces that are not flat run on smoothly into {flat}, which is; name the faces of the "
+            "wall: part.faces of a job, or select them"
+        )
+    return curved
+
+
+def _one_piece(faces: list[Any]) -> bool:
+    """Whether faces hang together by common edges."""
+    edges = [{edge.hashCode() for edge in face.Edges} for face in faces]
+    reached, left = edges[0], edges[1:]
+    while left:
+        near = [one for one in left if one & reached]
+        if not near:
+            return False
+        left = [one for one in left if not one & reached]
+        reached = reached.union(*near)
+    return True
+
+
+def _runs_on(face: Any, other: Any) -> bool:
+    """Whether two faces join smoothly along an edge."""
+    codes = {edge.hashCode() for edge in other.Edges}
+    for edge in face.Edges:
+        if edge.hashCode() in codes:
+            point = edge.valueAt(0.5 * (edge.FirstParameter + edge.LastParameter))
+            one, two = (side.normalAt(*side.Surface.parameter(point)) for side in (face, other))
+            if one.cross(two).Length < np.sin(CREASE):
+                return True
+    return False
+
+
+def _as_tube(
+    wall: PatchWall, shape: Any, faces: Sequence[str], substrate: Substrate, label: str
+) -> SurfaceWall | None:
+    """A wall on a mesh as a tube of one surface, where it is one that ends straight across; None where it is not."""
+    ends = [rim for rim in wall.rims if rim.end]
+    if len(wall.first) != 1 or not wall.first[0].closed or len(ends) != 1:
+        return None
+    try:
+        _, both = tubes(shape, faces, label)
+    except InputError:
+        return None
+    search = substrate.solid.searched(wall.mesh.typical_edge)
+    v = 2.0 * np.pi * np.arange(12) / 12
+    lowest = [search.signed(one.surface().point(0.0 * v, v * one.period / (2.0 * np.pi)))[0].mean() for one in both]
+    tube = both[int(np.argmin(lowest))]
+    surface = tube.surface()
+    u, at = surface.inverse(ends[0].points)
+    pace = np.linalg.norm(surface.derivatives(u, at)[1], axis=1)
+    if np.abs((u - tube.end) * pace).max() > 1e-3 or len([rim for rim in wall.rims if rim.closed]) != len(wall.rims) \
+            or len(wall.rims) > 2:
+        return None
+    return SurfaceWall(
+        tube.kind, tube.sizes, tube.frame, tube.end, wall.first[0].points, tube.u, tube.v, tube.table, tube.period, label,
+        tube.faces, wall.issues,
+    )

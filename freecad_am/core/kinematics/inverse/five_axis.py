@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Inverse kinematics of machines with three axes that slide and two that turn, wherever these are (Dai 2020, section 3).
+
+The chain runs from the torch to the table (see the machine files), so that tables, heads and one of each are one case: the
+two turning axes bring the tool's direction in the part to that of the torch, whatever slides between them; then the
+sliding axes bring the point to the torch's tip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.frames import Array
+from ..chain import Chain
+from . import rotary_pair
+
+Mask = NDArray[np.bool_]
+
+SLIDING, TURNING = 3, 2  # axes
+
+
+def is_five_axis(sliding: Mask) -> bool:
+    """Whether axes, of which `sliding` (n,) slide, are those of such a machine, in whatever order."""
+    return (int(sliding.sum()), len(sliding)) == (SLIDING, SLIDING + TURNING)
+
+
+class Solutions(NamedTuple):
+    """Axis values (2, n, 5), one row per branch, rad in (-pi, pi] and mm; NaN where no turn reaches the direction.
+    free (n, 2): whether the first or the second turning axis may stand anywhere, for the direction lies along it; it is
+    then given as 0, and the sliding axes for that."""
+
+    axes: Array
+    free: Mask
+
+
+@dataclass(frozen=True, eq=False)
+class FiveAxis:
+    """A chain of three sliding and two turning joints. ValueError for any other."""
+
+    chain: Chain
+    turning: tuple[int, int] = field(init=False)
+    sliding: tuple[int, int, int] = field(init=False)
+
+    def __post_init__(self) -> None:
+        slides = self.chain.sliding
+        if not is_five_axis(slides):
+            raise ValueError("a five-axis machine has three axes that slide and two that turn")
+        object.__setattr__(self, "turning", tuple(np.flatnonzero(~slides).tolist()))
+        object.__setattr__(self, "sliding", tuple(np.flatnonzero(slides).tolist()))
+
+    @property
+    def pole(self) -> Array:
+        """Unit vector (3,) on the flange along the turning axis next to it: a tool there, or against it, leaves it free."""
+        _, second, source, _ = self._pair(np.eye(3), np.array([0.0, 0.0, 1.0]))
+        return np.asarray(source @ second)
+
+    def turns(self, tools: Array, torch: Array) -> rotary_pair.Turns:
+        """The turns that bring unit vectors tools (n, 3) on the flange to the unit vector torch (3,) in base_link."""
+        first, second, source, target = self._pair(tools, torch)
+        return rotary_pair.between(first, second, source, target)
+
+    def inverse(self, points: Array, tools: Array, station: Array) -> Solutions:
+        """Axis values that hold points (n, 3) mm and tool directions (n, 3), given on the flange, at the torch.
+
+        station: (4, 4) the torch's tip in base_link, its Z pointing into the torch.
+        """
+        found = self.turns(tools, station[:3, 2])
+        turned = np.stack([found.first, found.second], axis=-1)
+        axes = np.stack([self.placed(branch, points, station) for branch in turned])
+        return Solutions(axes, np.stack([found.first_free, found.second_free], axis=1))
+
+    def locked(self, axis: int, at: Array | float, tools: Array, torch: Array) -> rotary_pair.Locked:
+        """Four axes: the turning axis `axis` (0 or 1) stands at an angle, the other brings the tools as near as it can."""
+        first, second, source, target = self._pair(tools, torch)
+        lock = rotary_pair.with_first_locked if axis == 0 else rotary_pair.with_second_locked
+        return lock(first, second, at, source, target)
+
+    def best_lock(self, axis: int, tools: Array, torch: Array, low: float, high: float) -> float:
+        """Where between low and high, rad, the turning axis `axis` (0 or 1) leaves the smallest largest residual."""
+        first, second, source, target = self._pair(tools, torch)
+        return rotary_pair.least_residual(first, second, axis, source, target, low, high)
+
+    def placed(self, turned: Array, points: Array, station: Array) -> Array:
+        """Axis values (n, 5) with the turning axes at angles (n, 2) that bring points (n, 3) to the torch's tip."""
+        axes = np.zeros((len(points), 5))
+        axes[:, self.turning] = turned
+        known = np.isfinite(turned).all(axis=1)
+        at = self.chain.frames(axes[known])
+        here = np.einsum("nij,nj->ni", at.flange[:, :3, :3], points[known]) + at.flange[:, :3, 3]
+        ways = np.swapaxes(at.directions[:, self.sliding], 1, 2)
+        slides = np.full((len(points), 3), np.nan)
+        slides[known] = np.linalg.solve(ways, (station[:3, 3] - here)[..., None])[..., 0]
+        axes[:, self.sliding] = slides
+        axes[~known] = np.nan
+        return axes
+
+    def _pair(self, tools: Array, torch: Array) -> tuple[Array, Array, Array, Array]:
+        """Axes, sources (n, 3) and target (3,) as `rotary_pair` wants them, all in the first turning joint's frame.
+
+        With A, B, C the rotations at zero before, between and after the joints, A Rot(d1) B Rot(d2) C tool = torch is
+        Rot(d1) Rot(B d2) (B C tool) = A^T torch.
+        """
+        first, second = self.turning
+        rotations = self.chain.origins[:, :3, :3]
+        before = _product(rotations[: first + 1])
+        between = _product(rotations[first + 1 : second + 1])
+        after = _product(rotations[second + 1 :]) @ self.chain.flange[:3, :3]
+        source = tools @ (between @ after).T
+        return self.chain.directions[first], between @ self.chain.directions[second], source, before.T @ torch
+
+
+def _product(rotations: Array) -> Array:
+    result = np.eye(3)
+    for rotation in rotations:
+        result = result @ rotation
+    return result

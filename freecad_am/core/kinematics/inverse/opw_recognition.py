@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The closed form of a chain of joint frames, found from where its axes are, and the chain of a closed form.
+
+What `opw` asks for (Brandstoetter, Angerer, Hofbaur 2014): axis 1 normal to axis 2, axes 2 and 3 parallel, axis 4 normal to
+axis 3, axes 4, 5 and 6 through one point, 5 normal to both others. Each is looked at in this order and what does not
+hold is the reason why there is no closed form.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...geometry import frames
+from ...geometry.frames import Array
+from ...issues import InputError
+from ..chain import Chain, JointFrames
+from .opw import OpwArm
+
+# how far directions (rad) and lines (mm) may be off, and what the closed form may leave: those of machine files
+STRAIGHT, NEAR_MM = 1e-8, 1e-5
+POSITION, ROTATION = 1e-6, 1e-9
+ROBOT = 6  # axes of one
+FLANGE = "flange"  # where what is refused about the flange alone is
+
+
+def rooted(chain: Chain) -> tuple[Chain, Array]:
+    """The chain of a robot seen from a base_link whose Z is axis 1, and the pose (4, 4) of the base_link before in it.
+
+    A base_link that has its Z on axis 1 already, up or down it, stays; any other one is turned by the smallest rotation, and
+    moved to the foot of its origin on the axis.
+    """
+    at_rest = chain.frames(np.zeros(chain.axes))
+    axis, origin = at_rest.directions[0], at_rest.origins[0]
+    foot = origin - axis * float(axis @ origin)
+    if np.hypot(axis[0], axis[1]) < STRAIGHT and np.linalg.norm(foot) < NEAR_MM:
+        return chain, np.eye(4)
+    up = axis if axis[2] >= 0.0 or abs(axis[2]) < STRAIGHT else -axis
+    new = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), up), foot)
+    old = frames.inverse(new)
+    return Chain(np.concatenate((old @ chain.origins[:1], chain.origins[1:])), chain.directions, chain.flange,
+                 chain.sliding), old
+
+
+def track_of(chain: Chain) -> int:
+    """How many axes a track has that a robot with six turning axes stands on; 0 of any other chain."""
+    return int(chain.axes == ROBOT + 1 and chain.sliding[0] and not chain.sliding[1:].any())
+
+
+def recognise(chain: Chain) -> OpwArm:
+    """The closed form of a chain, in its own base_link.
+
+    Signs and offsets are those that give c2, c3 > 0, a1 >= 0 and the smallest turns where that leaves a choice. Raises
+    InputError NO_CLOSED_FORM telling what of the geometry stands in the way, and by how much.
+    """
+    if chain.axes != 6 or chain.sliding.any():
+        slides = int(chain.sliding.sum())
+        if track_of(chain):
+            raise refused("its first axis slides and carries the six that turn, as a track does; let the machine begin with "
+                          "the robot, and name the track in `cell.external` with `carries: robot`")
+        raise refused(f"it has {chain.axes} axes, {slides} of which slide; a robot that can be planned has six that turn")
+    at_rest = chain.frames(np.zeros(6))
+    centre = _wrist_centre(at_rest)
+    arm = _arm(at_rest, centre)
+    q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
+    off = np.abs(arm.forward(q) - chain.forward(q))
+    if off[:, :3, 3].max() > POSITION or off[:, :3, :3].max() > ROTATION:
+        raise refused(f"its closed form is {off[:, :3, 3].max():.3g} mm and {off[:, :3, :3].max():.2g} (entries of the "
+                       "rotation) off; give the geometry with more digits")
+    return arm
+
+
+def chain_of(arm: OpwArm) -> Chain:
+    """The chain of joint frames of a closed form; its joint frames are parallel to base_link where the angles of `opw`
+    are zero."""
+    steps = np.array([
+        (0.0, 0.0, 0.0), (arm.a1, arm.b, arm.c1), (0.0, 0.0, arm.c2), (arm.a2, 0.0, arm.c3), (0.0,) * 3, (0.0,) * 3,
+    ])
+    axes = np.array([(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
+    turns = frames.rotation_about(axes, -np.array(arm.offsets))
+    return Chain(frames.pose(turns, steps), axes * np.array(arm.signs, float)[:, None], frames.pose(
+        np.eye(3), (0.0, 0.0, arm.c4)))
+
+
+def _wrist_centre(at_rest: JointFrames) -> Array:
+    """The point (3,) where the axes of the wrist meet, once the directions of all axes are those of such an arm."""
+    z, p = at_rest.directions, at_rest.origins
+    foot = p[0] - z[0] * float(z[0] @ p[0])
+    if np.hypot(z[0, 0], z[0, 1]) > STRAIGHT or np.linalg.norm(foot) > NEAR_MM:
+        raise refused("axis 1 is not the Z of the base frame")
+    if all(float(np.linalg.norm(np.cross(z[1], z[axis]))) < STRAIGHT for axis in (2, 3)):
+        raise refused("the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots")
+    for first, second in ((0, 1), (2, 3), (3, 4), (4, 5)):
+        off = math.asin(min(1.0, abs(float(z[first] @ z[second]))))
+        if off > STRAIGHT:
+            raise refused(f"axes {first + 1} and {second + 1} are {90.0 - math.degrees(off):.6g} deg apart, not 90 deg")
+    off = math.asin(min(1.0, float(np.linalg.norm(np.cross(z[1], z[2])))))
+    if off > STRAIGHT:
+        raise refused(f"axes 2 and 3 are not parallel, but {math.degrees(off):.6g} deg apart")
+    # the point of axis 5 next to axis 4, and how far both others pass it by
+    across = p[3] - p[4]
+    centre: Array = p[4] + z[4] * float(z[4] @ across)
+    for axis in (3, 5):
+        to = centre - p[axis]
+        off = float(np.linalg.norm(to - z[axis] * float(z[axis] @ to)))
+        if off > NEAR_MM:
+            raise refused(f"the wrist is not spherical: axis {axis + 1} passes {off:.6g} mm beside the point where axes "
+                           f"{'5 and 6' if axis == 3 else '4 and 5'} meet")
+    return centre
+
+
+def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
+    """The closed form of axes that are those of such an arm, with this wrist centre."""
+    z, p, flange = at_rest.directions, at_rest.origins, at_rest.flange
+    turn1, sign2, shoulder = _shoulder(z, p)
+    x, y, up = frames.about_z(turn1).T
+    side = float(y @ centre)
+    to_elbow = p[2] - shoulder
+    ahead, above = float(to_elbow @ x), float(to_elbow @ up)
+    upper = math.hypot(ahead, above)
+    if upper < NEAR_MM:
+        raise refused("axes 2 and 3 are the same line")
+    turn2 = math.atan2(ahead, above)
+    to_wrist = centre - p[2]
+    length = float(to_wrist @ z[3])
+    if abs(length) < NEAR_MM:
+        raise refused("the wrist centre lies above axis 3, without a forearm along axis 4")
+    sign4 = 1 if length > 0.0 else -1
+    forearm = z[3] * sign4
+    turn23 = math.atan2(float(forearm @ x), float(forearm @ up))
+    across = np.cos(turn23) * x - np.sin(turn23) * up
+    out = flange[:3, 2]
+    if np.linalg.norm(np.cross(out, z[5])) > STRAIGHT:
+        raise refused("the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange",
+                       FLANGE)
+    beside = flange[:3, 3] - centre
+    if np.linalg.norm(beside - out * float(beside @ out)) > NEAR_MM:
+        raise refused("the flange's origin does not lie on axis 6", FLANGE)
+    if float(beside @ out) < -NEAR_MM and float(out @ forearm) < 0.0:
+        raise refused("the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as "
+                       "tool0 or fanuc_flange, or turn the flange", FLANGE)
+    # axis 5 within the forearm: about its own y, turned about it by turn4 of at most a right angle
+    turn4 = math.atan2(-float(z[4] @ across), float(z[4] @ y))
+    sign5 = 1
+    if turn4 <= -math.pi / 2.0 + STRAIGHT or turn4 > math.pi / 2.0 + STRAIGHT:
+        turn4 = turn4 + math.pi if turn4 <= 0.0 else turn4 - math.pi
+        sign5 = -1
+    five_x = math.cos(turn4) * across + math.sin(turn4) * y
+    five_y = -math.sin(turn4) * across + math.cos(turn4) * y
+    bent = math.atan2(float(out @ five_x), float(out @ forearm))
+    turn5 = bent if abs(bent) > STRAIGHT else 0.0
+    six_x = math.cos(turn5) * five_x - math.sin(turn5) * forearm
+    turn6 = math.atan2(float(flange[:3, 0] @ five_y), float(flange[:3, 0] @ six_x))
+    turns = (turn1, turn2, _wrapped(turn23 - turn2), turn4, turn5, turn6)
+    signs = (1 if z[0, 2] > 0.0 else -1, sign2, sign2 if float(z[2] @ z[1]) > 0.0 else -sign2, sign4, sign5,
+             1 if float(z[5] @ out) > 0.0 else -1)
+    return OpwArm(
+        a1=clean(float(shoulder @ x)), a2=clean(float(to_wrist @ across)), b=clean(side), c1=clean(float(p[1, 2])),
+        c2=clean(upper), c3=clean(abs(length)), c4=clean(float(beside @ out)),
+        offsets=tuple(_offset(turn) for turn in turns), signs=signs,
+    )
+
+
+def _shoulder(z: Array, p: Array) -> tuple[float, int, Array]:
+    """The turn of axis 1 at zero, the sign of axis 2, and the point of axis 2 next to axis 1."""
+    point = p[1] - z[1] * float(z[1] @ p[1])
+    point = np.array([point[0], point[1], p[1, 2]])
+    sign = 1
+    turn = math.atan2(-z[1, 0], z[1, 1])  # axis 2 is the y of the arm's plane
+    ahead = float(point[0] * math.cos(turn) + point[1] * math.sin(turn))
+    turned = ahead < -NEAR_MM or (abs(ahead) <= NEAR_MM and not -0.5 * math.pi + STRAIGHT < turn <= 0.5 * math.pi + STRAIGHT)
+    if turned:
+        turn, sign = (turn + math.pi if turn <= 0.0 else turn - math.pi), -1
+    return turn, sign, point
+
+
+def _wrapped(angle: float) -> float:
+    return math.atan2(math.sin(angle), math.cos(angle))
+
+
+def _offset(turn: float) -> float:
+    """The offset of an angle at zero, rad; a half turn is a positive one."""
+    degrees = -clean(math.degrees(turn))
+    return math.radians(degrees + 360.0 if degrees <= -180.0 else degrees + 0.0)
+
+
+def clean(value: float) -> float:
+    """A number without the noise of its computation."""
+    rounded = round(value, 9)
+    return rounded + 0.0 if abs(rounded - value) < 1e-11 else value
+
+
+def refused(reason: str, where: str = "geometry") -> InputError:
+    return InputError("NO_CLOSED_FORM", where, f"this cannot be planned for: {reason}")

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Two rotary axes that bring a direction of the part to another (Dai 2020, section 3).
+
+Rot(first, q1) Rot(second, q2) source = target, with any two unit axes that are not parallel. Rot(second, q2) source = v
+is known along both axes: v . second = source . second and v . first = target . first; what is left of it lies across
+both, one way or the other: two solutions, one where they meet, none where even the best is too long. This is solution 1
+of the paper for axes of any direction. Solution 2 goes by way of the vertical and turns about X and Z twice, so it exists
+for every pair of directions, but not on two axes.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry import frames
+from ...geometry.columns import columns
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+POLE = 1e-9  # sine of the angle to an axis below which a turn about it is free
+ROUNDING = 1e-12  # a square that is negative by no more than this is zero
+
+
+class Turns(NamedTuple):
+    """Angles about the first and the second axis, (2, n) rad in (-pi, pi], one row per branch; NaN where there is no real
+    solution. first_free, second_free: (n,) where a turn about the axis changes nothing, for target or source lies on it;
+    the angle is then 0."""
+
+    first: Array
+    second: Array
+    first_free: Mask
+    second_free: Mask
+
+
+def between(first: Array, second: Array, source: Array, target: Array) -> Turns:
+    """The turns about unit axes (3,) that take unit vectors source (n, 3) to target (n, 3) or (3,): solution 1."""
+    target = np.broadcast_to(target, source.shape)
+    across = np.cross(first, second)
+    square, cosine = float(across @ across), float(first @ second)
+    p, q = target @ first, source @ second
+    # v = a first + b second + c across
+    a, b = (p - cosine * q) / square, (q - cosine * p) / square
+    rest = (1.0 - (a * a + b * b + 2.0 * a * b * cosine)) / square
+    with np.errstate(invalid="ignore"):
+        c = np.sqrt(np.where((rest < 0.0) & (rest > -ROUNDING), 0.0, rest))
+    plane = a[:, None] * first + b[:, None] * second
+    between_ = np.stack([plane + c[:, None] * across, plane - c[:, None] * across])
+    first_free, second_free = _on(target, first), _on(source, second)
+    one = np.where(first_free, 0.0 * rest, _angle(first, between_, target))
+    two = np.where(second_free, 0.0 * rest, _angle(second, source, between_))
+    unreal = np.isnan(c)
+    one[:, unreal], two[:, unreal] = np.nan, np.nan
+    return Turns(one, two, first_free, second_free)
+
+
+class ByVertical(NamedTuple):
+    """gamma, alpha (n,) rad that bring the source to the vertical, Rx(alpha) Rz(gamma) source = Z, and alpha_back,
+    gamma_back (n,) that go on to the target, Rz(gamma_back) Rx(alpha_back) Z = target."""
+
+    gamma: Array
+    alpha: Array
+    alpha_back: Array
+    gamma_back: Array
+
+
+def by_vertical(source: Array, target: Array) -> ByVertical:
+    """Solution 2 of section 3.2, corrected (ERRATA): gamma = atan2(X, Y), alpha = acos(Z), and the same way back."""
+    target = np.broadcast_to(target, source.shape)
+    there, back = (np.arctan2(v[0], v[1]) for v in (columns(source), columns(target)))
+    up, down = (np.arctan2(np.hypot(v[0], v[1]), v[2]) for v in (columns(source), columns(target)))
+    return ByVertical(there, up, -down, -back)
+
+
+class Locked(NamedTuple):
+    """The angle (n,) rad of the axis left, and the angle (n,) rad by which the directions then miss each other."""
+
+    angle: Array
+    residual: Array
+
+
+def with_first_locked(first: Array, second: Array, at: Array | float, source: Array, target: Array) -> Locked:
+    """Four axes: the first axis stands at an angle (rad, one or (n,)); the second turns the source as near as it can."""
+    target = np.broadcast_to(target, source.shape)
+    turned = frames.rotation_about(first, -np.broadcast_to(at, len(source)))
+    return nearest(second, source, np.einsum("nij,nj->ni", turned, target))
+
+
+def with_second_locked(first: Array, second: Array, at: Array | float, source: Array, target: Array) -> Locked:
+    """Four axes: the second axis stands at an angle; the first turns."""
+    target = np.broadcast_to(target, source.shape)
+    turned = frames.rotation_about(second, np.broadcast_to(at, len(source)))
+    return nearest(first, np.einsum("nij,nj->ni", turned, source), target)
+
+
+def least_residual(
+    first: Array, second: Array, locked: int, source: Array, target: Array, low: float, high: float
+) -> float:
+    """Where between low and high, rad, the axis `locked` (0 first, 1 second) leaves the smallest largest residual.
+
+    The other axis meets all of a direction but its angle to itself, so the residual is the difference of these angles:
+    of source and Rot(first, -at) target to the second axis, of Rot(second, at) source and target to the first.
+    """
+    target = np.broadcast_to(target, source.shape)
+
+    def worst(angles: Array) -> Array:
+        if locked == 0:
+            stands = _heights(target, first, second, -angles)
+            turns = source @ second
+        else:
+            stands = _heights(source, second, first, angles)
+            turns = target @ first
+        apart = np.arccos(np.clip(stands, -1.0, 1.0)) - np.arccos(np.clip(turns, -1.0, 1.0))[:, None]
+        found: Array = np.abs(apart).max(axis=0)
+        return found
+
+    for steps in (361, *[21] * 8):  # there may be several valleys: look all round, then closer
+        angles = np.linspace(low, high, steps)
+        best = float(angles[int(np.argmin(worst(angles) + 1e-9 * np.abs(angles)))])
+        width = 2.0 * (high - low) / (steps - 1)
+        low, high = max(low, best - width), min(high, best + width)
+    return best
+
+
+def _heights(vectors: Array, axis: Array, other: Array, angles: Array) -> Array:
+    """(n, k) other . Rot(axis, angle) vector for vectors (n, 3) and angles (k,), by Rodrigues' formula."""
+    along = (vectors @ axis) * float(axis @ other)
+    straight, sideways = vectors @ other - along, vectors @ np.cross(other, axis)
+    turned: Array = along[:, None] + straight[:, None] * np.cos(angles) + sideways[:, None] * np.sin(angles)
+    return turned
+
+
+def nearest(axis: Array, source: Array, target: Array) -> Locked:
+    """The turn about one axis that takes unit vectors source (n, 3) as near to target (n, 3) or (3,) as it can."""
+    target = np.broadcast_to(target, source.shape)
+    free = _on(source, axis) | _on(target, axis)
+    angle = np.where(free, 0.0, _angle(axis, source, target))
+    met = np.einsum("nij,nj->ni", frames.rotation_about(axis, angle), source)
+    missed = np.arctan2(np.linalg.norm(np.cross(met, target), axis=1), (met * target).sum(axis=1))
+    return Locked(angle, missed)
+
+
+def _on(vectors: Array, axis: Array) -> Mask:
+    on: Mask = np.linalg.norm(np.cross(vectors, axis), axis=-1) < POLE
+    return on
+
+
+def _angle(axis: Array, start: Array, end: Array) -> Array:
+    """The turn (..., n) about an axis that takes one vector to the other, as far as they lie across the axis."""
+    sine = np.cross(start, end) @ axis
+    cosine = (start * end).sum(axis=-1) - (start @ axis) * (end @ axis)
+    angle: Array = np.arctan2(sine, cosine)
+    return angle

@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether the links of a robot meet what is in its cell: nozzle, platform, bodies, obstacles, and what has been deposited
+before; and whether nozzle or part meet the obstacles.
+
+Links are rods that hold what is drawn of them; bodies are their triangles and, where closed, their inside; beads are as
+wide and high as they are. So what is not told to touch does not touch, as far as links are what is drawn. What the flange
+carries is not looked at against the last two links, which hold it and can hardly move against it, nor what stands still
+against the base. A part that moves is all there from the beginning: rods about its bodies and beads. The nozzle is looked
+at as it is against bodies, without clearance: it deposits next to them. What holds the nozzle is looked at where
+`cell.nozzle.shape` shows it. Links against each other, the floor and cables are not looked at at all.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...collision.bodies import of_bodies
+from ...collision.frustum import Frustum
+from ...collision.nozzle import depositing
+from ...collision.obstacles import Obstacles
+from ...collision.scene import Scene
+from ...collision.tolerances import ABOUT_FACES
+from ...geometry import frames
+from ...geometry.rods import Rod, about, row
+from ...geometry.surroundings import Body, disc
+from ..cell import Cell
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+NOZZLE, PLATFORM, DEPOSIT, PART, TORCH = "nozzle", "platform", "deposit", "part", "torch"
+WORLD = "world"
+NONE = -1
+PIECE = 4096  # joint vectors done together
+SIDES = 24  # of a nozzle
+LINK_PIECE, SHARE = 50.0, 0.01  # longest edge of a triangle that links are looked at against, mm, and of the body's size
+SLICES = 8  # rods about a deposit that moves
+
+
+@dataclass(frozen=True)
+class Touches:
+    """With k joint vectors. what: (k,) number in `ArmContact.names` of the first of those that a link touches; link: (k,)
+    number in `ArmContact.links` of the link nearest to the base, 0, that touches it; NONE in both where nothing touches."""
+
+    link: Index
+    what: Index
+
+    @property
+    def any(self) -> Mask:
+        """(k,) whether there is one."""
+        return np.asarray(self.link != NONE)
+
+
+@dataclass(frozen=True)
+class Group:
+    """What links (numbers) are looked at against, within a ball, as it is seen from the part, the nozzle or the world."""
+
+    scene: Scene
+    links: Sequence[int]
+    centre: Array
+    radius: float
+    seen_from: str = PART
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A solid of revolution that a link is, or a piece of it: tip and unit axis (3,) in the frame of the link, and the ball
+    about it."""
+
+    solid: Frustum
+    tip: Array
+    axis: Array
+    centre: Array
+    radius: float
+
+
+@dataclass(frozen=True)
+class ArmContact:
+    """A robot in its cell. rods: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
+    deposit: in part coordinates. clearance: mm, links that are nearer touch.
+
+    names: what can be touched, links: what touches it, as messages call them: base, axes, then part, nozzle and torch.
+    groups: what can be touched; solids: of each of `links`, in its frame; balls: centre and radius of one about these.
+    """
+
+    cell: Cell
+    rods: Sequence[Sequence[Rod]]
+    bodies: Sequence[Body] = ()
+    deposit: Obstacles | None = None
+    clearance: float = 0.0
+    names: tuple[str, ...] = field(init=False)
+    links: tuple[str, ...] = field(init=False)
+    solids: tuple[tuple[Solid, ...], ...] = field(init=False, repr=False)
+    groups: tuple[Group, ...] = field(init=False, repr=False)
+    balls: tuple[tuple[Array, float], ...] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        around = [body for body in self.bodies if len(body.triangles)]
+        if self.cell.platform_diameter > 0.0:
+            around.append(disc(self.cell.platform_diameter, self.cell.mount, PLATFORM))
+        held, holder = self.cell.torch, self._links(not self._carries_part)
+        part = [*self._links(self._carries_part), *self._torch]
+        about_nozzle = [_nozzle(self.cell), *([] if held is None else [dataclasses.replace(held.body, name=TORCH)])]
+        groups = [*(_of_body(body, holder, NOZZLE) for body in about_nozzle), *(_of_body(body, part) for body in around)]
+        names = [body.name for body in (*about_nozzle, *around)]
+        more = ABOUT_FACES + self.clearance
+        solids = [[_of_rod(rod, more) for rod in link] for link in self.rods]
+        solids += [[_of_rod(rod, more) for rod in self._part_rods(around)], [_of_nozzle(self.cell)]]
+        solids += [[_of_rod(rod, more) for rod in (() if held is None else held.rods)]]
+        if self.deposit is not None:
+            names.append(DEPOSIT)
+            points = self.deposit.corners.reshape(-1, 3)
+            centre, radius = _ball(points)
+            wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
+            groups.append(Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide))
+        groups += [_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
+        names += [body.name for body in self.cell.obstacles]
+        object.__setattr__(self, "names", tuple(names))
+        object.__setattr__(self, "links", ("base", *self.cell.robot.axes, PART, NOZZLE, TORCH))
+        object.__setattr__(self, "groups", tuple(groups))
+        object.__setattr__(self, "solids", tuple(map(tuple, solids)))
+        object.__setattr__(self, "balls", tuple(_about(link) for link in solids))
+
+    @property
+    def _carries_part(self) -> bool:
+        return self.cell.torch_stands
+
+    def _links(self, carried: bool) -> range:
+        """The links that are looked at against what is carried, or what stands still."""
+        axes = self.cell.robot.chain.axes
+        return range(axes - 1) if carried else range(1, axes + 1)
+
+    @property
+    def _torch(self) -> list[int]:
+        """The number of the torch, if there is one."""
+        return [] if self.cell.torch is None else [self.cell.robot.chain.axes + 3]
+
+    @property
+    def _movers(self) -> list[int]:
+        """What moves in the world: links, with a track the base too, and part or nozzle with its torch."""
+        axes, cell = self.cell.robot.chain.axes, self.cell
+        on_track = cell.external is not None and cell.external.slides is not None
+        found = list(range(0 if on_track else 1, axes + 1))
+        return [*found, *([axes + 1] if cell.part_moves else []), *([] if cell.torch_stands else [axes + 2, *self._torch])]
+
+    def _part_rods(self, around: Sequence[Body]) -> list[Rod]:
+        """Rods that hold the part with what it stands on, where it may meet obstacles."""
+        if not self.cell.obstacles or not self.cell.part_moves:
+            return []
+        found = [rod for body in around for rod in row(body.vertices, body.triangles)]
+        if self.deposit is not None:
+            wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
+            found += [Rod(rod.start, rod.end, rod.radius + wide) for rod in _slices(self.deposit.corners)]
+        return found
+
+    def touches(self, joints: ArrayLike, moment: Index | None = None) -> Touches:
+        """What the links meet with joints (k, axes); NaN meets nothing. moment: (k,) how many points of the deposit are
+        there, all of them where it is not given."""
+        values = np.asarray(joints, float)
+        count = len(values)
+        link, what = np.full(count, NONE, dtype=np.int64), np.full(count, NONE, dtype=np.int64)
+        when = np.full(count, np.iinfo(np.int64).max) if moment is None else moment
+        known = np.flatnonzero(np.isfinite(values).all(axis=1))
+        for rows in np.split(known, np.arange(PIECE, len(known), PIECE)):
+            if len(rows):
+                link[rows], what[rows] = self._touched(values[rows], when[rows])
+        return Touches(link, what)
+
+    def seen(self, joints: Array) -> tuple[Array, dict[str, Array]]:
+        """With joints (k, axes): the frames (k, links, 4, 4) of `links`, and those (k, 4, 4) of part, nozzle and world, all
+        seen from where the machine's chain begins."""
+        links = self.cell.links(joints)
+        carried = links[:, -1] @ (self.cell.robot.chain.flange @ self.cell.carried)
+        still = np.broadcast_to(self.cell.station, carried.shape)
+        platform, nozzle = (carried, still) if self._carries_part else (still, carried @ _TURNED)
+        part = platform @ frames.inverse(self.cell.mount)
+        seen_from = {PART: part, NOZZLE: nozzle, WORLD: self.cell.world(joints) if self.cell.obstacles else part}
+        return np.concatenate([links, part[:, None], nozzle[:, None], nozzle[:, None]], axis=1), seen_from
+
+    def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
+        links, seen_from = self.seen(joints)
+        link, what = np.full(len(joints), NONE, dtype=np.int64), np.full(len(joints), NONE, dtype=np.int64)
+        for place, group in enumerate(self.groups):
+            frame = seen_from[group.seen_from]
+            centre = frame[:, :3, :3] @ group.centre + frame[:, :3, 3]
+            for number in group.links:
+                middle, size = self.balls[number]
+                away = links[:, number, :3, :3] @ middle + links[:, number, :3, 3] - centre
+                within = size + group.radius + ABOUT_FACES
+                rows = np.flatnonzero((link == NONE) & (np.einsum("ij,ij->i", away, away) < within**2))
+                if len(rows):
+                    seen = frames.inverse(frame[rows]) @ links[rows, number]
+                    met = rows[_meets(group, self.solids[number], seen, moment[rows])]
+                    link[met], what[met] = number, place
+        return link, what
+
+
+def _meets(group: Group, solids: Sequence[Solid], seen: Array, moment: Index) -> Mask:
+    """(k,) whether solids of a link, whose frame is seen as (k, 4, 4), meet a group."""
+    met = np.zeros(len(seen), dtype=bool)
+    for one in solids:
+        left = np.flatnonzero(~met)
+        turn = seen[left, :3, :3]
+        tip = turn @ one.tip + seen[left, :3, 3]
+        axis = turn @ one.axis
+        # only those that come near the ball are looked at closely
+        low, high = float(np.min(one.solid.low)), one.solid.high
+        along = np.clip(np.einsum("ij,ij->i", group.centre - tip, axis), low, high)
+        off = tip + along[:, None] * axis - group.centre
+        within = group.radius + one.solid.radius + one.solid.slope * high + ABOUT_FACES
+        near = np.flatnonzero(np.einsum("ij,ij->i", off, off) < within**2)
+        met[left[near]] = group.scene.touched(one.solid, tip[near], axis[near], moment[left[near]])
+    return met
+
+
+def _of_rod(rod: Rod, more: float) -> Solid:
+    """A rod, larger by so many mm on all sides."""
+    centre, axis = 0.5 * (rod.start + rod.end), (rod.end - rod.start) / rod.length
+    solid = Frustum(rod.radius + more, 0.0, -more, rod.length + more)
+    return Solid(solid, rod.start, axis, centre, float(np.hypot(0.5 * rod.length + more, rod.radius + more)))
+
+
+def _of_nozzle(cell: Cell) -> Solid:
+    """The nozzle in the frame of its tip, as it is looked at against bodies it deposits next to."""
+    nozzle = cell.nozzle
+    solid = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, 0.0).bodies
+    return Solid(solid, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.zeros(3), solid.reach)
+
+
+def _slices(corners: Array) -> list[Rod]:
+    """Rods that hold the hulls of corners (m, c, 3), of those next to each other along the longest side of all."""
+    middle = corners.mean(axis=1)
+    order = np.argsort(middle[:, int(np.ptp(middle, axis=0).argmax())], kind="stable")
+    return [about(corners[some].reshape(-1, 3)) for some in np.array_split(order, min(SLICES, len(order)))]
+
+
+# the tip's Z points out of the nozzle that is carried, that of the deposition point into the one that stands
+_TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
+
+
+def _nozzle(cell: Cell) -> Body:
+    """The nozzle in the frame of its tip, a many-sided cone about the round one."""
+    angle = np.linspace(0.0, 2.0 * np.pi, SIDES, endpoint=False)
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1) / np.cos(np.pi / SIDES)
+    tip, length = 0.5 * cell.nozzle.diameter, cell.nozzle.length
+    back = tip + length * float(np.tan(cell.nozzle.half_angle))
+    vertices = np.concatenate([
+        np.column_stack([tip * ring, np.zeros(SIDES)]), np.column_stack([back * ring, np.full(SIDES, length)]),
+        [[0.0, 0.0, 0.0], [0.0, 0.0, length]],
+    ])
+    here = np.arange(SIDES)
+    on = np.roll(here, -1)
+    triangles = np.concatenate([
+        np.stack([here, on, on + SIDES], axis=1), np.stack([here, on + SIDES, here + SIDES], axis=1),
+        np.stack([on, here, np.full(SIDES, 2 * SIDES)], axis=1),
+        np.stack([here + SIDES, on + SIDES, np.full(SIDES, 2 * SIDES + 1)], axis=1),
+    ])
+    return Body(NOZZLE, vertices, triangles.astype(np.int64))
+
+
+def _of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> Group:
+    centre, radius = _ball(body.vertices)
+    scene = Scene(of_bodies([body], body.vertices, 0.0, max(LINK_PIECE, SHARE * 2.0 * radius)))
+    return Group(scene, links, centre, radius, seen_from)
+
+
+def _about(link: Sequence[Solid]) -> tuple[Array, float]:
+    """Centre and radius of a ball about the solids of a link."""
+    if not link:
+        return np.zeros(3), 0.0
+    centre, _ = _ball(np.array([one.centre for one in link]))
+    return centre, max(float(np.linalg.norm(one.centre - centre)) + one.radius for one in link)
+
+
+def _ball(points: Array) -> tuple[Array, float]:
+    """Centre and radius of a ball about points (n, 3)."""
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    return centre, float(np.linalg.norm(points - centre, axis=1).max())

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the links of a robot look like, from its kinematic chain alone: plain solids that go through its axes.
+
+Along each axis there is a run from where the common perpendicular with the axis before meets it to where that with the
+next axis does. Long runs are tubes, such as column and forearm; axes without one are drums, such as shoulder and elbow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry import frames
+from ..chain import Chain
+from .solids import BRIGHT, DARK, Solid, capsule, cylinder, rod, turned
+
+Array = NDArray[np.float64]
+
+# radii of the first and the last joint as shares of the arm's whole length, tapering between; the last such that flanges of
+# robots from 0.7 to 3 m are about as wide as the plates of ISO 9409-1 are: 40 to 125 mm
+THICK, THIN = 0.068, 0.016
+# half the length of a drum, in radii
+DRUM = 0.85
+# runs shorter than this share of the arm are none
+SHORT = 0.03
+# how much of a run is still part of the link before
+STILL = 0.45
+_NONE = 1e-6  # and shorter than this there is nothing to draw
+# axes that are parallel within this, rad
+_PARALLEL = 1e-6
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """Per axis of a chain at zero: unit `directions`, where the link before meets it (`enter`) and where its own link
+    leaves it (`leave`), all (axes, 3) in base_link; the `flange` point and `size`, the length of the whole, mm."""
+
+    directions: Array
+    enter: Array
+    leave: Array
+    flange: Array
+    size: float
+
+    def radius(self, axis: int) -> float:
+        """Of the joint of an axis, mm."""
+        share = axis / max(1, len(self.directions) - 1)
+        return float(self.size * THICK * (THIN / THICK) ** share)
+
+    def run(self, axis: int) -> float:
+        """Length of the run along an axis, mm; 0 where it is short, but for the last one, which ends at the flange."""
+        length = float(np.linalg.norm(self.leave[axis] - self.enter[axis]))
+        short = SHORT if axis + 1 < len(self.directions) else _NONE
+        return length if length > short * self.size else 0.0
+
+
+def skeleton(chain: Chain) -> Skeleton:
+    """The skeleton of a chain of turning joints."""
+    at_zero = chain.frames(np.zeros(chain.axes))
+    directions, origins, flange = at_zero.directions, at_zero.origins, at_zero.flange[:3, 3]
+    enter, leave = np.empty((chain.axes, 3)), np.empty((chain.axes, 3))
+    enter[0] = _on_axis(np.zeros(3), origins[0], directions[0])
+    for axis in range(chain.axes - 1):
+        leave[axis], enter[axis + 1] = _feet(
+            origins[axis], directions[axis], origins[axis + 1], directions[axis + 1], enter[axis]
+        )
+    leave[-1] = _on_axis(flange, origins[-1], directions[-1])
+    runs = np.linalg.norm(leave - enter, axis=1).sum() + np.linalg.norm(enter[1:] - leave[:-1], axis=1).sum()
+    return Skeleton(directions, enter, leave, flange, float(max(runs, 1.0)))
+
+
+def solids(chain: Chain) -> list[list[Solid]]:
+    """The solids of each link (axes + 1), base first, in the frame of the link: that of its joint, turned with it."""
+    bones = skeleton(chain)
+    found: list[list[Solid]] = [[] for _ in range(chain.axes + 1)]
+    _base(bones, found[0])
+    for axis in range(chain.axes):
+        _joint(bones, axis, found[axis], found[axis + 1])
+        if axis + 1 < chain.axes:
+            _between(bones, axis, found[axis + 1])
+    _flange(bones, found[-1])
+    back = frames.inverse(chain.links(np.zeros(chain.axes)))
+    return [[solid.moved(pose) for solid in link] for pose, link in zip(back, found)]
+
+
+def _base(bones: Skeleton, base: list[Solid]) -> None:
+    foot, radius = np.zeros(3), bones.radius(0)
+    up = np.array([0.0, 0.0, 1.0])
+    plate = 0.22 * radius
+    base.append(cylinder(foot, foot + plate * up, 1.75 * radius, DARK, 0.05))
+    if np.linalg.norm(bones.enter[0] - foot) > SHORT * bones.size:
+        base.append(capsule(foot, bones.enter[0], 1.2 * radius, radius))
+
+
+def _joint(bones: Skeleton, axis: int, before: list[Solid], own: list[Solid]) -> None:
+    """The joint of an axis: its housing on the link before, what turns in it on its own link."""
+    start, direction, radius = bones.enter[axis], bones.directions[axis], bones.radius(axis)
+    run = bones.run(axis)
+    if not run and axis + 1 == len(bones.directions):
+        return
+    if not run:
+        half = DRUM * radius * direction
+        before.append(cylinder(start - half, start + half, radius))
+        own.append(cylinder(start - 1.14 * half, start + 1.14 * half, 0.72 * radius, DARK))
+        return
+    along = (bones.leave[axis] - start) / run
+    middle, end = start + STILL * run * along, bones.leave[axis]
+    slim = radius * (0.8 if axis else 1.0)
+    last = bones.radius(min(axis + 1, len(bones.directions) - 1)) if axis else slim
+    # the housing of a forearm begins behind its elbow
+    back = start - 0.9 * slim * along if axis and axis + 1 < len(bones.directions) else start
+    before.append(cylinder(back, middle, 1.08 * slim) if axis else turned(
+        [(0.0, 0.0), (1.45 * slim, 0.0), (1.45 * slim, 0.12), (1.12 * slim, 0.45), (1.12 * slim, 1.0), (0.0, 1.0)],
+        start, middle))
+    seam = min(0.06 * run, 0.2 * slim)
+    own.append(cylinder(middle, middle + seam * along, 0.98 * slim, DARK, 0.02))
+    own.append(turned([(0.0, 0.0), (slim, 0.0), (0.92 * last, 1.0), (0.0, 1.0)], middle + seam * along, end))
+
+
+def _between(bones: Skeleton, axis: int, own: list[Solid]) -> None:
+    """The link from an axis to the next one."""
+    start, end = bones.leave[axis], bones.enter[axis + 1]
+    first, last = bones.radius(axis), bones.radius(axis + 1)
+    length = float(np.linalg.norm(end - start))
+    if length < _NONE * bones.size:
+        return
+    if np.linalg.norm(np.cross(bones.directions[axis], bones.directions[axis + 1])) < _PARALLEL and length > first - last:
+        own.append(rod(start, end, bones.directions[axis], 0.9 * first, 0.9 * last, 1.1 * last))
+    else:
+        own.append(capsule(start, end, 0.82 * min(first, 1.3 * last), 0.82 * last))
+
+
+def _flange(bones: Skeleton, last: list[Solid]) -> None:
+    radius = 0.95 * bones.radius(len(bones.directions) - 1)
+    direction = bones.directions[-1] if bones.run(len(bones.directions) - 1) == 0.0 else (
+        (bones.leave[-1] - bones.enter[-1]) / np.linalg.norm(bones.leave[-1] - bones.enter[-1])
+    )
+    last.append(cylinder(bones.flange - 0.3 * radius * direction, bones.flange, 1.1 * radius, BRIGHT, 0.05))
+
+
+def _on_axis(point: Array, origin: Array, direction: Array) -> Array:
+    """The point of an axis nearest to another point."""
+    return np.asarray(origin + ((point - origin) @ direction) * direction)
+
+
+def _feet(first: Array, along: Array, second: Array, other: Array, at: Array) -> tuple[Array, Array]:
+    """Where the common perpendicular of two axes meets them; of parallel ones that through the point `at`."""
+    normal = np.cross(along, other)
+    square = float(normal @ normal)
+    if square < _PARALLEL**2:
+        return at, _on_axis(at, second, other)
+    between = second - first
+    s = float(np.cross(between, other) @ normal) / square
+    t = float(np.cross(between, along) @ normal) / square
+    return np.asarray(first + s * along), np.asarray(second + t * other)

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Shapes that a machine file attaches to its links, drawn in place of plain solids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...geometry.frames import Array
+from ..machines.file import Node
+
+BASE = "base"
+FORMATS = (".step", ".stp", ".iges", ".igs", ".brep", ".stl", ".obj")
+
+
+@dataclass(frozen=True, eq=False)
+class LinkShape:
+    """A file of a link. `pose` (4, 4) places its content in the frame of the link's joint, mm; `scale` is what one of the
+    file's units amounts to in mm; `colour` 0..1 each. `where` names file and key in messages."""
+
+    path: Path
+    pose: Array
+    scale: float
+    colour: tuple[float, float, float] | None
+    where: str
+
+
+def link_shapes(top: Node, joints: tuple[str, ...]) -> tuple[LinkShape | None, ...]:
+    """The shapes (axes + 1) of a machine file's links, base first, None where there is none.
+
+    Raises InputError 'BAD_MACHINE' for a link, a format or a value that is wrong; whether the files are there is looked at
+    when they are drawn, for a machine can be planned for without its looks.
+    """
+    links = (BASE, *joints)
+    if not top.has("shapes"):
+        return (None,) * len(links)
+    told = top["shapes"].only(*links)
+    return tuple(_shape(told[name]) if told.has(name) else None for name in links)
+
+
+def _shape(node: Node) -> LinkShape:
+    node.only("file", "origin", "rpy", "scale", "colour")
+    path = Path(node["file"].text())
+    if path.suffix.lower() not in FORMATS:
+        raise node["file"].bad(f"{path.name} is no shape that can be drawn; use {', '.join(FORMATS)}")
+    pose = np.eye(4)
+    if node.has("origin") or node.has("rpy"):
+        pose = node.pose()
+    scale = node["scale"].number() if node.has("scale") else 1.0
+    if scale <= 0.0:
+        raise node["scale"].bad(f"{scale:g} is no scale; give 1 for mm, 1000 for m")
+    colour = None
+    if node.has("colour"):
+        values = node["colour"].numbers(3)
+        if ((values < 0.0) | (values > 1.0)).any():
+            raise node["colour"].bad(f"{node['colour'].value} is no colour; give red, green and blue from 0 to 1")
+        colour = (float(values[0]), float(values[1]), float(values[2]))
+    file = path if path.is_absolute() else node.path.parent / path
+    return LinkShape(file, pose, scale, colour, f"{node.path}: {node.key}.file")

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The calibration of one robot of Universal Robots, as ROS' `ur_calibration` writes it from the controller.
+
+The file has, of every joint, the pose of its frame in the link before: `kinematics: forearm: {x, y, z, roll, pitch, yaw}` in
+m and rad, in block style; the first is seen from the maker's base frame. It says nothing else, so the rest is the machine
+file's.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...geometry import frames
+from ...geometry.file_content import content
+from ...geometry.frames import Array
+from ...geometry.located import is_there
+from ...issues import InputError
+from ..chain import Chain
+
+LARGEST = 1  # MB
+JOINTS = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
+NUMBERS = ("x", "y", "z", "roll", "pitch", "yaw")
+# farther than this from the machine file it is that of another robot: mm and rad
+FAR_MM, FAR = 30.0, math.radians(3.0)
+_NAMED = re.compile(r"(?P<machine>.+?)\s+calibration=(?P<file>.+)")
+_ENTRY = re.compile(r"(?P<indent> *)(?P<key>[^\s:#]+):(?:\s+(?P<value>.*))?")
+
+
+@dataclass(frozen=True)
+class Named:
+    """A machine, by its id or machine file, and the file of its calibration. Its text is `ur-ur10e calibration=my.yaml`."""
+
+    machine: str
+    file: str
+
+    def __str__(self) -> str:
+        return f"{self.machine} calibration={self.file}"
+
+
+def named(text: str) -> Named | None:
+    """What a text says, None where it names no calibration."""
+    found = _NAMED.fullmatch(text.strip())
+    return None if found is None else Named(found["machine"], found["file"])
+
+
+def read(path: Path) -> tuple[Array, str]:
+    """The poses (6, 4, 4) of the joint frames in the links before, mm, and the robot's `hash`, empty where there is none.
+
+    Raises InputError UNKNOWN_MACHINE without the file, BAD_CALIBRATION naming line or key.
+    """
+    if not is_there(path):
+        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no calibration {path}; give the path of the YAML "
+                         "file that ur_calibration wrote of this arm")
+    try:
+        text = content(path, LARGEST, "BAD_CALIBRATION", str(path)).decode("utf-8")
+    except (OSError, ValueError) as error:
+        raise InputError("BAD_CALIBRATION", str(path), f"cannot be read as a calibration: {error}") from None
+    told = _entries(text, path)
+    poses = [_pose(told, joint, path) for joint in JOINTS]
+    return np.stack(poses), told.get("kinematics.hash", "").strip("'\"")
+
+
+def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
+    """The chain of a robot with the joint frames of its calibration; `base` (4, 4) is the maker's base frame in base_link.
+
+    Raises InputError BAD_CALIBRATION where they are far from the chain's, as those of another robot are.
+    """
+    origins = poses.copy()
+    origins[0] = base @ poses[0]
+    for joint, was, now in zip(JOINTS, chain.origins, origins, strict=True):
+        off = float(np.linalg.norm(now[:3, 3] - was[:3, 3]))
+        turned = math.acos(float(np.clip(0.5 * (np.trace(was[:3, :3].T @ now[:3, :3]) - 1.0), -1.0, 1.0)))
+        if off > FAR_MM or turned > FAR:
+            raise InputError(
+                "BAD_CALIBRATION", f"{path}: kinematics.{joint}", f"it is {off:.3g} mm and {math.degrees(turned):.3g} deg "
+                "from where the machine file has this joint, which is more than a calibration corrects; name the machine "
+                "that it is of",
+            )
+    return Chain(origins, chain.directions.copy(), chain.flange.copy())
+
+
+def _entries(text: str, path: Path) -> dict[str, str]:
+    """The values of a file of nested keys, by their keys joined with points."""
+    found: dict[str, str] = {}
+    open_: list[tuple[int, str]] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        shown = line.split(" #")[0].rstrip()
+        if not shown or shown.startswith(("#", "---", "%")):
+            continue
+        entry = _ENTRY.fullmatch(shown)
+        if entry is None:
+            raise InputError("BAD_CALIBRATION", f"{path}: line {number}", f"{_short(line)} is not `key: value`; give the "
+                             "file as ur_calibration wrote it")
+        indent = len(entry["indent"])
+        while open_ and open_[-1][0] >= indent:
+            open_.pop()
+        key = ".".join([*(name for _, name in open_), entry["key"]])
+        if key in found:
+            raise InputError("BAD_CALIBRATION", f"{path}: line {number}", f"the key {key} is there twice")
+        found[key] = entry["value"] or ""
+        open_.append((indent, entry["key"]))
+    return found
+
+
+def _pose(told: dict[str, str], joint: str, path: Path) -> Array:
+    numbers = []
+    for name in NUMBERS:
+        key = f"kinematics.{joint}.{name}"
+        if key not in told:
+            raise InputError("BAD_CALIBRATION", f"{path}: {key}", "this key is missing; give the file as ur_calibration "
+                             "wrote it")
+        try:
+            number = float(told[key])
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            raise InputError("BAD_CALIBRATION", f"{path}: {key}", f"{_short(told[key])} is not a number")
+        numbers.append(number)
+    return frames.from_rpy(np.array(numbers[:3]) * 1000.0, np.array(numbers[3:]))
+
+
+def _short(text: str) -> str:
+    return repr(text if len(text) <= 60 else text[:57] + "...")

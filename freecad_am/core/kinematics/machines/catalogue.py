@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The machines known with what one chooses by: maker, reach, payload, posts. Their geometry is not looked at."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...issues import InputError
+from . import machine
+from .file import Node, read
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A machine file's figures. reach: mm, payload: kg, None where the file does not tell. posts: None for any."""
+
+    id: str
+    title: str
+    reach: float | None
+    payload: float | None
+    posts: tuple[str, ...] | None
+
+    def is_of(self, maker: str) -> bool:
+        """Whether title or id begin with the words of a maker, as 'Yaskawa' and 'motoman' of a Yaskawa; accents and
+        capitals do not count."""
+        wanted = _plain(maker)
+        return any(_plain(name).startswith(f"{wanted} ") for name in (self.title, self.id.replace("-", " ")))
+
+
+def entries(folders: Sequence[Path | str] = ()) -> list[Entry]:
+    """All machines, built in and in the user's `folders`, in order of id; files that are no machine files are left out.
+
+    Raises InputError BAD_MACHINE for reach or payload that are no figures.
+    """
+    names = [name for name, title in machine.known(folders) if not title.startswith(machine.REFUSED)]
+    return [_entry(name, read(machine.file_of(name, folders))) for name in names]
+
+
+def chosen(
+    known: Sequence[Entry], maker: str | None = None, reach: float = 0.0, payload: float = 0.0, post: str | None = None
+) -> list[Entry]:
+    """Those of a maker, that reach and carry so much at least (mm, kg), and whose controllers read a post; where a file does
+    not tell a figure that is asked for, its machine is left out. InputError USAGE for a maker that no machine is of."""
+    if maker is not None and not any(entry.is_of(maker) for entry in known):
+        makers = ", ".join(sorted({entry.title.split()[0] for entry in known}))
+        raise InputError("USAGE", "freecad-am machines", f"no machine known is of {maker!r}; titles begin with {makers}")
+    return [
+        entry for entry in known
+        if (maker is None or entry.is_of(maker))
+        and (reach <= 0.0 or (entry.reach is not None and entry.reach >= reach))
+        and (payload <= 0.0 or (entry.payload is not None and entry.payload >= payload))
+        and (post is None or entry.posts is None or post in entry.posts)
+    ]
+
+
+def _entry(name: str, top: Node) -> Entry:
+    controller = top["controller"] if top.has("controller") else top
+    return Entry(
+        name, top["title"].text(), _figure(top, "reach", "mm"), _figure(top, "payload", "kg"),
+        controller["posts"].texts() if controller.has("posts") else None,
+    )
+
+
+def _figure(top: Node, key: str, unit: str) -> float | None:
+    return top[key][unit].number() if top.has(key) and top[key].has(unit) else None
+
+
+def _plain(text: str) -> str:
+    letters = unicodedata.normalize("NFKD", text)
+    return "".join(letter for letter in letters if not unicodedata.combining(letter)).casefold().strip()

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine files prove themselves: joint vectors with the flange poses that they give are computed again."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...geometry import frames
+from ..chain import Chain
+from ..inverse.opw import OpwArm
+from .file import Node
+
+# what rounding of the check poses may leave: mm, and entries of a rotation
+POSITION_TOLERANCE, ROTATION_TOLERANCE = 1e-6, 1e-9
+MOST_ROUNDING = (0.5, 0.1)  # that may be claimed for a check pose, mm and deg
+
+
+def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
+    """Refuse a file (InputError BAD_MACHINE) whose check poses, `node`, are not those of its own geometry: of its chain, and
+    of its closed form where it has one."""
+    poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
+    if len(poses) < 3:
+        raise node.bad(f"there are {len(poses)}; a machine needs at least 3 joint vectors with their flange poses")
+    q = np.array([pose["q"].numbers(chain.axes) for pose in poses]) * np.where(chain.sliding, 1.0, math.radians(1.0))
+    if not (q == 0.0).all(axis=1).any():
+        raise node.bad("the pose at all zeros is missing")
+    wanted = np.stack([frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses])
+    allowed = np.array([_within(pose) for pose in poses])
+    solvers = {"the joint frames give": chain.forward}
+    if opw is not None:
+        solvers["opw gives"] = opw.forward
+    for solver_gives, forward in solvers.items():
+        off = np.abs(forward(q) - wanted)
+        position, rotation = off[:, :3, 3].max(axis=1), off[:, :3, :3].max(axis=(1, 2))
+        wrong = (position > allowed[:, 0]) | (rotation > allowed[:, 1])
+        if wrong.any():
+            index = int(np.argmax(wrong))
+            raise poses[index].bad(
+                f"{solver_gives} a flange {position[index]:.6g} mm and "
+                f"{rotation[index]:.3g} (largest entry of the rotation) from it; correct the geometry or the pose"
+            )
+
+
+def _within(pose: Node) -> tuple[float, float]:
+    """How far the rounding of a check pose may leave it, mm and as entries of the rotation: what `within` says of one
+    that was read from a display."""
+    if not pose.has("within"):
+        return POSITION_TOLERANCE, ROTATION_TOLERANCE
+    node = pose["within"].only("mm", "deg")
+    found = []
+    for key, most in zip(("mm", "deg"), MOST_ROUNDING, strict=True):
+        value = node[key].number()
+        if not 0.0 <= value <= most:
+            raise node[key].bad(f"{value:g} is more than the rounding of a display leaves; give 0 to {most:g}")
+        found.append(value)
+    return max(found[0], POSITION_TOLERANCE), max(math.radians(found[1]), ROTATION_TOLERANCE)

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A machine while it is made: from a URDF, a table, the figures of the closed form or another machine, to a machine file."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...geometry import frames
+from ...geometry.frames import Array
+from ...issues import InputError
+from ..chain import Chain
+from ..inverse.opw import OpwArm
+from ..inverse.serial_arm import SerialArm
+from ..links.shape import BASE, LinkShape
+from ..urdf import machine as urdf_machine
+from ..urdf.read import Description
+from . import check_poses, pendant
+from . import file as machine_file
+from . import machine as machines
+from .machine import Machine
+from .pendant import Shown
+
+NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
+# what the deviations of check poses are rounded up to, mm and deg, for the machine file
+_ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), check_poses.MOST_ROUNDING)
+
+
+@dataclass(frozen=True, eq=False)
+class Draft:
+    """What a machine file is made of.
+
+    Per axis: `joints` names, `lower`, `upper`, `max_speed`, `max_acceleration`, `max_jerk` (axes,) rad and mm and per s,
+    infinite where endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None
+    without. `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm,
+    with flange `poses` (n, 4, 4) in base_link. `notes`: what a user should know of the source; `remarks` go into the file.
+    `labels`: what the pendant calls the axes, None where it numbers them.
+    """
+
+    id: str
+    title: str
+    chain: Chain
+    joints: tuple[str, ...]
+    lower: Array
+    upper: Array
+    max_speed: Array
+    max_acceleration: Array
+    max_jerk: Array
+    base: Array
+    shown: Shown
+    shapes: tuple[LinkShape | None, ...]
+    sources: tuple[str, ...]
+    horizontal: tuple[float, float] | None = None
+    posts: tuple[str, ...] | None = None
+    pulses_per_degree: tuple[float, ...] = ()
+    speed_unit: str = ""
+    values: Array | None = None
+    poses: Array | None = None
+    notes: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+    labels: tuple[str, ...] | None = None
+
+    @property
+    def units(self) -> Array:
+        """What a degree, or a mm, of each axis (axes,) amounts to inside."""
+        return machines.unit_values(self.chain.sliding)
+
+
+def of_description(described: Description, source: str) -> Draft:
+    """The draft of what a URDF describes; limits are those of the file."""
+    found = urdf_machine.grounded(described)
+    draft = _bare(found.chain, found.joints, found.name, source)
+    return replace(
+        draft, lower=found.lower, upper=found.upper, max_speed=found.max_speed,
+        base=np.eye(4) if found.base is None else found.base, shapes=found.shapes, notes=found.notes,
+    )
+
+
+def of_chain(chain: Chain, source: str) -> Draft:
+    """The draft of a bare chain, of a table or of closed-form figures."""
+    grounded, moved = urdf_machine.grounded_chain(chain)
+    draft = _bare(grounded, tuple(f"joint_{number}" for number in range(1, chain.axes + 1)), "", source)
+    return replace(draft, base=moved)
+
+
+def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
+    """The draft of a copy of a machine of the list, with its check poses and its limits `maker`.
+
+    Raises InputError as `machine.load` does, and BAD_MACHINE where the controller shows axes in a way that a draft cannot
+    say.
+    """
+    machine = machines.load(name, folders)
+    checks = machine_file.read(machines.file_of(name, folders))["check_poses"].items()
+    q = np.array([check["q"].numbers(len(machine.axes)) for check in checks]) * machine.unit_values
+    poses = np.stack([frames.pose(check["rotation"].matrix(3, 3), check["origin"].numbers(3)) for check in checks])
+    count, limits = len(machine.axes), machine.limits(machines.MAKER)
+    shown = _shown(machine)
+    coupled = [span for span, row in zip(
+        np.degrees(np.column_stack((limits.coupled_lower, limits.coupled_upper))).tolist(), limits.coefficients, strict=True
+    ) if shown.coupling == pendant.HORIZONTAL and np.allclose(row, machine.controller_matrix[2])]
+    names = machine.axes if machine.arrangements[0].named_axes else tuple(f"joint_{1 + number}" for number in range(count))
+    return Draft(
+        id=f"{machine.id}-copy", title=machine.title, chain=machine.chain, joints=names, lower=limits.lower[:count],
+        upper=limits.upper[:count], max_speed=machine.max_speed, max_acceleration=machine.max_acceleration,
+        max_jerk=machine.max_jerk, base=machine.base, shown=shown, shapes=machine.shapes,
+        sources=(f"copy of {machine.id}", *machine.sources),
+        horizontal=(coupled[0][0] + shown.zeros[2], coupled[0][1] + shown.zeros[2]) if coupled else None,
+        posts=machine.posts, pulses_per_degree=machine.pulses_per_degree, speed_unit=machine.speed_unit,
+        values=machine.to_controller(q) / machine.unit_values, poses=poses,
+        labels=None if machine.axes == machine.columns else machine.axes,
+    )
+
+
+def closed_form(draft: Draft) -> SerialArm | None:
+    """The inverse of a draft, as `urdf_machine.closed_form` has it; None too of what stands beside a robot."""
+    return None if urdf_machine.is_mechanism(draft.chain) else urdf_machine.closed_form(draft.chain)
+
+
+def text(draft: Draft) -> str:
+    """The machine file. Raises InputError: BAD_NAME; NO_CLOSED_FORM; BAD_MACHINE naming the key that is wrong, such as check
+    poses that are missing or missed."""
+    if not NAME.fullmatch(draft.id):
+        raise InputError("BAD_NAME", "id", f"{draft.id!r} cannot be the name of a machine; use a to z, digits and -")
+    if not draft.title:
+        raise InputError("BAD_NAME", "title", "it is empty; give maker and model")
+    content: dict[str, Any] = {
+        "id": draft.id, "title": draft.title, "sources": list(draft.sources), "joints": _joints(draft),
+        "flange": _pose(draft.chain.flange), "base": _pose(draft.base),
+    }
+    if draft.remarks:
+        content["remarks"] = list(draft.remarks)
+    arm = closed_form(draft)
+    if isinstance(arm, OpwArm):
+        content["opw"] = {
+            **{name: getattr(arm, name) for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")},
+            "offsets": _figures(np.degrees(arm.offsets)), "signs": list(arm.signs),
+        }
+    content |= {"controller": _controller(draft), "limits": {machines.MAKER: _limits(draft)}}
+    shapes = _shapes(draft)
+    if shapes:
+        content["shapes"] = shapes
+    content["check_poses"] = _check_poses(draft)
+    written = _compact(json.dumps(content, indent=2, ensure_ascii=False)) + "\n"
+    machines.parse(written, Path(f"{draft.id}.json"))
+    return written
+
+
+def _bare(chain: Chain, joints: tuple[str, ...], title: str, source: str) -> Draft:
+    endless = np.full(chain.axes, math.inf)
+    return Draft(
+        id="", title=title, chain=chain, joints=joints, lower=-endless, upper=endless, max_speed=endless,
+        max_acceleration=endless, max_jerk=endless, base=np.eye(4), shown=Shown((1,) * chain.axes, (0.0,) * chain.axes),
+        shapes=(None,) * (chain.axes + 1), sources=(source,),
+    )
+
+
+def _shown(machine: Machine) -> Shown:
+    """How a machine's controller shows its axes, from matrix and offset."""
+    zeros = tuple(_figures(machine.controller_offset / machine.unit_values))
+    signs = tuple(int(np.sign(value)) for value in np.diag(machine.controller_matrix))
+    for coupling in (pendant.NONE, pendant.HORIZONTAL) if len(signs) == 6 else (pendant.NONE,):
+        shown = Shown(signs, zeros, coupling)
+        if 0 not in signs and np.allclose(pendant.matrix(shown, machine.chain)[0], machine.controller_matrix):
+            return shown
+    raise InputError("BAD_MACHINE", f"{machine.id}: controller.matrix",
+                     "it is none of signs and a coupling of axes 2 and 3; copy the file itself")
+
+
+def _joints(draft: Draft) -> list[dict[str, Any]]:
+    found = []
+    for index, name in enumerate(draft.joints):
+        joint: dict[str, Any] = {"name": name}
+        if draft.labels is not None:
+            joint["label"] = draft.labels[index]
+        if draft.chain.sliding[index]:
+            joint["type"] = "prismatic"
+        joint |= _pose(draft.chain.origins[index])
+        joint["axis"] = _figures(draft.chain.directions[index])
+        joint["max_speed"] = _known(draft.max_speed[index] / draft.units[index])
+        for key in ("max_acceleration", "max_jerk"):
+            most = getattr(draft, key)[index]
+            if math.isfinite(most):
+                joint[key] = _known(most / draft.units[index])
+        found.append(joint)
+    return found
+
+
+def _controller(draft: Draft) -> dict[str, Any]:
+    matrix, offset = pendant.matrix(draft.shown, draft.chain)
+    remark = "as shown in the check poses"
+    if draft.shown.coupling == pendant.HORIZONTAL:
+        remark += f"; J3 is shown against the horizontal, {_coupled_label(matrix[2])}"
+    found: dict[str, Any] = {"matrix": [_figures(row) for row in matrix], "offset": _figures(offset), "remark": remark}
+    if draft.pulses_per_degree:
+        found["pulses_per_degree"] = list(draft.pulses_per_degree)
+    if draft.speed_unit:
+        found["speed_unit"] = draft.speed_unit
+    return found if draft.posts is None else {"posts": list(draft.posts), **found}
+
+
+def _limits(draft: Draft) -> dict[str, Any]:
+    spans = np.column_stack((draft.lower / draft.units, draft.upper / draft.units))
+    found: dict[str, Any] = {"axes": [None if not np.isfinite(span).all() else _figures(span) for span in spans]}
+    if draft.shown.coupling == pendant.HORIZONTAL and draft.horizontal is not None:
+        row = pendant.matrix(draft.shown, draft.chain)[0][2]
+        label = f"J3 as shown ({_coupled_label(row)})"
+        span = np.array(draft.horizontal) - draft.shown.zeros[2]
+        found["coupled"] = [{"label": label, "coefficients": _figures(row), "range": _figures(span)}]
+    return {**found, "source": "entered when the machine was made"}
+
+
+def _coupled_label(row: Array) -> str:
+    return f"{'' if row[2] > 0.0 else '-'}q3 {'+' if row[1] > 0.0 else '-'} q2"
+
+
+def _shapes(draft: Draft) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, shape in zip((BASE, *draft.joints), draft.shapes, strict=True):
+        if shape is not None:
+            found[name] = {"file": str(shape.path), **_pose(shape.pose), "scale": shape.scale}
+            if shape.colour is not None:
+                found[name]["colour"] = [round(value, 4) for value in shape.colour]
+    return found
+
+
+def _check_poses(draft: Draft) -> list[dict[str, Any]]:
+    if draft.values is None or draft.poses is None or not len(draft.values):
+        return []
+    q = pendant.serial(draft.shown, draft.chain, draft.values)
+    off = pendant.deviations(draft.chain, draft.shown, draft.values, draft.poses)
+    found = []
+    for angles, pose, deviation in zip(q / draft.units, draft.poses, off, strict=True):
+        check = {
+            "q": _figures(angles), "origin": _figures(pose[:3, 3]), "rotation": [_figures(row) for row in pose[:3, :3]],
+        }
+        fits = [entry for entry in _ROUNDINGS if deviation.position <= entry[0] and deviation.angle <= entry[1]]
+        if fits and (deviation.position > 0.5e-6 or deviation.angle > 1e-8):
+            check["within"] = {"mm": fits[0][0], "deg": fits[0][1]}
+        found.append(check)
+    return found
+
+
+def _pose(pose: Array) -> dict[str, Any]:
+    # + 0.0 leaves no -0.0
+    return {"origin": _figures(pose[:3, 3]), "rpy": _figures(np.degrees(-frames.to_bryant(pose[:3, :3].T)))}
+
+
+def _figures(values: Any) -> list[float]:
+    return [_figure(float(value)) for value in values]
+
+
+def _figure(value: float) -> float:
+    """A number without the noise of its computation, whole ones without a point."""
+    rounded = round(value, 9)
+    value = rounded + 0.0 if abs(rounded - value) < 1e-11 else value
+    return int(value) if value == int(value) else value
+
+
+def _known(value: float) -> float | None:
+    return _figure(float(value)) if math.isfinite(value) else None
+
+
+def _compact(text: str) -> str:
+    """JSON with lists of numbers, and objects of such lists alone, in one line each."""
+    lists = re.compile(r"\[\s+((?:-?[\d.eE+-]+|null),?\s*)+\]")
+    return lists.sub(lambda found: re.sub(r"\s+", " ", found[0]).replace("[ ", "[").replace(" ]", "]"), text)

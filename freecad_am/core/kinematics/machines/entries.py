@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Entries of machine files as numbers: units, limits, pulses, arms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...geometry.frames import Array
+from ...issues import InputError
+from ..chain import Chain
+from ..inverse import recognition
+from ..inverse.five_axis import is_five_axis
+from ..inverse.opw import OpwArm
+from ..inverse.serial_arm import SerialArm
+from ..limits import Limits, Payload
+from .file import Node
+
+SPEED_UNITS = ("mm/s", "cm/min", "mm/min")
+
+
+def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
+    """The pulses of each axis, none where the file does not tell them."""
+    if not controller.has("pulses_per_degree"):
+        return ()
+    node = controller["pulses_per_degree"]
+    pulses = node.numbers(count)
+    if (pulses == 0.0).any():
+        raise node.bad(f"{node.value} has a 0; give the pulses of a degree of each axis, negative where they count down")
+    return tuple(pulses.tolist())
+
+
+def speed_unit_of(node: Node) -> str:
+    if node.text() not in SPEED_UNITS:
+        raise node.bad(f"{node.value!r} is not a unit of path speeds; use {', '.join(SPEED_UNITS)}")
+    return node.text()
+
+
+def name_of(joint: Node, numbered: str, has_name: bool) -> str:
+    """What messages and curves call an axis."""
+    if joint.has("label"):
+        return joint["label"].text()
+    return joint["name"].text() if has_name else numbered
+
+
+def unit_of(node: Node) -> Array:
+    axis = node.numbers(3)
+    length = float(np.linalg.norm(axis))
+    if abs(length - 1.0) > 1e-6:
+        raise node.bad(f"{node.value} is not a unit vector")
+    return axis / length
+
+
+def slides(joint: Node) -> bool:
+    kind = joint["type"].text() if joint.has("type") else "revolute"
+    if kind not in ("revolute", "prismatic"):
+        raise joint["type"].bad(f"{kind!r} is not a type of joint; use revolute or prismatic")
+    return kind == "prismatic"
+
+
+def most_of(joint: Node, key: str, what: str) -> float:
+    if not joint.has(key):
+        return math.inf
+    most = joint[key].number()
+    if most <= 0.0:
+        raise joint[key].bad(f"{most:g} is not {what}; give more than 0, or null where not known")
+    return most
+
+
+def payload_of(top: Node) -> Payload:
+    """What a machine carries, as far as its file tells it."""
+    if not top.has("payload"):
+        return Payload()
+    told = top["payload"].only("kg", "from_axis", "source")
+    return Payload(most_of(told, "kg", "a mass"), most_of(told, "from_axis", "a distance"))
+
+
+def recognised(chain: Chain) -> tuple[SerialArm | None, str]:
+    """The inverse of a robot whose file has no `opw`, or why there is none; that of rotary axes is in `five_axis`."""
+    if is_five_axis(chain.sliding):
+        return None, ""
+    try:
+        return recognition.arm_of(chain), ""
+    except InputError as error:
+        return None, error.message
+
+
+def opw_arm(node: Node, count: int) -> OpwArm:
+    lengths = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+    node.only(*lengths, "offsets", "signs")
+    if count != 6:
+        raise node.bad(f"the closed form is for six joints, there are {count}")
+    signs = node["signs"].numbers(6)
+    if (np.abs(signs) != 1.0).any():
+        raise node["signs"].bad(f"{node['signs'].value} must be 1 or -1 each")
+    offsets = node["offsets"].numbers(6)
+    if (np.abs(offsets) > 180.0).any():
+        raise node["offsets"].bad(f"{node['offsets'].value} must lie within +-180")
+    for name in ("c2", "c3"):
+        if node[name].number() <= 0.0:
+            raise node[name].bad(f"{node[name].value} is not the length of an arm; give more than 0 mm")
+    return OpwArm(
+        **{name: node[name].number() for name in lengths},
+        offsets=tuple(np.radians(offsets).tolist()), signs=tuple(int(sign) for sign in signs),
+    )
+
+
+def limits_of(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Limits:
+    node.only("axes", "coupled", "source")
+    count = len(axes)
+    spans = np.array([axis.span(unit) for axis, unit in zip(node["axes"].items(count), units, strict=True)])
+    coupled = [c.only("label", "coefficients", "range") for c in node["coupled"].items()] if node.has("coupled") else []
+    ranges = np.array([row["range"].span() for row in coupled]).reshape(len(coupled), 2)
+    coefficients = np.array([row["coefficients"].numbers(count) for row in coupled]).reshape(len(coupled), count)
+    return Limits(
+        name=name, lower=spans[:, 0].copy(), upper=spans[:, 1].copy(), coefficients=coefficients,
+        coupled_lower=ranges[:, 0].copy(), coupled_upper=ranges[:, 1].copy(),
+        labels=axes + tuple(row["label"].text() for row in coupled),
+        source=node["source"].text(),
+    )

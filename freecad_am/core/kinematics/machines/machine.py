@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machines: their geometry, limits and controller conventions, from data files that prove themselves.
+
+A machine file holds joint vectors with the flange poses they give. They are computed again each time a file is read,
+by the joint frames and by the closed form, and a file that does not give them is refused.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...geometry.frames import Array
+from ...geometry.located import is_there, located
+from ...issues import InputError
+from ..arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement
+from ..chain import Chain
+from ..inverse.calibrated import CalibratedArm
+from ..inverse.five_axis import is_five_axis
+from ..inverse.opw import OpwArm
+from ..inverse.parallel_axes import ParallelAxesArm
+from ..inverse.serial_arm import SerialArm
+from ..limits import Limits, Payload
+from ..links.shape import LinkShape, link_shapes
+from ..urdf import machine as urdf_machine
+from ..urdf.read import Description
+from ..urdf.reference import reference
+from . import calibration, check_poses
+from . import entries as entry
+from .file import Node, read
+
+BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
+MAKER = "maker"
+NOT_TOLD = "a URDF does not tell what the controller shows"
+REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is no machine file
+KEYS = (
+    "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "payload",
+    "verified", "check_poses", "shapes",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """A machine. Joint values are serial ones, rad, and mm of joints that slide; lengths mm.
+
+    `arm` is the inverse of a robot, None of a machine with rotary axes and where `no_arm` tells why it cannot be planned
+    for; `opw` that of a spherical wrist. `base` (4, 4) is the maker's base frame in base_link, the frame of
+    the floor plate in which `chain` and `arm` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
+    `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
+    C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
+    the file does not say; `pulses_per_degree` (axes,) and the `speed_unit` of its path speeds, empty where it does not say.
+    `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
+    `shapes` (axes + 1) are the files a user gave the links to be drawn from, base first. `external`: how many of the axes,
+    the last ones, are not the robot's own (`external.coupled`).
+    """
+
+    id: str
+    title: str
+    axes: tuple[str, ...]
+    chain: Chain
+    arm: SerialArm | None
+    no_arm: str
+    base: Array
+    max_speed: Array
+    limit_sets: dict[str, Limits]
+    controller_matrix: Array
+    controller_offset: Array
+    controller_remark: str
+    posts: tuple[str, ...] | None
+    pulses_per_degree: tuple[float, ...]
+    speed_unit: str
+    sources: tuple[str, ...]
+    remarks: tuple[str, ...]
+    max_acceleration: Array
+    max_jerk: Array
+    shapes: tuple[LinkShape | None, ...]
+    external: int = 0
+    payload: Payload = Payload()
+
+    @property
+    def opw(self) -> OpwArm | None:
+        """The closed form of an arm with a spherical wrist."""
+        return self.arm if isinstance(self.arm, OpwArm) else None
+
+    @property
+    def arrangements(self) -> tuple[Arrangement, ...]:
+        """What it can do in a cell, the usual one first."""
+        return OF_FIVE_AXES if is_five_axis(self.chain.sliding[: len(self.axes) - self.external]) else OF_ROBOTS
+
+    @property
+    def redundant(self) -> bool:
+        """Whether a rotation about the tool is left to choose, as robots leave it."""
+        return self.arrangements[0].redundant
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """What tables call the axes: q1 to q6 for every robot, so that whoever reads them needs to know no machine."""
+        if self.arrangements[0].named_axes:
+            return self.axes
+        own = len(self.axes) - self.external
+        return (*(f"q{index + 1}" for index in range(own)), *self.axes[own:])
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The unit that each axis is shown in, 'deg' or 'mm'."""
+        return tuple("mm" if sliding else "deg" for sliding in self.chain.sliding)
+
+    @property
+    def unit_values(self) -> Array:
+        """What one of the unit that each axis (axes,) is shown in amounts to inside: rad of a degree, or 1."""
+        return unit_values(self.chain.sliding)
+
+    def limits(self, name: str) -> Limits:
+        """The set of limits of that name; InputError 'UNKNOWN_LIMITS' when there is none."""
+        if name not in self.limit_sets:
+            raise InputError(
+                "UNKNOWN_LIMITS", "cell.limits", f"{self.id} has no limits {name!r}; use {', '.join(self.limit_sets)}"
+            )
+        return self.limit_sets[name]
+
+    def to_controller(self, q: ArrayLike) -> Array:
+        """What the controller shows (..., axes) for serial angles (..., axes), rad."""
+        result: Array = np.asarray(q, float) @ self.controller_matrix.T + self.controller_offset
+        return result
+
+    def from_controller(self, shown: ArrayLike) -> Array:
+        """The serial angles (..., axes) of what the controller shows (..., axes), rad."""
+        back = np.linalg.inv(self.controller_matrix)
+        result: Array = (np.asarray(shown, float) - self.controller_offset) @ back.T
+        return result
+
+
+def unit_values(sliding: NDArray[np.bool_]) -> Array:
+    """rad of a degree for axes (axes,) that turn, 1 for those that slide."""
+    return np.where(sliding, 1.0, math.radians(1.0))
+
+
+def known(folders: Sequence[Path | str] = ()) -> list[tuple[str, str]]:
+    """Id and title of every machine, built in and in the user's `folders`, in order of id.
+
+    A file that is no machine file stands among them with what is wrong in place of a title: `load` refuses it alone.
+    """
+    return [(name, _title(path)) for name, path in sorted(_files(folders).items())]
+
+
+def _title(path: Path) -> str:
+    try:
+        return read(path)["title"].text()
+    except InputError as error:
+        return f"{REFUSED}{error.message}"
+
+
+def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
+    """The machine of an id, of the path of a machine file, with the calibration of one robot (`calibration.Named`) or
+    without, or of a URDF (`urdf_machine.Reference`). A file of the user's `folders` goes before a built-in one.
+
+    Raises InputError: UNKNOWN_MACHINE when there is none; BAD_MACHINE, naming file, key and value, when the file is
+    wrong or does not give its own check poses; BAD_CALIBRATION; BAD_URDF, and NO_CLOSED_FORM with the reason.
+    """
+    text = str(name)
+    measured = calibration.named(text)
+    if measured is not None:
+        return _calibrated(load(measured.machine, folders), Path(measured.file).expanduser())
+    if text.lower().endswith(".json"):
+        path = Path(text).expanduser()
+        if not is_there(path):
+            raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no machine file {text}")
+        return _parse(read(path))
+    meant = reference(text)
+    if meant is not None:
+        return of_description(f"{meant}", *urdf_machine.described(meant))
+    path = file_of(text, folders)
+    machine = _built_in(path, located(path).stat().st_mtime_ns) if path.parent == BUILT_IN else _parse(read(path))
+    if machine.id != text:
+        raise InputError("BAD_MACHINE", f"{path}: id", f"{machine.id!r} is not the name of the file, {text!r}")
+    return machine
+
+
+@functools.lru_cache(maxsize=8)
+def _built_in(path: Path, _: int) -> Machine:
+    """One of ours, read once: every stage of a job asks for it, and what it is made of stands in its file alone."""
+    return _parse(read(path))
+
+
+def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
+    """The file of a machine of this id; InputError UNKNOWN_MACHINE when there is none."""
+    for folder in (*folders, BUILT_IN):
+        path = Path(folder).expanduser() / f"{name}.json"
+        if path.stem == name and is_there(path):  # a name may be too long for a file
+            return path
+    raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{name!r} is not known; {_near(name, sorted(_files(folders)))}")
+
+
+def parse(text: str, path: Path) -> Machine:
+    """The machine of the text of a machine file, which need not be there yet; `path` names it, and places its shapes.
+
+    Raises InputError BAD_MACHINE as `load` does.
+    """
+    return _parse(Node(json.loads(text), path))
+
+
+def _files(folders: Sequence[Path | str]) -> dict[str, Path]:
+    found = {path.stem: path for path in BUILT_IN.glob("*.json")}
+    for folder in reversed(folders):
+        found.update((path.stem, path) for path in Path(folder).expanduser().glob("*.json"))
+    return found
+
+
+def _near(name: str, names: list[str]) -> str:
+    import difflib  # only when a name was wrong: starting is most of a small job's time
+
+    near = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
+    return f"did you mean {', '.join(near)}?" if near else f"known are {', '.join(names)}"
+
+
+def _parse(top: Node) -> Machine:
+    top.only(*KEYS)
+    keys = ("name", "label", "type", "origin", "rpy", "axis", "max_speed", "max_acceleration", "max_jerk")
+    joints = [joint.only(*keys) for joint in top["joints"].items()]
+    if not joints:
+        raise top["joints"].bad("there is no joint")
+    count = len(joints)
+    sliding = np.array([entry.slides(joint) for joint in joints])
+    units = unit_values(sliding)
+    # the axes of a robot go by number unless the file has what its pendant shows; those of a machine tool have names
+    names = tuple(entry.name_of(joint, f"q{index + 1}", bool(sliding.any())) for index, joint in enumerate(joints))
+    controller = top["controller"].only("matrix", "offset", "remark", "posts", "pulses_per_degree", "speed_unit")
+    chain = Chain(
+        np.stack([joint.pose() for joint in joints]),
+        np.stack([entry.unit_of(joint["axis"]) for joint in joints]),
+        top["flange"].only("origin", "rpy").pose(),
+        sliding,
+    )
+    arm, no_arm = (entry.opw_arm(top["opw"], count), "") if top.has("opw") else entry.recognised(chain)
+    machine = Machine(
+        id=top["id"].text(), title=top["title"].text(), axes=names,
+        chain=chain, arm=arm, no_arm=no_arm,
+        base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
+        max_speed=np.array([entry.most_of(joint, "max_speed", "a speed") for joint in joints]) * units,
+        limit_sets={name: entry.limits_of(name, node, names, units) for name, node in top["limits"].pairs()},
+        controller_matrix=controller["matrix"].matrix(count, count),
+        controller_offset=controller["offset"].numbers(count) * units,
+        controller_remark=controller["remark"].text(),
+        posts=controller["posts"].texts() if controller.has("posts") else None,
+        pulses_per_degree=entry.pulses_of(controller, count),
+        speed_unit=entry.speed_unit_of(controller["speed_unit"]) if controller.has("speed_unit") else "",
+        sources=top["sources"].texts(),
+        remarks=top["remarks"].texts() if top.has("remarks") else (),
+        max_acceleration=np.array([entry.most_of(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
+        max_jerk=np.array([entry.most_of(joint, "max_jerk", "a jerk") for joint in joints]) * units,
+        shapes=link_shapes(top, tuple(joint["name"].text() for joint in joints)), payload=entry.payload_of(top),
+    )
+    if MAKER not in machine.limit_sets:
+        raise top["limits"].bad(f"the set {MAKER!r} is missing")
+    if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
+        raise controller["matrix"].bad("the matrix has no inverse")
+    rates = (machine.max_speed, machine.max_acceleration, machine.max_jerk)
+    for array in (machine.base, *rates, machine.controller_matrix, machine.controller_offset):
+        array.flags.writeable = False
+    check_poses.check(chain, machine.opw, top["check_poses"])
+    return machine
+
+
+def _calibrated(machine: Machine, path: Path) -> Machine:
+    """The machine with the joint frames that were measured of one robot, and the inverse of these."""
+    if not isinstance(machine.arm, ParallelAxesArm):
+        raise InputError("BAD_CALIBRATION", "cell.machine", f"{machine.title} takes no calibration; those of Universal "
+                         "Robots do: leave it out")
+    poses, robot = calibration.read(path)
+    chain = calibration.calibrated(machine.chain, machine.base, poses, path)
+    told = f"{path.name} ({robot})" if robot else path.name
+    return replace(machine, chain=chain, arm=CalibratedArm(machine.arm, chain), sources=(*machine.sources, told))
+
+
+def of_description(source: str, found: Description, arm: SerialArm | None) -> Machine:
+    """The machine of a URDF: limits and speeds are those of the file, and no post writes for a controller that it does not
+    tell of."""
+    count = found.chain.axes
+    none = np.zeros((0, count))
+    names = found.joints if found.chain.sliding.any() else tuple(f"q{index + 1}" for index in range(count))
+    limits = Limits(
+        name=MAKER, lower=found.lower, upper=found.upper, coefficients=none, coupled_lower=none[:, 0],
+        coupled_upper=none[:, 0], labels=names, source=source,
+    )
+    unknown = np.full(count, math.inf)
+    return Machine(
+        id=found.name, title=found.name, axes=names, chain=found.chain, arm=arm, no_arm="",
+        base=np.eye(4) if found.base is None else found.base, max_speed=found.max_speed, limit_sets={MAKER: limits},
+        controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=NOT_TOLD, posts=(),
+        pulses_per_degree=(), speed_unit="",
+        sources=(source,), remarks=found.notes, max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes,
+    )

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""XML with the lines it came from: typed access to the elements of a URDF, every mistake named by file and line."""
+
+from __future__ import annotations
+
+import math
+import xml.parsers.expat
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...geometry import frames
+from ...geometry.file_content import content
+from ...geometry.frames import Array
+from ...issues import InputError
+
+CODE = "BAD_URDF"
+LARGEST = 64  # MB
+QUARTER = 0.5 * math.pi
+
+
+@dataclass
+class Element:
+    """An element of the file. Getters raise InputError 'BAD_URDF' naming file and line."""
+
+    tag: str
+    attributes: dict[str, str]
+    path: Path
+    line: int
+    children: list[Element] = field(default_factory=list)
+
+    def bad(self, message: str) -> InputError:
+        """The error about this element."""
+        return InputError(CODE, f"{self.path.name}: line {self.line}", message)
+
+    def all(self, tag: str) -> Iterator[Element]:
+        """The children of that tag."""
+        return (child for child in self.children if child.tag == tag)
+
+    def first(self, tag: str) -> Element | None:
+        """The first child of that tag, None without one."""
+        return next(self.all(tag), None)
+
+    def one(self, tag: str) -> Element:
+        """The first child of that tag, which must be there."""
+        found = self.first(tag)
+        if found is None:
+            name = f" {self.attributes['name']!r}" if "name" in self.attributes else ""
+            raise self.bad(f"<{self.tag}>{name} has no <{tag}>")
+        return found
+
+    def text(self, name: str) -> str:
+        """An attribute that must be there and not be empty."""
+        value = self.attributes.get(name, "").strip()
+        if not value:
+            raise self.bad(f"<{self.tag}> has no {name}")
+        return value
+
+    def words(self, name: str, count: int, default: str) -> list[str]:
+        """So many words of an attribute, or of the default where it is left out."""
+        words = self.attributes.get(name, default).split()
+        if len(words) != count:
+            raise self.bad(f"{name}={self.attributes.get(name, '')!r} of <{self.tag}> is not {count} numbers")
+        return words
+
+    def number(self, name: str, default: str | None = None) -> float:
+        """An attribute that is a finite number."""
+        return self._float(self.text(name) if default is None else self.attributes.get(name, default), name)
+
+    def numbers(self, name: str, count: int, default: str) -> Array:
+        """So many finite numbers (count,) of an attribute."""
+        return np.array([self._float(word, name) for word in self.words(name, count, default)])
+
+    def angle(self, name: str, default: str | None = None) -> float:
+        """An attribute that is an angle, rad; a rounded right angle is a right angle."""
+        self.number(name, default)
+        return unrounded(self.attributes.get(name, default or ""))
+
+    def pose(self) -> Array:
+        """The pose (4, 4) of its <origin>, mm; the identity without one. Rounded right angles are right angles."""
+        origin = self.first("origin")
+        if origin is None:
+            return np.eye(4)
+        place = 1000.0 * origin.numbers("xyz", 3, "0 0 0")
+        origin.numbers("rpy", 3, "0 0 0")
+        return frames.from_rpy(place, [unrounded(word) for word in origin.words("rpy", 3, "0 0 0")])
+
+    def _float(self, word: str, name: str) -> float:
+        try:
+            value = float(word)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise self.bad(f"{name}={self.attributes.get(name, word)!r} of <{self.tag}> holds {word!r}, which is no number")
+        return value
+
+
+def read(path: Path) -> Element:
+    """The top element of a file. Raises InputError 'BAD_URDF', with the line, for what is not XML or has entities."""
+    stack = [Element("", {}, path, 1)]
+    parser = xml.parsers.expat.ParserCreate()
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        element = Element(tag, attributes, path, parser.CurrentLineNumber)
+        stack[-1].children.append(element)
+        stack.append(element)
+
+    def refuse(name: str, *_: object) -> None:
+        raise InputError(CODE, f"{path.name}: line {parser.CurrentLineNumber}", f"entities such as {name!r} are not read")
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: stack.pop()
+    parser.EntityDeclHandler = refuse
+    try:
+        parser.Parse(content(path, LARGEST, CODE, str(path)), True)
+    except OSError as error:
+        raise InputError(CODE, str(path), f"cannot be read: {error.strerror or error}") from None
+    except xml.parsers.expat.ExpatError as error:
+        told = xml.parsers.expat.errors.messages[error.code]
+        raise InputError(CODE, f"{path.name}: line {error.lineno}", f"this is not XML: {told}") from None
+    return stack[0].children[0]
+
+
+def unrounded(word: str) -> float:
+    """The angle that a number stands for, rad: 1.5708 is a right angle, as are other multiples of one that are written
+    with two decimals or more. A number with all its digits is itself."""
+    return nearest(word, QUARTER)
+
+
+def nearest(word: str, step: float) -> float:
+    """The multiple of `step` that a number of two decimals or more is the rounding of, else the number."""
+    value = float(word)
+    decimals = len(word.partition(".")[2]) if "e" not in word.lower() else 17
+    multiple = round(value / step) * step
+    # cut off counts as rounded: 1.57079 and 3.14
+    return multiple if 2 <= decimals < 15 and abs(value - multiple) < 10.0**-decimals else value

@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machines from URDF: the serial chain between two links of a robot description.
+
+Read are origins, axes, kinds, limits and speeds of joints, fixed joints, and the meshes of links. Metres become mm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...geometry import frames
+from ...geometry.frames import Array
+from ...geometry.located import is_there, located
+from ...issues import InputError
+from ..chain import Chain
+from ..links.shape import FORMATS, LinkShape
+from . import elements as urdf_xml
+from .elements import CODE, Element
+
+MOVING = ("revolute", "continuous", "prismatic")
+FIXED = "fixed"
+# names that ROS-Industrial gives them, and FANUC
+BASES, TIPS = ("base_link",), ("tool0", "flange", "fanuc_flange")
+ROBOT = 6  # joints of one
+STRAIGHT, NEAR = 1e-6, 1e-3  # of a tip: rad that its Z is off the axis, mm that it may lie behind
+DEGREE = math.radians(1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """A chain with what a URDF tells of it.
+
+    lower, upper, max_speed (axes,) rad, mm and per s, infinite where endless or not known. base (4, 4): the frame of a link
+    `base` that is fixed to the first one, which is the maker's own; None without. shapes (axes + 1): the meshes of the
+    links, first that of the first one. notes: what was left out or taken for something else.
+    """
+
+    name: str
+    joints: tuple[str, ...]
+    chain: Chain
+    lower: Array
+    upper: Array
+    max_speed: Array
+    base: Array | None
+    shapes: tuple[LinkShape | None, ...]
+    notes: tuple[str, ...]
+
+
+class Urdf:
+    """The tree of links and joints of a file. InputError 'BAD_URDF' names the line that is wrong."""
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = Path(path).expanduser()
+        if self.path.suffix.lower() == ".xacro":
+            raise InputError(CODE, self.path.name, "this is xacro; make a URDF of it first, with the program xacro of ROS")
+        self.top = urdf_xml.read(self.path)
+        if self.top.tag != "robot":
+            raise self.top.bad(f"this is <{self.top.tag}>, not the <robot> of a URDF")
+        # what xacro wrote may still name its namespace
+        if any(child.tag.startswith("xacro:") for child in self.top.children):
+            raise self.top.bad("this is xacro; make a URDF of it first, with the program xacro of ROS")
+        self.name = self.top.attributes.get("name", self.path.stem)
+        self.links = self._named("link")
+        self.parent: dict[str, Element] = {}  # the joint that moves a link
+        for joint in self._named("joint").values():
+            for end in ("parent", "child"):
+                link = joint.one(end).text("link")
+                if link not in self.links:
+                    raise joint.one(end).bad(f"there is no link {link!r}")
+            child = joint.one("child").text("link")
+            if child in self.parent:
+                raise joint.bad(f"the link {child!r} is moved by {self.parent[child].text('name')!r} already")
+            self.parent[child] = joint
+
+    def _named(self, tag: str) -> dict[str, Element]:
+        found: dict[str, Element] = {}
+        for element in self.top.all(tag):
+            name = element.text("name")
+            if name in found:
+                raise element.bad(f"there is a {tag} {name!r} already, in line {found[name].line}")
+            found[name] = element
+        if not found:
+            raise self.top.bad(f"there is no <{tag}>")
+        return found
+
+    def bases(self) -> list[str]:
+        """Links that a machine may begin with, the likeliest first."""
+        return sorted(self.links, key=lambda link: (link not in BASES, link in self.parent, link in self._leaves()))
+
+    def tips(self, base: str) -> list[str]:
+        """Links that a machine from `base` may end in, the likeliest first: those that as many joints move as the one with
+        the usual name, or as can be; of these those whose Z points out along the last axis, then by name."""
+        moving: dict[str, int] = {}
+        for link in self.links:
+            carried = [link, *self.above(link)]
+            if base in carried[1:]:
+                joints = [self.parent[below] for below in carried[: carried.index(base)]]
+                moving[link] = sum(joint.text("type") != FIXED for joint in joints)
+        named = [link for link in TIPS if moving.get(link, 0) >= ROBOT - 1]
+        axes = moving[named[0]] if named else max(moving.values(), default=0)
+
+        def rank(link: str) -> tuple[object, ...]:
+            crooked = moving[link] == axes == ROBOT and not self.points_out(link)
+            return moving[link] != axes, crooked, link not in named, link != TIPS[0], -moving[link]
+
+        return sorted((link for link, count in moving.items() if count), key=rank)
+
+    def moved_by(self, joint: str) -> str:
+        """The link that a joint moves; it must be there."""
+        return next(link for link, one in self.parent.items() if one.text("name") == joint)
+
+    def points_out(self, link: str) -> bool:
+        """Whether the Z of a link lies along the axis of the last joint that moves it, and does not point back to the one
+        before."""
+        last, rest = self._moved(link, np.eye(4))
+        axis = _axis(last)
+        _, from_before = self._moved(last.one("parent").text("link"), last.pose() @ rest)
+        ahead = from_before[:3, 2] @ from_before[:3, 3]
+        return _along(rest[:3, 2], axis) and float(ahead) > -NEAR
+
+    def _moved(self, link: str, rest: Array) -> tuple[Element, Array]:
+        """The joint that moves a link, and a pose (4, 4) in that link seen from the joint."""
+        while self.parent[link].text("type") == FIXED:
+            rest = self.parent[link].pose() @ rest
+            link = self.parent[link].one("parent").text("link")
+        return self.parent[link], rest
+
+    def between(self, base: str, tip: str) -> Description:
+        """The chain from a link to another that it carries."""
+        joints = list(self._between(base, tip))
+        moving = [joint for joint in joints if joint.text("type") != FIXED]
+        if not moving:
+            raise InputError(CODE, self.path.name, f"no joint moves {tip!r} against {base!r}; choose another link")
+        origins, rest = [], np.eye(4)
+        for joint in joints:
+            rest = rest @ joint.pose()
+            if joint in moving:
+                origins.append(rest)
+                rest = np.eye(4)
+        limits = [_limits(joint) for joint in moving]
+        notes: list[str] = []
+        shapes = tuple(self._mesh(link, notes) for link in (base, *(joint.one("child").text("link") for joint in moving)))
+        sliding = np.array([joint.text("type") == "prismatic" for joint in moving])
+        if len(moving) == ROBOT and not sliding.any():
+            rest = _turned_out(rest, _axis(moving[-1]), tip, notes)
+        chain = Chain(np.stack(origins), np.stack([_axis(joint) for joint in moving]), rest, sliding)
+        lower, upper, speed = (np.array(values) for values in zip(*limits, strict=True))
+        names = tuple(joint.text("name") for joint in moving)
+        return Description(self.name, names, chain, lower, upper, speed, self._makers(base), shapes, tuple(notes))
+
+    def above(self, link: str) -> list[str]:
+        """The links that carry a link, next first."""
+        found: list[str] = []
+        while link in self.parent:
+            link = self.parent[link].one("parent").text("link")
+            if link in found:
+                raise self.parent[link].bad(f"the link {link!r} carries itself")
+            found.append(link)
+        return found
+
+    def _leaves(self) -> set[str]:
+        return set(self.links) - {joint.one("parent").text("link") for joint in self.parent.values()}
+
+    def _between(self, base: str, tip: str) -> Iterator[Element]:
+        """The joints from a link to another, in order."""
+        above = [tip, *self.above(tip)]
+        if base not in above:
+            raise InputError(CODE, self.path.name, f"the link {base!r} does not carry {tip!r}; choose others")
+        for link in reversed(above[: above.index(base)]):
+            joint = self.parent[link]
+            kind = joint.text("type")
+            if kind not in (*MOVING, FIXED):
+                raise joint.bad(f"the joint {joint.text('name')!r} is {kind}; "
+                                f"only {', '.join(MOVING)} and fixed ones are read")
+            mimic = joint.first("mimic")
+            if mimic is not None:
+                raise mimic.bad(f"the joint {joint.text('name')!r} follows another one, which a serial chain cannot")
+            yield joint
+
+    def _makers(self, base: str) -> Array | None:
+        if "base" not in self.parent or base == "base":
+            return None
+        joint = self.parent["base"]
+        fixed = joint.text("type") == FIXED and joint.one("parent").text("link") == base
+        return joint.pose() if fixed else None
+
+    def _mesh(self, link: str, notes: list[str]) -> LinkShape | None:
+        """The first mesh of a link that is there and can be drawn; what stands in the way is noted."""
+        for visual in self.links[link].all("visual"):
+            geometry = visual.first("geometry")
+            mesh = None if geometry is None else geometry.first("mesh")
+            if mesh is None:
+                continue
+            name = mesh.text("filename")
+            file = self._file(name)
+            scales = mesh.numbers("scale", 3, "1 1 1")
+            if file is None:
+                notes.append(f"line {mesh.line}: {name} is not there; {link} is drawn plain")
+            elif file.suffix.lower() not in FORMATS:
+                notes.append(f"line {mesh.line}: {file.name} cannot be drawn; {link} is drawn plain")
+            elif (scales <= 0.0).any():
+                notes.append(f"line {mesh.line}: {file.name} is mirrored or flat by its scale {mesh.attributes['scale']}; "
+                             f"write a mirrored mesh out as it is; {link} is drawn plain")
+            elif np.ptp(scales) > 1e-9:
+                notes.append(f"line {mesh.line}: {file.name} has unequal scales; {link} is drawn plain")
+            else:
+                where = f"{self.path.name}: line {mesh.line}"
+                return LinkShape(file, visual.pose(), 1000.0 * float(scales[0]), self._colour(visual), where)
+        return None
+
+    def _file(self, name: str) -> Path | None:
+        """The file of a mesh. A package is a folder of its name above the URDF, or beside one that is."""
+        if name.startswith("package://"):
+            package, _, rest = name[len("package://"):].partition("/")
+            folders = [folder / package for folder in located(self.path).resolve().parents]
+            return next((folder / rest for folder in folders if is_there(folder / rest)), None)
+        file = Path(name.removeprefix("file://"))
+        file = file if file.is_absolute() else located(self.path).resolve().parent / file
+        return file if is_there(file) else None
+
+    def _colour(self, visual: Element) -> tuple[float, float, float] | None:
+        material = visual.first("material")
+        if material is None:
+            return None
+        shared = {element.attributes.get("name"): element for element in self.top.all("material")}
+        for element in (material, shared.get(material.attributes.get("name"))):
+            colour = None if element is None else element.first("color")
+            if colour is not None:
+                red, green, blue = np.clip(colour.numbers("rgba", 4, "0.8 0.8 0.8 1")[:3], 0.0, 1.0).tolist()
+                return (red, green, blue)
+        return None
+
+
+def _along(direction: Array, axis: Array) -> bool:
+    return bool(np.linalg.norm(np.cross(direction, axis)) < STRAIGHT)
+
+
+def _turned_out(rest: Array, axis: Array, tip: str, notes: list[str]) -> Array:
+    """The pose (4, 4) of a tip in its last moving link, its Z turned to its X where that lies along the axis (3,): `flange`
+    of ROS-Industrial has its X outwards, where tool0 has its Z."""
+    if _along(rest[:3, 2], axis) or not _along(rest[:3, 0], axis):
+        return rest
+    notes.append(f"the X of {tip} points out of the flange, not its Z: it is turned there, as tool0 stands to flange")
+    inwards = float(rest[:3, 0] @ rest[:3, 3]) < -NEAR
+    return np.asarray(rest @ frames.pose(frames.about_y(-0.5 * math.pi if inwards else 0.5 * math.pi), (0.0, 0.0, 0.0)))
+
+
+def _axis(joint: Element) -> Array:
+    element = joint.first("axis")
+    axis = np.array([1.0, 0.0, 0.0]) if element is None else element.numbers("xyz", 3, "1 0 0")
+    length = float(np.linalg.norm(axis))
+    if length < 1e-9:
+        raise (element or joint).bad(f"the axis of {joint.text('name')!r} has no direction")
+    return np.asarray(axis / length)
+
+
+def _limits(joint: Element) -> tuple[float, float, float]:
+    """Lowest and highest value and speed; limits that are rounded whole degrees are whole degrees."""
+    kind = joint.text("type")
+    limit = joint.first("limit")
+    unit = 1000.0 if kind == "prismatic" else 1.0
+    if limit is None:
+        if kind != "continuous":
+            raise joint.bad(f"the joint {joint.text('name')!r} has no <limit>; one that turns without end is continuous")
+        return -math.inf, math.inf, math.inf
+    values = []
+    for name in ("lower", "upper", "velocity"):
+        value = limit.number(name, "0")
+        values.append(unit * value if unit != 1.0 else urdf_xml.nearest(limit.attributes.get(name, "0").strip(), DEGREE))
+    lower, upper, speed = values
+    if kind == "continuous":
+        lower, upper = -math.inf, math.inf
+    if not lower < upper:
+        raise limit.bad(f"the limits of {joint.text('name')!r} run from {lower:g} to {upper:g}; give the lower one first")
+    return lower, upper, speed if speed > 0.0 else math.inf

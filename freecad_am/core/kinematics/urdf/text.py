@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machines as URDF, for simulators and other programs that read one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...geometry import frames
+from ...geometry.frames import Array
+from ..chain import Chain
+from ..machines.machine import Machine
+
+
+def text(machine: Machine) -> str:
+    """A machine with its limits `maker` as a URDF without looks."""
+    limits, count = machine.limits("maker"), len(machine.axes)
+    base = None if np.array_equal(machine.base, np.eye(4)) else machine.base
+    return _text_of(
+        machine.id, machine.axes, machine.chain, limits.lower[:count], limits.upper[:count], machine.max_speed, base
+    )
+
+
+def _text_of(
+    name: str, joints: tuple[str, ...], chain: Chain, lower: Array, upper: Array, max_speed: Array, base: Array | None = None
+) -> str:
+    """A chain as a URDF without looks: links base_link, link_1 ... and tool0, the flange; `base` where the maker's own base
+    frame is given. Figures have all their digits."""
+    lines = ['<?xml version="1.0"?>', f'<robot name="{_escaped(name)}">', '  <link name="base_link"/>']
+    links = ["base_link", *(f"link_{number}" for number in range(1, chain.axes + 1))]
+    for index, joint in enumerate(joints):
+        sliding, unit = bool(chain.sliding[index]), 0.001 if chain.sliding[index] else 1.0
+        endless = not math.isfinite(lower[index]) or not math.isfinite(upper[index])
+        kind = "prismatic" if sliding else "continuous" if endless else "revolute"
+        speed = unit * float(max_speed[index]) if math.isfinite(max_speed[index]) else 0.0
+        span = "" if endless else f'lower="{unit * float(lower[index])!r}" upper="{unit * float(upper[index])!r}" '
+        lines += [
+            f'  <link name="{links[index + 1]}"/>',
+            f'  <joint name="{_escaped(joint)}" type="{kind}">',
+            f'    <parent link="{links[index]}"/>', f'    <child link="{links[index + 1]}"/>',
+            f"    {_origin(chain.origins[index])}",
+            f'    <axis xyz="{_words(chain.directions[index])}"/>',
+            f'    <limit {span}effort="0" velocity="{speed!r}"/>', "  </joint>",
+        ]
+    lines += _fixed(f"link_{chain.axes}", "tool0", chain.flange)
+    if base is not None:
+        lines += _fixed("base_link", "base", base)
+    return "\n".join([*lines, "</robot>", ""])
+
+
+def _fixed(parent: str, child: str, pose: Array) -> list[str]:
+    return [
+        f'  <link name="{child}"/>', f'  <joint name="{parent}-{child}" type="fixed">', f'    <parent link="{parent}"/>',
+        f'    <child link="{child}"/>', f"    {_origin(pose)}", "  </joint>",
+    ]
+
+
+def _origin(pose: Array) -> str:
+    rpy = -frames.to_bryant(pose[:3, :3].T)
+    return f'<origin xyz="{_words(0.001 * pose[:3, 3])}" rpy="{_words(rpy)}"/>'
+
+
+def _words(values: Array) -> str:
+    return " ".join(repr(float(value) + 0.0) for value in values)
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")

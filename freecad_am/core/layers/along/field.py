@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The field of planes normal to a guide curve: bodies cut layer by layer, each plane through what belongs to it alone.
+
+A vertex belongs to the plane in which its nearest place of the guide is. That number, mm along the guide, takes the part of
+the height in sections by parallel planes: it says which edges a plane cuts and how loops close, so that a plane that meets a
+bent part twice cuts it once. Where it cuts an edge the edge and the plane themselves say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.curves.guide import Guide
+from ...geometry.mesh.split_edges import split
+from ...geometry.on_hub import Base
+from ...geometry.regions.region import Region
+from ...geometry.surroundings import Body
+from ...geometry.told import place
+from ...issues import ERROR, InfeasibleError, InputError, Issue
+from ...parameters.filled import SolidParameters
+from ...slicing.solids.plane_sections import PlaneCuts
+from ..curved.covered import with_covered
+from ..margins import grown, within_margin
+from ..overhang import with_overhangs
+from ..planes import field as planes
+from ..surface import Array, Index, Slice
+from .layer import AlongLayer, between
+
+BENDS = np.cos(np.radians(10.0))  # between the planes of the ends of an edge; edges that see more of a bend are halved
+TIGHTEST = 0.95  # of the way to the centre of curvature
+JUMP = 20.0  # mm along the guide to a mm of an edge: what is next to one another belongs to planes far apart
+BEYOND = 0.02  # of the extent of a section by which the guide may be outside of what encloses it
+HEIGHT = "LAYER_HEIGHT"
+
+
+class AlongCuts(PlaneCuts):
+    """A mesh, its vertices (n, 3) in the frame of the guide, prepared for sections by planes normal to it, of which
+    `loops` gives points (m, 2) in their own frames. far: (n,) mm along the guide, of the plane of each vertex."""
+
+    def __init__(self, guide: Guide, vertices: Array, triangles: Index, far: Array) -> None:
+        super().__init__(np.column_stack([vertices[:, :2], far]), triangles)
+        self._guide, self._space = guide, vertices
+
+    def _places(self, edge: Index, height: Array) -> Array:
+        known, of = np.unique(height, return_inverse=True)
+        poses = np.stack([self._guide.frame(way) for way in known.tolist()])[np.ravel(of)]
+        below, above = (self._space[ends[edge]] - poses[:, :3, 3] for ends in (self._lower, self._upper))
+        near, far = ((one * poses[:, :3, 2]).sum(axis=1) for one in (below, above))
+        apart = np.where(np.abs(far - near) > 1e-12, far - near, 1.0)
+        point = below + np.clip(-near / apart, 0.0, 1.0)[:, None] * (above - below)
+        return np.asarray(np.stack([(point * poses[:, :3, k]).sum(axis=1) for k in (0, 1)], axis=1))
+
+
+def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+    """The layers of bodies on the planes 0, h, 2 h ... mm along the guide of the base. InputError TOO_LOW, GUIDE_TIGHT,
+    GUIDE_OUTSIDE; InfeasibleError LAYER_HEIGHT where a layer is higher or lower than `band` allows."""
+    return with_covered(with_overhangs(iter(_cut(base, bodies, strategy)), base, strategy), strategy.thick)
+
+
+def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> list[Slice]:
+    guide, height = base.surface, strategy.layer_height
+    assert isinstance(guide, Guide)
+    meshes = [_ready(base, guide, body) for body in bodies]
+    top = max(float(far.max()) for _, _, far in meshes)
+    number = planes.count(top, strategy)
+    if not number:
+        raise InputError(
+            "TOO_LOW", "strategy.layer_height", f"{height:g} mm is too much for {', '.join(body.name for body in bodies)}, "
+            f"{top:.4g} mm long along the guide: no layer is cut in its {strategy.cut_at}; give at most "
+            f"{0.99 * top / max(strategy.share_of_cut, 0.001):.3g} mm",
+        )
+    heights: Array = height * (np.arange(number, dtype=np.float64) + strategy.share_of_cut)
+    cuts = [
+        AlongCuts(guide, points, triangles, far).loops(
+            planes.beside_faces(np.column_stack([points[:, :2], far]), triangles, heights, strategy)
+        ) for points, triangles, far in meshes
+    ]
+    below: list[list[Array]] = []
+    made: list[Slice] = []
+    for layer in range(number):
+        below.append([loop for one in cuts for loop in next(one)])
+        near = within_margin(below, height, strategy.margin, lambda loops, _: loops)
+        found, issues = grown(near, strategy.margin, strategy.chord_error, layer)
+        if found:
+            surface = between(guide, layer * height, (layer + 1) * height, strategy.share_of_cut)
+            if guide.way[0] <= heights[layer] <= guide.way[-1]:  # beyond its ends, slanted ends of a part may be beside it
+                _refuse_outside(found, surface, base, layer)
+            made.append(Slice(layer, surface, found, issues, heights=_heights(found, surface)))
+    _refuse_uneven(made, base, strategy)
+    return made
+
+
+def footprint(base: Base, body: Body, chord_error: float) -> list[Array]:
+    """The loops (n, 2) in which a body stands on the first plane, cut a chord error along the guide. InputError
+    GUIDE_TIGHT."""
+    assert isinstance(base.surface, Guide)
+    return next(AlongCuts(base.surface, *_ready(base, base.surface, body)).loops([chord_error]))
+
+
+def _ready(base: Base, guide: Guide, body: Body) -> tuple[Array, NDArray[np.intp], Array]:
+    """A body as vertices (n, 3) in the frame of the guide, triangles (m, 3), and how far along the guide (n,) mm each vertex
+    is, with edges so short that planes change little along each."""
+    points, triangles = base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)
+    more = True
+    while more:
+        far = guide.distance(points)
+        _refuse_tight(base, guide, body.name, points, triangles, far)
+        along = guide.at(far)[1]
+
+        def bends(ends: Index, along: Array = along) -> NDArray[np.bool_]:
+            return np.asarray((along[ends[0]] * along[ends[1]]).sum(axis=1) < BENDS)
+
+        points, triangles, more = split(points, triangles, bends)
+    return points, triangles, far
+
+
+def _refuse_tight(
+    base: Base, guide: Guide, name: str, points: Array, triangles: NDArray[np.intp], far: Array
+) -> None:
+    """InputError GUIDE_TIGHT where planes cross one another within a body, given how far along the guide (n,) mm those of
+    its vertices are."""
+    bent = guide.bent(points, far)
+    side = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    apart = np.abs(far[side[:, 0]] - far[side[:, 1]])
+    leaps = apart > JUMP * np.linalg.norm(points[side[:, 0]] - points[side[:, 1]], axis=1) + 1e-6
+    worst = int(bent.argmax())
+    if bent[worst] <= TIGHTEST and not leaps.any():
+        return
+    spot = points[worst] if bent[worst] > TIGHTEST else points[side[np.argmax(leaps), 0]]
+    foot = base.placed(guide.at(guide.distance(spot[None]))[0])[0]
+    raise InputError(
+        "GUIDE_TIGHT", name, f"the guide bends more tightly at {place(foot)} than the part is wide there: planes normal to "
+        f"it cross one another within the part, at {place(base.placed(spot[None])[0])}; choose a guide nearer to the inside "
+        "of the bend or with a larger radius, or strategy.layers: geodesic",
+    )
+
+
+def _heights(found: Sequence[Region], surface: AlongLayer) -> tuple[float, float, float]:
+    """The least, the mean and the largest height of a layer, mm."""
+    rings = [ring for region in found for ring in region.rings()]
+    high = np.concatenate([surface.heights(ring) for ring in rings])
+    area, moment = 0.0, np.zeros(2)
+    for ring in rings:
+        following = np.roll(ring, -1, axis=0)
+        cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
+        area += 0.5 * float(cross.sum())
+        moment += (cross[:, None] * (ring + following)).sum(axis=0) / 6.0
+    mean = float(surface.heights((moment / area)[None])[0]) if abs(area) > 0.0 else float(high.mean())
+    return float(high.min()), mean, float(high.max())
+
+
+def _refuse_uneven(made: Sequence[Slice], base: Base, strategy: SolidParameters) -> None:
+    """InfeasibleError LAYER_HEIGHT at the worst place of all."""
+    height, most = strategy.layer_height, strategy.band * strategy.layer_height + strategy.chord_error * 1e-3
+    uneven = [one for one in made if one.heights and max(height - one.heights[0], one.heights[2] - height) > most]
+    if not uneven:
+        return
+    worst = max(uneven, key=lambda one: max(height - one.heights[0], one.heights[2] - height) if one.heights else 0.0)
+    assert isinstance(worst.surface, AlongLayer) and worst.heights
+    rings = np.vstack([ring for region in worst.regions for ring in region.rings()])  # type: ignore[misc]
+    off = worst.surface.heights(rings) - height
+    spot = rings[int(np.abs(off).argmax())]
+    at = place(base.placed(worst.surface.wrap(spot[None]).points)[0])
+    need = float(np.abs(off).max()) / height
+    message = (
+        f"{len(uneven)} of {len(made)} layers are not as high everywhere as asked for: layer {worst.layer} is "
+        f"{worst.heights[0]:.3g} to {worst.heights[2]:.3g} mm high, farthest off the {height:g} mm at {at}; strategy.band "
+        f"allows {100.0 * strategy.band:.3g} %, and {100.0 * need:.3g} % would be needed: raise it, or choose a guide in "
+        "the middle of the part or one that bends less"
+    )
+    raise InfeasibleError(
+        HEIGHT, f"{base.name} layer {worst.layer}", message, (Issue(ERROR, HEIGHT, message, worst.layer),)
+    )
+
+
+def _refuse_outside(found: Sequence[Region], surface: AlongLayer, base: Base, layer: int) -> None:
+    """InputError GUIDE_OUTSIDE where the guide goes through a plane outside of what encloses the section there."""
+    from scipy.spatial import ConvexHull
+
+    points = np.vstack([ring for region in found for ring in region.rings()])
+    hull = ConvexHull(points)
+    away = float(hull.equations[:, 2].max())
+    if away > BEYOND * float(np.ptp(points, axis=0).max()):
+        raise InputError(
+            "GUIDE_OUTSIDE", "strategy.guide", f"the guide leaves the part: at layer {layer} it is {away:.3g} mm beside it, "
+            f"at {place(base.placed(surface.pose[:3, 3]))}; choose a guide in the part or along one of its edges, or "
+            "guide: auto",
+        )

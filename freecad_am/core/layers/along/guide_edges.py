@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Edges put together to a guide curve: one after the other, without gaps, forks and corners."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.told import place
+from ...issues import InputError
+from ..surface import Array
+
+TOUCHING = 1e-3  # mm between the ends of edges that meet
+CORNER = np.radians(1.0)
+LEAST = 1e-3  # mm; shorter edges, and guides, are none
+BACK = np.radians(120.0)  # a corner that turns by more leads back
+WHERE = "strategy.guide"
+
+
+class Nodes(NamedTuple):
+    """Points (n, 3) mm of a curve and unit vectors (n, 3) along it."""
+
+    points: Array
+    tangents: Array
+
+    def reversed(self) -> Nodes:
+        """The same the other way."""
+        return Nodes(self.points[::-1], -self.tangents[::-1])
+
+
+def chained(edges: Sequence[Nodes]) -> Nodes:
+    """One curve of edges in any order and direction; it runs as the first of those given does.
+
+    InputError GUIDE_OPEN, GUIDE_CLOSED, GUIDE_CORNER, GUIDE_DOUBLES_BACK.
+    """
+    left = [edge for edge in edges if np.linalg.norm(np.diff(edge.points, axis=0), axis=1).sum() > LEAST]
+    if not left:
+        raise InputError("GUIDE_OPEN", WHERE, "the guide has no edge with a length; choose edges, a wire or a sketch")
+    chain = [left.pop(0)]
+    while left:
+        ends = chain[0].points[0], chain[-1].points[-1]
+        found = next((
+            (k, behind, edge if straight else edge.reversed())
+            for k, edge in enumerate(left) for behind, end in ((True, ends[1]), (False, ends[0]))
+            for straight in (True, False) if np.linalg.norm(edge.points[0 if straight == behind else -1] - end) < TOUCHING
+        ), None)
+        if found is None:
+            away = min(
+                float(np.linalg.norm(edge.points[k] - end)) for edge in left for k in (0, -1) for end in ends
+            )
+            raise InputError(
+                "GUIDE_OPEN", WHERE, f"its edges are not one curve: {len(left)} of {len(edges)} do not go on from where the "
+                f"others end, at {place(ends[0])} and {place(ends[1])}, and the nearest is {away:.3g} mm off; choose edges "
+                "that meet end to end",
+            )
+        k, behind, edge = found
+        left.pop(k)
+        chain = [*chain, edge] if behind else [edge, *chain]
+    _refuse_corners(chain)
+    if np.linalg.norm(chain[0].points[0] - chain[-1].points[-1]) < TOUCHING:
+        raise InputError(
+            "GUIDE_CLOSED", WHERE, f"it comes back to where it begins, at {place(chain[0].points[0])}: the last layer would "
+            "lie on the first; leave an edge of it out",
+        )
+    return Nodes(
+        np.vstack([chain[0].points[:1], *(edge.points[1:] for edge in chain)]),
+        np.vstack([chain[0].tangents[:1], *(edge.tangents[1:] for edge in chain)]),
+    )
+
+
+def _refuse_corners(chain: Sequence[Nodes]) -> None:
+    for before, after in zip(chain, chain[1:]):
+        turn = float(np.arccos(np.clip(before.tangents[-1] @ after.tangents[0], -1.0, 1.0)))
+        at = place(after.points[0])
+        if turn > BACK:
+            raise InputError(
+                "GUIDE_DOUBLES_BACK", WHERE, f"it turns back by {np.degrees(turn):.4g} deg at {at}: layers would go through "
+                "what was deposited; choose edges that lead on",
+            )
+        if turn > CORNER:
+            raise InputError(
+                "GUIDE_CORNER", WHERE, f"it has a corner of {np.degrees(turn):.3g} deg at {at}, where layers would have no "
+                "height on the inside; round it with a radius, or choose guide: auto",
+            )

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Bodies made ready to be cut by planes normal to a guide: which end of it comes first, and where its first plane is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...geometry.curves.guide import guide
+from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
+from ...geometry.surroundings import Body
+from ...geometry.told import place
+from ...issues import NOTE, Issue
+from ...parameters.filled import SolidParameters
+from ..planes.stacking import stacked
+from ..surface import Array
+from .centre_line import centre_line
+from .guide_edges import Nodes, chained
+
+LEVEL = 1e-6  # of its length; a guide whose ends are no farther apart along the direction runs as it was chosen
+
+
+def guided(
+    bodies: Sequence[Body], edges: Sequence[tuple[Array, Array]] | None, strategy: SolidParameters, label: str,
+    issues: tuple[Issue, ...] = (),
+) -> SolidsOnHub:
+    """The bodies along a guide of edges, points and unit tangents (n, 3) of each, by default their centre line, which a note
+    then tells of. It begins at the end that is lower along `strategy.direction`; the frame has its Z along the guide where
+    the first layer lies. InputErrors of `chained` and `centre_line`."""
+    standing = stacked(bodies, strategy, label, issues)
+    way = standing.groups[0].base.frame[:3, 2]
+    found = standing.issues
+    nodes = None if edges is None else chained([Nodes(*edge) for edge in edges])
+    if nodes is None:
+        nodes = centre_line(bodies, standing.groups[0].base.frame[:3, 3], way, 0.5 * strategy.layer_height)
+        found = (*found, _told(nodes, label))
+    elif (nodes.points[-1] - nodes.points[0]) @ way < -LEVEL * np.linalg.norm(nodes.points[-1] - nodes.points[0]):
+        nodes = nodes.reversed()
+    whole = guide(*nodes)
+    start = float(min(whole.distance(body.vertices).min() for body in bodies))
+    origin, z = (rows[0] for rows in whole.at(np.array([start])))
+    frame = upright(origin, z)
+    local = guide((nodes.points - origin) @ frame[:3, :3], nodes.tangents @ frame[:3, :3], np.array([1.0, 0.0, 0.0]), start)
+    base = Base("the guide", local, frame)
+    return SolidsOnHub(label, (Group(base, tuple(bodies)),), strategy.chord_error, (), found)
+
+
+def _told(nodes: Nodes, label: str) -> Issue:
+    length = float(np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum())
+    turn = np.degrees(np.arccos(np.clip((nodes.tangents[1:] * nodes.tangents[:-1]).sum(axis=1), -1.0, 1.0)).sum())
+    return Issue(
+        NOTE, "GUIDE", f"layers of {label} stand normal to its centre line, {length:.4g} mm from {place(nodes.points[0])} "
+        f"to {place(nodes.points[-1])}, which turns by {turn:.3g} deg in all",
+    )

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A layer that is a plane normal to a guide curve: nothing to unroll, and higher on one side than on the other where the
+guide bends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geometry.curves.guide import Guide
+from ..planes.flat import Flat
+from ..surface import Array, Wrapped
+
+
+@dataclass(frozen=True, eq=False)
+class AlongLayer(Flat):
+    """pose: (4, 4) of the plane in the frame of the field, Z along the guide. As `LayerSurface`; its height (mm) at a place
+    (x, y) of the plane is level + slope . (x, y)."""
+
+    pose: Array
+    level: float
+    slope: Array
+
+    def unroll(self, points: Array) -> Array:
+        """(n, 2) mm."""
+        found: Array = (points - self.pose[:3, 3]) @ self.pose[:3, :2]
+        return found
+
+    def wrap(self, flat: Array) -> Wrapped:
+        """Every point onto the plane where that stands."""
+        points = flat @ self.pose[:3, :2].T + self.pose[:3, 3]
+        return Wrapped(points, np.tile(self.pose[:3, 2], (len(flat), 1)), np.zeros(len(flat)))
+
+    def heights(self, flat: Array) -> Array:
+        """(n,) mm from this plane to the next at places (n, 2)."""
+        found: Array = self.level + flat @ self.slope
+        return found
+
+    def followed(self, flat: Array, sheet: float) -> AlongLayer:
+        """The same plane."""
+        return self
+
+    def axes(self, normals: Array) -> tuple[Array, Array]:
+        """The x and y of the plane."""
+        count = len(normals)
+        return np.tile(self.pose[:3, 0], (count, 1)), np.tile(self.pose[:3, 1], (count, 1))
+
+
+def between(guide: Guide, low: float, high: float, share: float = 0.5) -> AlongLayer:
+    """The layer on the plane at `low` mm along a guide, as high as it is to the plane at `high`, measured where it is cut, a
+    share of the way up, along the normal there."""
+    first, middle, last = (guide.frame(way) for way in (low, low + share * (high - low), high))
+    z = middle[:3, 2]
+    level, slope = 0.0, np.zeros(2)
+    for pose, sense in ((last, 1.0), (first, -1.0)):
+        normal = pose[:3, 2]
+        level += sense * float((pose[:3, 3] - middle[:3, 3]) @ normal) / float(z @ normal)
+        slope -= sense * (normal @ middle[:3, :2]) / float(z @ normal)
+    return AlongLayer(first, level, slope)

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The fields of curved layers: by the way through the part from where it stands (geodesic), or straight from there
+(offset)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ...geometry.mesh.solid import Search, SolidMesh
+from ...geometry.on_hub import Group
+from ...geometry.surroundings import Body
+from ...issues import NOTE, WARNING, InputError, Issue
+from ...parameters.filled import SolidParameters
+from ..charts.layer import ChartLayer
+from ..margins import BORDER
+from ..surface import Array, Slice
+from .geodesic import GeodesicField, Piece, field
+
+FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most
+MOST = 2_000_000  # nodes, where that keeps below COARSE
+STANDING = 0.05  # layer heights from the plane or the substrate; facets so near to it stand there
+LOST = 0.002  # share of a part that no way need lead to: rounding at corners
+FACETS = 1.5  # chord errors between triangles of a face, however made
+TOLD = 0.05  # distortion of a piece that is told
+
+
+def slices(group: Group, ground: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+    """The layers of a group of solids outwards from the plane of its base and the `ground` that they touch, or from the
+    start faces; several of one number where a layer is in pieces. InputError TOO_FINE, NOT_STANDING, NOT_CONNECTED."""
+    _refuse(strategy)
+    base, bodies = group.base, group.bodies
+    start = None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
+    solids = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
+    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in ground], bodies, start, strategy)
+    worst = 0.0
+    height, cut = strategy.layer_height, max(strategy.share_of_cut, 1e-3)
+    number = int(np.ceil(found.top / height - cut + 1e-6))
+    for layer in range(max(number, 0)):
+        for piece in found.pieces((layer + cut) * height):
+            issues: tuple[Issue, ...] = ()
+            if piece.stretch > max(worst, TOLD):
+                worst = piece.stretch
+                issues = (_stretched(piece, layer),)
+            regions = tuple(region.simple(BORDER * found.grid.step) for region in piece.regions)
+            yield Slice(layer, ChartLayer(piece.chart, found, layer * height), regions, issues)
+
+
+def _refuse(strategy: SolidParameters) -> None:
+    """InputError NOT_FOR_FAMILY for what only plane layers have."""
+    for key, given, instead in (
+        ("margin", strategy.margin != 0.0, "0 mm"), ("solid_layers", strategy.solid_layers != 0, "0"),
+    ):
+        if given:
+            raise InputError(
+                "NOT_FOR_FAMILY", f"strategy.{key}", f"it is for plane layers, not for curved ones; use {instead}, or "
+                "layers: planes",
+            )
+
+
+def _field(
+    solids: Sequence[SolidMesh], ground: Sequence[Array], bodies: Sequence[Body], chosen: Array | None,
+    strategy: SolidParameters,
+) -> GeodesicField:
+    name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
+    step = _step(sum(one.volume for one in solids), name, strategy)
+    near = STANDING * strategy.layer_height
+    if chosen is None:
+        below = [triangles for triangles in ground if triangles[:, :, 2].min() < -near]
+        # what is carried by something that reaches below it has its lowest place in the air, not on the platform
+        held = any(len(_standing(one, below, near, plane=False)) for one in solids)
+        start = np.concatenate([_standing(one, ground, near, plane=not held) for one in solids])
+    else:
+        near = max(near, FACETS * strategy.chord_error)
+        start = np.concatenate([_standing(one, [chosen], near, plane=False) for one in solids])
+        if not len(start):
+            away = min(float(np.abs(_to(chosen, one.vertices, near)).min()) for one in solids)
+            raise InputError(
+                "NOT_STANDING", "strategy.start_faces", f"no face of {name} lies on the faces chosen to start from, which "
+                f"are {away:.4g} mm away; choose faces that it touches, or none",
+            )
+    try:
+        found = field(solids, start, step, through=strategy.layers == "geodesic")
+    except ValueError:
+        raise InputError(
+            "NOT_STANDING", name, "no face of it lies on the plane through its lowest place along strategy.direction, or "
+            "on the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a "
+            "substrate that it touches",
+        ) from None
+    if found.lost > LOST:
+        raise InputError(
+            "NOT_CONNECTED", name, f"{100.0 * found.lost:.3g} % of it hang together with nothing that stands on the "
+            "platform or the substrate; deposit these by themselves, or set strategy.direction",
+        )
+    return found
+
+
+def _step(volume: float, name: str, strategy: SolidParameters) -> float:
+    """Mm from node to node. InputError TOO_FINE."""
+    height = strategy.layer_height
+    step = max(FINE * height, float(np.cbrt(volume / MOST)))
+    if step > COARSE * height:
+        raise InputError(
+            "TOO_FINE", "strategy.layer_height", f"{height:g} mm is too fine for curved layers of {name}, "
+            f"{volume / 1000.0:.4g} cm3; give at least {step / COARSE:.2g} mm, or layers: planes",
+        )
+    return step
+
+
+def _standing(solid: SolidMesh, ground: Sequence[Array], near: float, plane: bool = True) -> Array:
+    """The triangles (k, 3, 3) of a solid that lie on the plane z = 0 facing down, or on triangles of the ground, to `near`
+    mm."""
+    corners = solid.vertices[solid.triangles]
+    chosen = plane & (np.abs(corners[:, :, 2]) < near).all(axis=1) & (solid.units[:, 2] < -0.5)
+    for triangles in ground:
+        low, high = triangles.min(axis=(0, 1)) - near, triangles.max(axis=(0, 1)) + near
+        asked = np.flatnonzero(((corners > low) & (corners < high)).all(axis=(1, 2)))
+        if len(asked):
+            away = np.abs(_to(triangles, corners[asked].reshape(-1, 3), near)).reshape(-1, 3)
+            chosen[asked[(away < near).all(axis=1)]] = True
+    found: Array = corners[chosen]
+    return found
+
+
+def _to(triangles: Array, points: Array, near: float) -> Array:
+    """Distances (n,) mm of points from triangles (k, 3, 3), with a sign."""
+    under = SolidMesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
+    return Search(under, 4.0 * near).signed(points)[0]
+
+
+def _stretched(piece: Piece, layer: int) -> Issue:
+    share = 100.0 * piece.stretch
+    return Issue(
+        NOTE if piece.stretch <= 3.0 * TOLD else WARNING, "DISTORTED", "a curved layer cannot be laid flat without "
+        f"distortion: beads are up to {share:.2g} % nearer together or farther apart than the bead spacing", layer,
+    )

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The field of parallel planes: bodies that stand on the lowest of them cut layer by layer, as one or each by itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.on_hub import Base
+from ...geometry.surroundings import Body
+from ...geometry.told import place
+from ...issues import InputError
+from ...parameters.filled import SolidParameters
+from ...slicing.solids.plane_sections import PlaneCuts
+from ..curved.covered import with_covered
+from ..margins import grown, within_margin
+from ..overhang import with_overhangs
+from ..surface import Array, Slice
+from .layer import PlaneLayer
+
+ASIDE = 0.02  # of the chord error, mm, at least; a plane keeps that far from faces that lie in it
+ROUNDING = 4e-7  # of the extent of what is cut: that of vertices kept as 32-bit numbers
+EXACT = 1e-6  # of a layer
+FLAT = 1e-3  # largest share of a facet's size that it may rise and still lie in a plane
+
+
+def count(top: float, strategy: SolidParameters) -> int:
+    """How many layers a part gets that reaches to `top` mm above the first plane: those that are cut below that, a cut in
+    their tops at it too, and what the margin adds."""
+    levels = top / strategy.layer_height - strategy.share_of_cut
+    whole = math.floor(levels + EXACT) + 1 if strategy.cut_at == "top" else math.ceil(levels - EXACT)
+    return whole + max(math.ceil(strategy.margin / strategy.layer_height) - 1, 0) if whole > 0 else 0
+
+
+def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+    """The layers of bodies upwards, on the planes 0, h, 2 h ... mm above that of the base; those without any region are left
+    out. InputError TOO_LOW where no layer reaches into them."""
+    return with_covered(with_overhangs(_cut(base, bodies, strategy), base, strategy), strategy.thick)
+
+
+def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+    local = [base.inside(body.vertices) for body in bodies]
+    top = max(float(points[:, 2].max()) for points in local)
+    number = count(top, strategy)
+    if not number:
+        raise InputError(
+            "TOO_LOW", "strategy.layer_height", f"{strategy.layer_height:g} mm is too much for "
+            f"{', '.join(body.name for body in bodies)}, {top:.4g} mm high along strategy.direction (the highest place is "
+            f"at {_highest(base, local)}): no layer is cut in its {strategy.cut_at}; give at most "
+            f"{0.99 * top / max(strategy.share_of_cut, 0.001):.3g} mm",
+        )
+    heights: Array = strategy.layer_height * (np.arange(number, dtype=np.float64) + strategy.share_of_cut)
+    cuts = [
+        PlaneCuts(points, body.triangles).loops(beside_faces(points, body.triangles, heights, strategy))
+        for points, body in zip(local, bodies, strict=True)
+    ]
+    below: list[list[Array]] = []
+    for layer in range(number):
+        below.append([loop for one in cuts for loop in next(one)])
+        near = within_margin(below, strategy.layer_height, strategy.margin, lambda loops, _: loops)
+        found, issues = grown(near, strategy.margin, strategy.chord_error, layer)
+        if found:
+            yield Slice(layer, PlaneLayer(layer * strategy.layer_height), found, issues)
+
+
+def footprint(base: Base, body: Body, chord_error: float) -> list[Array]:
+    """The loops (n, 2) in which a body stands on the plane of its base, cut a chord error above it."""
+    return next(PlaneCuts(base.inside(body.vertices), body.triangles).loops([chord_error]))
+
+
+def _highest(base: Base, local: Sequence[Array]) -> str:
+    points = np.vstack(local)
+    return place(base.placed(points[points[:, 2].argmax()][None])[0])
+
+
+def beside_faces(vertices: Array, triangles: NDArray[np.int64], heights: Array, strategy: SolidParameters) -> Array:
+    """The heights, those moved up by a hair, or down where the top of a layer is cut, in whose plane facets lie: what a cut
+    through such facets is, rounding decides."""
+    aside = max(ASIDE * strategy.chord_error, ROUNDING * float(np.abs(vertices).max(initial=0.0)))
+    corners = vertices[triangles]
+    low, high = corners[..., 2].min(axis=1), corners[..., 2].max(axis=1)
+    size = np.ptp(corners[..., :2], axis=1).max(axis=1)
+    lying = np.sort(0.5 * (low + high)[(high - low < aside) & (high - low <= FLAT * size)])
+    near = np.searchsorted(lying, heights - aside) < np.searchsorted(lying, heights + aside, side="right")
+    return np.where(near, heights + (-2.0 if strategy.cut_at == "top" else 2.0) * aside, heights)

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What planes have in common as layers, whichever way they lie."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..surface import Array, Index
+
+
+class Flat:
+    """The part of `LayerSurface` that is the same for every plane."""
+
+    @property
+    def alike(self) -> tuple[float, ...]:
+        """Regions with the same borders are filled alike on all planes."""
+        return ()
+
+    @property
+    def period(self) -> None:
+        """Nothing goes round it."""
+        return None
+
+    def turned(self, azimuth: float) -> float:
+        """It lies one way alone."""
+        return 0.0
+
+    def pieces(self, flat: Array, chord_error: float) -> Index:
+        """Chords are where they were."""
+        return np.ones(len(flat) - 1, dtype=np.intp)

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Bodies made ready to be cut by planes: which way these are stacked, and the plane that the bodies stand on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.inside import inside_of
+from ...geometry.columns import columns
+from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
+from ...geometry.plane import Plane
+from ...geometry.surroundings import Body
+from ...issues import NOTE, Issue
+from ...parameters.filled import SolidParameters
+
+Array = NDArray[np.float64]
+
+AXES = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64)
+LARGEST = 12  # flat faces that the part may be laid on, beside the axes
+ALIKE = np.cos(np.radians(2.0))
+STANDING = 0.5  # layer heights above the lowest place; what is no higher stands there
+CLOSE = 0.01  # of the area of the part; areas nearer together are the same
+LEVEL = 1e-3  # of a height; heights nearer together are the same, whatever chords a mesh has
+PLACES = 20_000  # on all facets of a part of several bodies, at which it is looked whether others cover them, about
+MOST = 64  # parts of an edge of a facet between such places
+
+
+class Stacked(NamedTuple):
+    """What a direction is judged by: unit vector (3,), area over nothing, mm2, and height, mm."""
+
+    way: Array
+    area: float
+    height: float
+
+
+def stacked(bodies: Sequence[Body], strategy: SolidParameters, label: str, issues: tuple[Issue, ...] = ()) -> SolidsOnHub:
+    """The bodies standing on the plane through their lowest place, with a frame whose Z is the stacking direction, in the
+    middle under them. With the direction `auto` a note says which it is and why."""
+    asked = strategy.stacking()
+    if asked is None:
+        found = best(bodies, strategy)
+        way, issues = found[0].way, (*issues, _told(found, label, np.degrees(strategy.max_overhang)))
+    else:
+        way = np.array(asked) / np.linalg.norm(asked)
+    turned = upright(np.zeros(3), way)
+    local = np.vstack([body.vertices for body in bodies]) @ turned[:3, :3]
+    low, high = local.min(axis=0), local.max(axis=0)
+    turned[:3, 3] = turned[:3, :3] @ np.array([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2]])
+    base = Base("the first layer", Plane(), turned)
+    return SolidsOnHub(label, (Group(base, tuple(bodies)),), strategy.chord_error, (), issues)
+
+
+def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
+    """The axes and the directions out of large flat faces, the best first: of those with the least area over nothing, but
+    for CLOSE, the one with the least height, but for LEVEL, and of these the first; then of the others likewise. Any mesh of
+    the same part has the same order."""
+    vertices, normals, areas = facets(bodies, strategy.chord_error if strategy.fuse == "auto" else None)
+    ways = _candidates(normals, areas)
+    steep, standing = float(np.sin(strategy.max_overhang)), STANDING * strategy.layer_height
+    found = [judged(way, vertices, normals, areas, steep, standing) for way in ways]
+    ranked: list[Stacked] = []
+    while found:
+        least = min(one.area for one in found) + CLOSE * float(areas.sum())
+        few = [one for one in found if one.area <= least]
+        low = min(one.height for one in few)
+        ranked.append(next(one for one in few if one.height <= low * (1.0 + LEVEL)))
+        found = [one for one in found if one is not ranked[-1]]
+    return ranked
+
+
+def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
+    """Corners (m, 3, 3), unit normals (m, 3) and areas (m,) of all triangles with an area; what of them another body covers,
+    within a slit of so many mm, does not count: touching bodies are one. None: each body is one by itself."""
+    corners = np.concatenate([body.corners() for body in bodies])
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    doubled = np.linalg.norm(normal, axis=1)
+    some = doubled > 1e-12
+    corners, normal, area = corners[some], normal[some] / doubled[some, None], 0.5 * doubled[some]
+    if len(bodies) > 1 and slit is not None:
+        own = np.repeat(np.arange(len(bodies)), [len(body.triangles) for body in bodies])[some]
+        area = area * _free(bodies, own, corners, normal, area, slit)
+    return corners, normal, area
+
+
+def _free(
+    bodies: Sequence[Body], own: NDArray[np.intp], corners: Array, normals: Array, areas: Array, slit: float
+) -> Array:
+    """The share (m,) of each triangle, of the body `own` (m,), a slit (mm) outside of which no other body is."""
+    parts = np.clip(np.ceil(np.sqrt(PLACES * areas / areas.sum())), 1, MOST).astype(np.intp)
+    covered = np.zeros(len(areas))
+    insides = [inside_of(body) for body in bodies]
+    for count in np.unique(parts):
+        some = np.flatnonzero(parts == count)
+        shares = _middles(int(count))
+        places = np.einsum("pk,mkc->mpc", shares, corners[some]) + slit * normals[some, None]
+        held = np.zeros(places.shape[:2], dtype=bool)
+        for number, inside in enumerate(insides):
+            others = np.flatnonzero(own[some] != number)
+            if inside is not None and len(others):
+                held[others] |= inside.holds(places[others].reshape(-1, 3)).reshape(len(others), -1)
+        covered[some] = held.mean(axis=1)
+    return 1.0 - covered
+
+
+def _middles(count: int) -> Array:
+    """Shares (count^2, 3) of the corners at the middles of the parts of a triangle whose edges are cut in so many."""
+    i, j = (grid.ravel() for grid in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
+    up = i + j < count
+    first = np.where(up, i + 1.0 / 3.0, count - 1 - i + 2.0 / 3.0)
+    other = np.where(up, j + 1.0 / 3.0, count - 1 - j + 2.0 / 3.0)
+    found: Array = np.stack([first, other, count - first - other], axis=1) / count
+    return found
+
+
+def _candidates(normals: Array, areas: Array) -> list[Array]:
+    """Unit directions to look at: the axes first, then against the normals of the largest flat faces, in the same order
+    whatever triangles these are made of."""
+    keys = np.round(normals, 4) + 0.0
+    faces, number = np.unique(keys, axis=0, return_inverse=True)
+    size = np.bincount(np.ravel(number), weights=areas)
+    ways = list(AXES)
+    shares = np.round(size / max(float(areas.sum()), 1e-300), 3)
+    # of faces as large as one another the first comes by its direction, of which a mesh has no more than some digits
+    for k in np.lexsort(np.vstack([columns(faces.round(2)), -shares]))[: 4 * LARGEST]:
+        way = -faces[k] / np.linalg.norm(faces[k])
+        if size[k] > CLOSE * areas.sum() and max(float(way @ other) for other in ways) < ALIKE:
+            ways.append(way)
+        if len(ways) >= len(AXES) + LARGEST:
+            break
+    return ways
+
+
+def judged(way: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float) -> Stacked:
+    """A unit direction (3,) by the facets of a part: what of them leans out by more than `steep`, the sine of an angle from
+    the direction, and reaches more than `standing` mm above the lowest place."""
+    heights = corners @ way
+    low, high = float(heights.min()), float(heights.max())
+    over = (normals @ way < -steep - 1e-9) & (heights.max(axis=1) > low + standing)
+    return Stacked(way, float(areas[over].sum()), high - low)
+
+
+def _told(found: Sequence[Stacked], label: str, lean: float) -> Issue:
+    chosen = found[0]
+    upright_one = next(one for one in found if one.way is AXES[0] or np.array_equal(one.way, AXES[0]))
+    other = "" if chosen is upright_one else (
+        f"; along (0, 0, 1) it would be {upright_one.area:.4g} mm^2 and {upright_one.height:.4g} mm"
+    )
+    x, y, z = (round(float(value), 6) + 0.0 for value in chosen.way)
+    return Issue(
+        NOTE, "DIRECTION", f"{label} is stacked along ({x:g}, {y:g}, {z:g}): {chosen.area:.4g} mm^2 of it lean over nothing "
+        f"by more than {lean:.4g} deg, and it is {chosen.height:.4g} mm high{other}",
+    )

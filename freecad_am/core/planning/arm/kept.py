@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The links of a robot in its cell, as `cell.arm_clearance` keeps them clear while joint paths and rapids are planned."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.bead_ends import LINK_GRAIN, Beads
+from ...geometry.rods import Rod
+from ...geometry.surroundings import Body
+from ...issues import ERROR, Issue
+from ...kinematics.cell import Cell
+from ...kinematics.links.contact import NOZZLE, PART, TORCH, ArmContact, Touches
+from ...toolpath import Bead, Toolpath
+from ..points import Points
+from ..rapids.clearance import evenly
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+Place = tuple[int, int]
+Rods = Sequence[Sequence[Rod]]
+
+CODE = "ARM_CLEARANCE"
+STEP, SLIDE = float(np.radians(2.0)), 10.0  # of the joint that moves most on rapids, rad and mm, between two looks
+
+
+@dataclass(frozen=True)
+class ArmKept:
+    """Links in their cell, and how many points of the deposit are there when a bead begins, by layer and index."""
+
+    contact: ArmContact
+    before: Mapping[Place, int]
+
+    def touches(self, joints: Array, points: Points, places: Sequence[Place]) -> Touches:
+        """What links come too near with joints (T, axes) at the points of beads at these places."""
+        return self.contact.touches(joints, np.array([self.moment(place) for place in places], dtype=np.int64)[points.bead])
+
+    def rotations_near(self, joints: Array, bead: Index, places: Sequence[Place]) -> Mask:
+        """(R, T) with which joints (R, T, axes), of R rotations at points of the beads (T,), a link comes too near."""
+        when = np.array([self.moment(place) for place in places], dtype=np.int64)[bead]
+        met = self.contact.touches(joints.reshape(-1, joints.shape[2]), np.tile(when, len(joints)))
+        return met.any.reshape(joints.shape[:2])
+
+    def moment(self, place: Place) -> int:
+        """How many points are there before a bead; before its layer, of one that was divided since."""
+        return self.before.get(place, self.before[place[0], 0])
+
+
+def of_job(toolpath: Toolpath, cell: Cell, rods: Rods) -> ArmKept | None:
+    """What keeps the links, `rods` of each, clear in a job; None where that is not asked for, or no link known."""
+    beads = [bead for _, _, bead in toolpath]
+    contact = contact_of(beads, cell, rods, toolpath.surroundings, toolpath.bead_width or toolpath.layer_height,
+                         toolpath.layer_height)
+    if contact is None:
+        return None
+    counts = np.cumsum([0, *(len(bead) for bead in beads)])
+    return ArmKept(contact, {(layer, index): int(n) for (layer, index, _), n in zip(toolpath, counts, strict=False)})
+
+
+def contact_of(
+    beads: Sequence[Bead], cell: Cell, rods: Rods, bodies: Sequence[Body], width: float, height: float
+) -> ArmContact | None:
+    """The links against bodies and all beads; width, height: mm, of those that do not tell theirs."""
+    if cell.arm_clearance is None or not rods:
+        return None
+    laid = Beads.of(beads, width, height).solid(LINK_GRAIN)
+    return ArmContact(cell, rods, bodies, laid, cell.arm_clearance)
+
+
+def on_moves(contact: ArmContact, start: Array, end: Array, laid: Index) -> tuple[Index, Touches]:
+    """What links come too near on moves straight in the joints (k, axes), where so many points (k,) are laid: the move (l,)
+    of each look, and what it found. Of moves whose joints are NaN nothing."""
+    steps = np.where(contact.cell.machine.chain.sliding, SLIDE, STEP)
+    far = np.nan_to_num(np.abs(end - start) / steps).max(axis=1, initial=0.0)
+    move, share = evenly(1 + np.ceil(far).astype(np.intp))
+    joints = start[move] + share[:, None] * (end - start)[move]
+    return move, contact.touches(joints, laid[move])
+
+
+def clearance_issue(
+    cell: Cell, link: str, what: str, layer: int, bead: int, on_way: bool = False
+) -> Issue:
+    """That a link, as `ArmContact.links` calls it, comes too near to something at a bead, or on the rapid way to it."""
+    where = " on the rapid way to the bead" if on_way else ""
+    if link == NOZZLE:
+        return Issue(ERROR, CODE, f"the nozzle touches {what}{where}; move it in cell.obstacles, the part or "
+                     "cell.deposition_point", layer, bead)
+    name = "the part" if link == PART else "the torch" if link == TORCH else f"link {link}"
+    return Issue(
+        ERROR, CODE, f"{name} comes nearer than {cell.arm_clearance:g} mm to {what}, or touches it"
+        f"{where}; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance",
+        layer, bead,
+    )

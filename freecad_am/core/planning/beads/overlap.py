@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs closed beads on past their seam, over their own beginning."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..joint_path import BeadPath
+from ..points import TURN
+from ..task import Task
+
+Array = NDArray[np.float64]
+
+
+def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
+    """The path of a closed bead with its beginning repeated over `overlap` mm, at most once round; then it is open.
+
+    The rotation goes on from where it has come to, and the joints are those it then takes.
+    """
+    if overlap <= 0.0 or not path.bead.closed or not path.reachable:
+        return path
+    bead, n = path.bead.run_on(overlap), len(path.bead)
+    fresh = slice(n, None)
+    share = (bead.parameter - bead.parameter[0])[fresh] - (path.bead.parameter[-1] - path.bead.parameter[0])
+
+    def again(column: Array) -> Array:
+        since = path.bead.parameter - path.bead.parameter[0]
+        return np.asarray(np.interp(share * np.sign(since[-1]), since * np.sign(since[-1]), column))
+
+    phi = again(path.phi) + float(path.phi[-1] - path.phi[0])
+    near = np.stack([again(column) for column in path.joints.T], axis=1)
+    flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi, near)
+    joints = _counted_from(task, path.joints[-1], task.inverse(flange, near))
+    return dataclasses.replace(
+        path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
+        condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
+        threshold=np.concatenate([path.threshold, again(path.threshold)]),
+    )
+
+
+def _counted_from(task: Task, start: Array, joints: Array) -> Array:
+    """Joints (n, axes) in the turns that go on from the joints before them (axes,)."""
+    step = np.diff(joints, axis=0, prepend=start[None])
+    step -= np.where(task.cell.machine.chain.sliding, 0.0, TURN * np.round(step / TURN))
+    return np.asarray(start + np.cumsum(step, axis=0))

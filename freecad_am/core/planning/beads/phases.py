@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Phases at the ends of beads: points where they begin and end, and the speed of the torch there.
+
+They are put in once seams, overlaps and joints are known, on the way that is driven: joints run straight between points.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.columns import dots, lengths
+from ...issues import ERROR, Issue
+from ...kinematics.cell import Cell
+from ...motion import AT_END, AT_START, MIDDLE
+from ...toolpath import Bead
+from ..joint_path import BeadPath
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+STEPS = 4  # of which each leaves a small share of what was off before
+NEAR = 1e-3  # mm; a point so near to where a phase ends is where it ends
+CODE = "PHASE_LENGTH"
+_UNIT = ("build", "tool", "tangents")
+Condition = Callable[[Array, Array], Array]
+
+
+def phased(cell: Cell, path: BeadPath, condition_at: Condition | None = None) -> tuple[BeadPath, list[Issue]]:
+    """The path with points where the phases of its bead begin and end, and their speeds; an error where they are longer
+    than the bead, as that of a piece of one that was divided. condition_at: (n,) of flange poses (n, 4, 4) and joints
+    (n, axes); None on machines that have none."""
+    if not path.bead.ends or not path.reachable:
+        return path, []
+    first, _, last, _ = path.bead.ends
+    along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
+    if first + last > along[-1] + NEAR:
+        return path, [Issue(
+            ERROR, CODE, f"start and end take {first + last:.4g} mm of this bead of {along[-1]:.4g} mm; make process.start "
+            "and process.end shorter, or those of its class", path.layer, path.index,
+        )]
+    borders = np.array([at for at, length in ((first, first), (along[-1] - last, last)) if length > 0.0])
+    borders = borders[np.abs(along[:, None] - borders).min(axis=0) > NEAR]
+    borders = borders[np.r_[True, np.diff(borders) > NEAR]] if len(borders) else borders
+    if len(borders):
+        path = _with_points(cell, path, along, borders, condition_at)
+        along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
+    return dataclasses.replace(path, bead=_timed(path.bead, along)), []
+
+
+def _timed(bead: Bead, along: Array) -> Bead:
+    """The bead, points `along` (n,) mm of it, at the speeds of its phases, and which of its segments are in these."""
+    first, slow, last, late = bead.ends
+    phase, speed = np.full(len(along), float(MIDDLE)), np.array(bead.speed)
+    middle = 0.5 * (along + np.r_[0.0, along[:-1]])  # of the segment that ends at each point
+    for number, mine, wanted in ((AT_START, middle < first, slow), (AT_END, middle > along[-1] - last, late)):
+        phase[mine] = number
+        speed[mine] = wanted or speed[mine]
+    return dataclasses.replace(bead, speed=speed, phase=phase)
+
+
+def _shares(cell: Cell, path: BeadPath, segment: Rows, lengths_in: Array) -> Array:
+    """(k,) shares of the turn of the joints at which the tip is so far (k,) mm into segments (k,): it runs unevenly."""
+    start, way = path.bead.points[segment], path.bead.points[segment + 1] - path.bead.points[segment]
+    size = lengths(way)
+    share = lengths_in / size
+    turned = path.joints[segment + 1] - path.joints[segment]
+    for _ in range(STEPS):
+        place = cell.tip_in_part(cell.machine.chain.forward(path.joints[segment] + share[:, None] * turned))[0]
+        share = np.clip(share + (lengths_in - dots(place - start, way) / size) / size, 0.0, 1.0)
+    return np.asarray(share)
+
+
+def _with_points(
+    cell: Cell, path: BeadPath, along: Array, borders: Array, condition_at: Condition | None
+) -> BeadPath:
+    """The path with points at `borders` (k,) mm along it, rising, none of which is one of its own."""
+    segment = np.searchsorted(along, borders) - 1
+    share = _shares(cell, path, segment, borders - along[segment])
+    at = segment + 1
+
+    def between(column: Array) -> Array:
+        part = share.reshape(-1, *(1,) * (column.ndim - 1))
+        return np.asarray(np.insert(column, at, column[segment] + part * (column[at] - column[segment]), axis=0))
+
+    bead, new = path.bead, at + np.arange(len(at))
+    joints = between(path.joints)
+    columns: dict[str, Any] = {
+        field.name: between(getattr(bead, field.name)) for field in dataclasses.fields(bead)
+        if isinstance(getattr(bead, field.name), np.ndarray)
+    }
+    flange, condition = cell.machine.chain.forward(joints[new]), between(path.condition)
+    columns["points"][new], columns["tool"][new] = cell.tip_in_part(flange)
+    condition[new] = condition[new] if condition_at is None else condition_at(flange, joints[new])
+    columns["speed"][new] = bead.speed[at]
+    if bead.tangents is not None:  # a point within a segment is no corner
+        columns["tangents"][new] = (bead.tangents[segment, 1] + bead.tangents[at, 0])[:, None]
+    for name in _UNIT:
+        if name in columns:
+            columns[name] /= np.linalg.norm(columns[name], axis=-1, keepdims=True)
+    return dataclasses.replace(
+        path, bead=dataclasses.replace(bead, **columns), phi=between(path.phi), joints=joints,
+        condition=condition, threshold=between(path.threshold),
+    )

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Travel speeds that axes cannot follow: where the deposit is slowed, and where that is for the user to decide."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...issues import ERROR, WARNING, Issue
+from ...kinematics.cell import Cell
+from ...toolpath import Bead, SpeedLaw
+from ..joint_path import BeadPath
+
+Array = NDArray[np.float64]
+
+SLOWED = "SLOWED"
+JUST = 1.0 - 1e-9  # of what an axis can do
+PILE = 1.0  # of the bead's width: so much too much may lie where the deposit is slowed
+FLAT = 2.0  # a bead's width in layer heights where no model tells it
+
+
+def rings_slowed(
+    cell: Cell, paths: Sequence[BeadPath], layer_height: float
+) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths with the tightest turns at the speed the axes allow, and a warning that says so.
+
+    Where a wall closes, the last rings are as small as chance leaves them, and the axis that turns the part would have to
+    turn without bound. What runs at less than a layer from the axis of the part is slowed; the rest is not: that is for
+    the user to decide.
+    """
+    result, slowed = [], []
+    for path in paths:
+        bead, ratio = path.bead, (_axis_speeds(path) / cell.machine.max_speed).max(axis=1)
+        radius = np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / np.abs(np.diff(bead.parameter))
+        tight = (ratio > 1.0) & (radius < layer_height)
+        if tight.any():
+            path = _at(path, np.where(tight, JUST / ratio, 1.0))
+            slowed.append(path)
+        result.append(path)
+    if not slowed:
+        return result, []
+    slowest = min(float(path.bead.speed.min()) for path in slowed)
+    return result, [Issue(
+        WARNING, SLOWED,
+        f"{len(slowed)} bead(s) where the wall closes are run at down to {slowest:.3g} mm/s: the axes turn no faster",
+        slowed[0].layer, slowed[0].index,
+    )]
+
+
+class _Place(NamedTuple):
+    """Where a bead is slowed: how far (mm), to what speed (mm/s), how much (mm of the bead) lies there too much, and by how
+    much the bead gets wider and higher (mm; nan without a bead model)."""
+
+    path: BeadPath
+    point: int
+    length: float
+    speed: float
+    pile: float
+    wider: float
+    higher: float
+
+
+def corners_slowed(
+    cell: Cell, paths: Sequence[BeadPath], layer_height: float, law: SpeedLaw | None
+) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths of beads on hubs with short places at the speed the axes allow, and a warning that says so.
+
+    At corners and near poles any five-axis controller slows down, and so does a robot. What is deposited meanwhile piles up:
+    a place is short where that is no more than PILE of the bead's width. Longer ones are left as they are. law: what the
+    bead's width, height and speed follow, None where no model says.
+    """
+    result: list[BeadPath] = []
+    places: list[_Place] = []
+    for path in paths:
+        ratio = (_axis_speeds(path) / cell.machine.max_speed).max(axis=1)
+        if (ratio > 1.0).any():
+            path, found = _slowed(path, ratio, layer_height, law)
+            places += found
+        result.append(path)
+    if not places:
+        return result, []
+    worst = min(places, key=lambda place: place.speed)
+    return result, [Issue(
+        WARNING, SLOWED,
+        f"at {len(places)} short places, {sum(place.length for place in places):.3g} mm in all, the deposit is slowed, here "
+        f"to {worst.speed:.3g} mm/s, for the axes go no faster; up to {max(place.pile for place in places):.2g} mm of the "
+        f"bead more than meant lie there{_growth(places, worst, law)}",
+        worst.path.layer, worst.path.index, worst.point,
+    )]
+
+
+def _slowed(path: BeadPath, ratio: Array, layer_height: float, law: SpeedLaw | None) -> tuple[BeadPath, list[_Place]]:
+    """A path whose axes would turn at `ratio` (n - 1,) of what they can, and where it is slowed."""
+    bead = path.bead
+    length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+    middle = np.cumsum(length) - 0.5 * length
+    share = np.where(ratio > 1.0, JUST / ratio, 1.0)
+    while True:
+        speed = _approached(middle, bead.speed[1:], share, law)
+        slow = speed < JUST * bead.speed[1:]
+        runs = [slice(*ends) for ends in _runs(slow)]
+        more = length * (bead.speed[1:] / speed - 1.0)
+        long = [run for run in runs if more[run].sum() > PILE * _width(bead, run, layer_height)]
+        if not long:
+            break
+        for run in long:
+            share[run] = 1.0
+    if not runs:
+        return path, []
+    speeds = np.r_[bead.speed[:1], speed]
+    slower = dataclasses.replace(bead, speed=speeds) if law is None else law.laid(bead, speeds)
+    path = dataclasses.replace(path, bead=slower)
+    wider, higher = _gains(bead, slower)
+    return path, [
+        _Place(
+            path, run.start + 1 + int(np.argmin(speed[run])), float(length[run].sum()), float(speed[run].min()),
+            float(more[run].sum()), float(wider[run.start : run.stop + 1].max()),
+            float(higher[run.start : run.stop + 1].max()),
+        )
+        for run in runs
+    ]
+
+
+def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None) -> Array:
+    """Speeds (n - 1,) mm/s of segments with their middles at (n - 1,) mm, at a share of theirs at most, which lie on ramps
+    down to slowed ones and up again."""
+    if law is None or (share == 1.0).all():
+        return np.asarray(speed * share)
+    square = np.where(share < 1.0, speed * share, np.inf) ** 2
+    slope = 2.0 * law.acceleration * middle
+    rising = np.minimum.accumulate(square - slope) + slope
+    falling = np.minimum.accumulate((square + slope)[::-1])[::-1] - slope
+    return np.minimum(np.sqrt(np.minimum(rising, falling)), speed * share)
+
+
+def _runs(chosen: NDArray[np.bool_]) -> list[list[int]]:
+    """First and one past the last of each run of true values."""
+    ends: list[list[int]] = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(int))).reshape(-1, 2).tolist()
+    return ends
+
+
+def _gains(before: Bead, after: Bead) -> tuple[Array, Array]:
+    """By how much (n,) mm a bead is predicted wider and higher, nan where no model tells."""
+    none = np.full(len(before), np.nan)
+    if before.width is None or after.width is None or before.height is None or after.height is None:
+        return none, none
+    return after.width - before.width, after.height - before.height
+
+
+def _growth(places: Sequence[_Place], worst: _Place, law: SpeedLaw | None) -> str:
+    """What the bead model says of slowed places."""
+    wider = max(place.wider for place in places)
+    if law is None or not wider > 0.0:
+        return ""
+    higher = max(place.higher for place in places)
+    beyond = f"; slower than {law.slowest:.3g} mm/s nothing was measured" if worst.speed < law.slowest * JUST else ""
+    return f": it is up to {wider:.2g} mm wider there" + (
+        f" and {higher:.2g} mm higher" if higher > 0.0 else "") + f", by the bead model{beyond}"
+
+
+def _width(bead: Bead, segments: slice, layer_height: float) -> float:
+    return FLAT * layer_height if bead.width is None else float(bead.width[1:][segments].min())
+
+
+def _at(path: BeadPath, share: Array) -> BeadPath:
+    """The path with its segments at a share (n - 1,) of their speeds."""
+    speed = np.r_[path.bead.speed[:1], path.bead.speed[1:] * share]
+    return dataclasses.replace(path, bead=dataclasses.replace(path.bead, speed=speed))
+
+
+def _axis_speeds(path: BeadPath) -> Array:
+    """(n - 1, axes) rad/s at which the axes turn along a bead."""
+    length = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1)
+    speed: Array = np.abs(np.diff(path.joints, axis=0)) * (path.bead.speed[1:] / length)[:, None]
+    return speed
+
+
+def share_of_speed(cell: Cell, paths: Sequence[BeadPath]) -> float:
+    """The share of their speeds at which the axes can follow all paths, at most 1."""
+    return float(min((1.0 / max(float((_axis_speeds(path) / cell.machine.max_speed).max(initial=0.0)), 1.0)
+                      for path in paths if path.reachable), default=1.0))
+
+
+def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
+    """An issue for every bead on which an axis would have to turn faster than it can."""
+    found = []
+    for path in paths:
+        speed = _axis_speeds(path)
+        ratio = speed / cell.machine.max_speed
+        point, axis = np.unravel_index(int(ratio.argmax()), ratio.shape)
+        if ratio[point, axis] > 1.0:
+            value, unit = cell.machine.unit_values[axis], cell.machine.units[axis]
+            able = path.bead.speed[point + 1] / ratio[point, axis]
+            found.append(Issue(
+                ERROR, "SPEED",
+                f"axis {cell.machine.axes[axis]} would move at {speed[point, axis] / value:.0f} {unit}/s, it can do "
+                f"{cell.machine.max_speed[axis] / value:.0f}; {_advice(path.bead, int(point) + 1, float(able))}",
+                path.layer, path.index, int(point) + 1,
+            ))
+    return found
+
+
+def _advice(bead: Bead, point: int, able: float) -> str:
+    if bead.height is None:
+        return f"lower the travel speed to {able:.2f} mm/s"
+    return (
+        f"it could at {able:.2f} mm/s, but the bead model asks for {bead.speed[point]:.3g} mm/s and too much would pile up: "
+        "turn the torch more slowly (build_direction.max_turn), lean it less, mount the part otherwise, or ask for a wider "
+        "bead (process.bead_width), which is laid more slowly"
+    )

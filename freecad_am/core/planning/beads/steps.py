@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Points of beads that come sooner after one another than a controller steps: left out where the bead hardly needs them.
+
+Where walls are thin, small, or laid fast, corners and ends have points some hundredths of a millimetre apart. What is left
+out lies within a share of the chord error of the way that stays; where it does not, the move is given the time of a step.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...controller import Controller
+from ...motion import Motion
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Rows = NDArray[np.intp]
+
+OFF = 0.4  # of the chord error, that points left out may lie off
+REACH = 2000.0  # mm; so far off an axis, at most, is what it turns
+
+
+def told(motion: Motion, controller: Controller, chord_error: float, blend: float) -> tuple[Motion, Rows]:
+    """The motion that programs of a controller tell, and which rows (m,) of all these are. blend: percent."""
+    step, blended = controller.least_step, controller.least_blend
+    if not step:
+        return motion, np.arange(len(motion))
+    rows = np.flatnonzero(_kept(motion, step, 100.0 * blended / blend if blend else 0.0, chord_error))
+    columns = {field.name: getattr(motion, field.name)[rows] for field in dataclasses.fields(motion)}
+    inside = columns["deposit"] & (columns["point"] > 0)
+    duration = np.diff(np.cumsum(motion.duration)[rows], prepend=0.0)
+    # the time of what was left out goes to the move that takes its place
+    joined = inside & (np.diff(rows, prepend=-1) > 1)
+    columns["duration"] = np.where(joined, duration, columns["duration"])
+    slow = inside & (columns["duration"] < step)
+    columns["duration"] = np.where(slow, step, columns["duration"])
+    way = np.linalg.norm(np.diff(columns["position"], axis=0, prepend=columns["position"][:1]), axis=1)
+    columns["speed"] = np.where(joined | slow, way / np.where(inside, columns["duration"], 1.0), columns["speed"])
+    return Motion(**columns), rows
+
+
+def _kept(motion: Motion, seconds: float, least: float, chord_error: float) -> Mask:
+    """(n,) the rows that stay: ends of beads, rapids, and what comes `seconds` and `least` mm after the one before."""
+    way = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
+    inside = motion.deposit & (motion.point > 0) & motion.reachable
+    steps = np.nan_to_num(motion.duration) / seconds
+    steps = np.where(inside, np.minimum(steps, way / least) if least else steps, 1.0)
+    kept: Mask = np.ones(len(motion), dtype=np.bool_)
+    last = inside & motion.stops
+    starts = np.flatnonzero(motion.deposit & (motion.point == 0))
+    soon = np.flatnonzero(inside & (steps < 1.0))
+    for bead in np.unique(np.searchsorted(starts, soon, side="right") - 1).tolist():
+        start = int(starts[bead])
+        rows = slice(start, start + int(np.argmax(last[start:])) + 1)
+        kept[rows] = _sparse(np.r_[0.0, np.cumsum(steps[rows][1:])])
+    return _with_needed(motion, kept, OFF * chord_error)
+
+
+def _sparse(clock: Array) -> Mask:
+    """Which points (n,) of a bead stay where none may come less than 1 after another on a clock; both ends stay."""
+    kept: Mask = np.r_[True, np.diff(np.floor(clock)) > 0.0] & (clock <= clock[-1] - 1.0)
+    kept[0] = kept[-1] = True
+    rows = np.flatnonzero(kept)
+    near = np.r_[False, np.diff(clock[rows]) < 1.0]
+    near[-1] = False
+    kept[rows[near]] = False
+    return kept
+
+
+def _with_needed(motion: Motion, kept: Mask, off: float) -> Mask:
+    """The rows that stay, and of the others as few as it takes that all lie within `off` mm of the way between these, and
+    that axes do not turn so far that they would leave it in between."""
+    kept = kept.copy()
+    while True:
+        gone = np.flatnonzero(~kept)
+        rows = np.flatnonzero(kept)
+        after = np.searchsorted(rows, gone)
+        start, end = rows[after - 1], rows[after]
+        way = motion.position[end] - motion.position[start]
+        beside = motion.position[gone] - motion.position[start]
+        share = np.einsum("nk,nk->n", beside, way) / np.maximum(np.einsum("nk,nk->n", way, way), 1e-300)
+        away = np.linalg.norm(beside - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1)
+        turn = np.linalg.norm(motion.joints[end] - motion.joints[start], axis=1)
+        away = np.maximum(away, 0.125 * REACH * turn * turn)
+        far = away > off
+        if not far.any():
+            return kept
+        # the farthest of each gap, which often is enough for its neighbours
+        order = np.lexsort((away[far], start[far]))
+        last = np.flatnonzero(np.diff(start[far][order], append=-1))
+        kept[gone[far][order[last]]] = True

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Adds points where motion straight in the joints would leave the bead between its points."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...issues import ERROR, Issue
+from ...toolpath import Bead
+from ..joint_path import BeadPath
+from ..task import Task
+
+Array = NDArray[np.float64]
+
+INSIDE = np.array([0.25, 0.5, 0.75])
+MORE = np.array([1.0, 2.0, 4.0, 5.0]) / 6.0  # of segments that use up more than half of the chord error
+# what the polynomials through both ends, where the tip is on the bead, and INSIDE are there: (4, 3)
+BETWEEN = np.array([
+    [np.prod([(x - node) / (own - node) for node in (0.0, *INSIDE, 1.0) if node != own]) for own in INSIDE] for x in MORE
+])
+ROUNDS = 8
+# rounding room: beads of revolution use their chord error up by themselves, mm
+ROUNDING = 1e-6
+
+
+def kept_straight(task: Task, path: BeadPath, chord_error: float) -> tuple[BeadPath, list[Issue]]:
+    """The path with as many points added as it takes to stay within the chord error (mm) of the bead between them.
+
+    Points are added on the curve that the points of the bead outline, not on its chords; at corners on the segments.
+    """
+    for _ in range(ROUNDS):
+        if not path.reachable:
+            return path, []
+        off = deviation(task, path.bead, path.joints, chord_error) > chord_error + ROUNDING
+        if not off.any():
+            return path, []
+        path = _halved(task, path, np.flatnonzero(off))
+    worst = int(deviation(task, path.bead, path.joints, chord_error).argmax())
+    return path, [Issue(
+        ERROR, "NOT_STRAIGHT", "joint motion leaves the bead between two points however many are added: near a singularity",
+        path.layer, path.index, worst,
+    )]
+
+
+def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Array:
+    """(n - 1,) how far the nozzle's tip leaves each segment of the bead when the joints run straight, mm."""
+    seen = _looked_at(task, bead, joints, np.arange(len(joints) - 1), INSIDE)
+    away: Array = np.maximum.reduce(seen)
+    # nearly all leave it evenly, most in the middle: between what was seen it is no more
+    near = np.flatnonzero((away > 0.5 * chord_error) & (np.maximum.reduce(BETWEEN @ seen) > away))
+    if len(near):
+        away[near] = np.maximum.reduce([away[near], *_looked_at(task, bead, joints, near, MORE)])
+    return away
+
+
+def _looked_at(task: Task, bead: Bead, joints: Array, segments: NDArray[np.intp], shares: Array) -> Array:
+    """The same of the segments (k,), at shares (s,) of their length: (s, k) mm."""
+    start, way = joints[segments], joints[segments + 1] - joints[segments]
+    away = task.cell.tip_at(start[:, None] + way[:, None] * shares[:, None]) - bead.points[segments, None]
+    along = bead.points[segments + 1] - bead.points[segments]
+    length = np.maximum(np.einsum("ni,ni->n", along, along), 1e-18)
+    share = np.clip(np.einsum("nki,ni->nk", away, along) / length[:, None], 0.0, 1.0)
+    away -= share[..., None] * along[:, None]
+    distance: Array = np.sqrt(np.einsum("nki,nki->kn", away, away))
+    return distance
+
+
+def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath:
+    """The path with a point in the middle of each of the segments."""
+    at = segments + 1
+
+    def middle(column: Array) -> Array:
+        return np.insert(column, at, 0.5 * (column[segments] + column[at]), axis=0)
+
+    finer = path.bead.halved(segments)
+    phi = middle(path.phi)
+    new = at + np.arange(len(at))
+    joints = middle(path.joints)
+    flange = task.cell.flange_poses(finer.points[new], finer.tool[new], phi[new], joints[new])
+    found = task.inverse(flange, joints[new])
+    joints[new] = found - 2.0 * np.pi * np.round((found - joints[new]) / (2.0 * np.pi))
+    condition = np.insert(path.condition, at, task.condition_at(flange, joints[new]))
+    return dataclasses.replace(
+        path, bead=finer, phi=phi, joints=joints, condition=condition, threshold=middle(path.threshold)
+    )

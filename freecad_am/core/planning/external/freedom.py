@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One bead with all that is free at its points: the rotation about the tool and every external axis, each a polynomial.
+
+r(s) in R^(1 + k): the rotation is the polynomial it had, plus a change; external axis j stands where a rule put it, plus a
+change. All changes are polynomials of one degree over the bead's parameter. The robot follows through its inverse, so that
+the derivatives of its joints are those of a closed chain: robot and external axes together leave the tool on the part.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry import frames
+from ...kinematics import jacobian as jac
+from ...kinematics.cell import Cell
+from ...kinematics.external import ExternalAxes
+from .. import criteria
+from ..points import Points
+from ..task import Task
+
+Array = NDArray[np.float64]
+
+FAR = 0.75  # a margin to the condition that nobody asks for: its derivatives are not told
+STEEP = 0.9  # of its largest speed, what an external axis may be asked for
+
+
+@dataclass(frozen=True)
+class Bound:
+    """What holds at one set of changes of v numbers. objective, with `slope` (v,). margins: (r,), shares as limits and
+    condition have them, 0 where just kept, with `margin_slopes` (r, v). hard: (h,), kept where >= 0, with `hard_slopes`."""
+
+    objective: float
+    slope: Array
+    margins: Array
+    margin_slopes: Array
+    hard: Array
+    hard_slopes: Array
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """points: of one bead, T of them. thresholds: (T,) the condition asked for. start: (degree + 1,) coefficients of the
+    rotation. changes: (degree + 1, c) coefficients of what may be added. allowed: rad from the vertical. directions: (T, 3)
+    tool axes seen from the face of the positioner. times: (T,) s since the point before, 0 at the first."""
+
+    task: Task
+    points: Points
+    thresholds: Array
+    start: Array
+    changes: Array
+    allowed: float
+    directions: Array
+    times: Array
+
+    @property
+    def external(self) -> ExternalAxes:
+        """The axes beside the robot."""
+        found = self.task.cell.external
+        assert found is not None
+        return found
+
+    @cached_property
+    def shape(self) -> Array:
+        """(T, c) what one number changes at each point."""
+        return np.asarray(self.points.powers(len(self.start) - 1) @ self.changes)
+
+    @cached_property
+    def unit(self) -> Array:
+        """(k,) rad or mm of external axes per unit of a number: one rad is a characteristic length."""
+        own = self.task.cell.robot.chain.axes
+        sliding = self.task.cell.machine.chain.sliding[own:]
+        return np.where(sliding, self.task.parameters.characteristic_length, 1.0)
+
+    def values(self, x: Array) -> tuple[Array, Array]:
+        """The coefficients (degree + 1,) of the rotation and the external axes (T, k) for changes x (v,)."""
+        rows = x.reshape(1 + self.external.axes, -1)
+        assert self.points.external is not None
+        return self.start + self.changes @ rows[0], self.points.external + self.shape @ rows[1:].T * self.unit
+
+    def look(self, x: Array) -> Bound | None:
+        """What holds with changes x (v,); None where a point is out of reach."""
+        task = self.task
+        coefficients, values = self.values(x)
+        points = moved(self.points, task.cell, values)
+        phi, phi_rate = task.rotation(points, points.polynomial(coefficients[None]))
+        joints = task.joints(points, phi)
+        if np.isnan(joints).any():
+            return None
+        spin, matrix = task.spin_rates(points.frames.at(phi), joints)
+        rates = [spin * phi_rate[:, None], *(one * unit for one, unit in zip(
+            external_rates(task.cell, points.position, joints), self.unit, strict=True))]
+        slope = np.concatenate([criteria.rate(task, points, joints, one, matrix) @ self.shape for one in rates])
+        margins, margin_slopes = self._margins(joints, rates, matrix)
+        hard, hard_slopes = self._hard(values, phi, phi_rate)
+        return Bound(
+            float(criteria.value(task, points, joints, matrix)[0]), slope, margins, margin_slopes, hard, hard_slopes,
+        )
+
+    def _margins(self, joints: Array, rates: list[Array], matrix: Array) -> tuple[Array, Array]:
+        rows, length = self.task.rows, self.task.parameters.characteristic_length
+        offset = rows.offset(joints)
+        ratio = np.maximum(jac.condition(matrix, length), 1e-12)
+        values = np.concatenate([1.0 - offset, 1.0 + offset, (1.0 - self.thresholds / ratio)[:, None]], axis=1)
+        near, slopes = values[:, -1] < FAR, []
+        for one in rates:
+            along, turned = one @ rows.matrix.T / rows.half, np.zeros(len(ratio))
+            if near.any():
+                change = np.nan_to_num(criteria.condition_rate(self.task, joints[near], one[near], matrix[near]))
+                turned[near] = change * self.thresholds[near] / ratio[near] ** 2
+            slopes.append(self._by_number(np.concatenate([-along, along, turned[:, None]], axis=1)))
+        return values.T.ravel(), np.concatenate(slopes, axis=1)
+
+    def _hard(self, values: Array, phi: Array, phi_rate: Array) -> tuple[Array, Array]:
+        """Tool near enough to the vertical, rotation in its range, external axes fast enough."""
+        found, count = [], 1 + self.external.axes
+        if self.allowed < np.pi - 1e-9:
+            found.append(self._tilts(values))
+        low, high = self.task.parameters.rotation_range
+        if high - low < 2.0 * np.pi - 1e-9:
+            share = (phi - 0.5 * (low + high)) / (0.5 * (high - low))
+            rate = phi_rate / (0.5 * (high - low))
+            none = [np.zeros((len(phi), 2))] * (count - 1)
+            found.append((
+                np.concatenate([1.0 - share, 1.0 + share]),
+                np.concatenate([self._by_number(one) for one in (np.stack([-rate, rate], axis=1), *none)], axis=1),
+            ))
+        found.append(self._speeds(values))
+        return np.concatenate([value for value, _ in found]), np.concatenate([slope for _, slope in found])
+
+    def _tilts(self, values: Array) -> tuple[Array, Array]:
+        external = self.external
+        upright = external.upright(self.directions, values)
+        slopes = [np.zeros((len(upright), 1)) for _ in range(1 + external.axes)]
+        for axis, which in zip(axes_in_world(external, values), external.turned, strict=True):
+            slopes[1 + which] = (np.cross(axis, upright) @ external.up)[:, None] * self.unit[which]
+        value = upright @ external.up - np.cos(self.allowed)
+        return value, np.concatenate([self._by_number(one) for one in slopes], axis=1)
+
+    def _speeds(self, values: Array) -> tuple[Array, Array]:
+        own, k = self.task.cell.robot.chain.axes, self.external.axes
+        assert self.points.external is not None
+        fastest = self.task.cell.machine.max_speed[own:]
+        most = np.maximum(STEEP * fastest * self.times[1:, None], np.abs(np.diff(self.points.external, axis=0)))
+        step, change = np.diff(values, axis=0) / most, np.diff(self.shape, axis=0)
+        slopes = np.zeros((k, len(step), (1 + k) * self.shape.shape[1]))
+        for j in range(k):
+            at = slice((1 + j) * self.shape.shape[1], (2 + j) * self.shape.shape[1])
+            slopes[j, :, at] = change * self.unit[j] / most[:, j : j + 1]
+        rates = slopes.reshape(-1, slopes.shape[-1])
+        step = step.T.ravel()
+        return np.concatenate([1.0 - step, 1.0 + step]), np.concatenate([-rates, rates])
+
+    def _by_number(self, slopes: Array) -> Array:
+        """(m T, c) of slopes (T, m) by the value of a polynomial at each point."""
+        return np.asarray((slopes.T[:, :, None] * self.shape).reshape(-1, self.shape.shape[1]))
+
+
+def moved(points: Points, cell: Cell, values: Array) -> Points:
+    """The same points with the external axes at other values (T, k)."""
+    return dataclasses.replace(points, external=values, frames=cell.pose_frames(points.position, points.tool, values))
+
+
+def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
+    """For each external axis d q / d e (T, axes), the tool staying where it is on the part; position (T, 3) in the part,
+    joints (T, axes)."""
+    own, count = cell.robot.chain.axes, cell.machine.chain.axes
+    stands = cell.station @ frames.inverse(cell.mount)
+    whole = jac.jacobian(cell.machine.chain, joints, position @ stands[:3, :3].T + stands[:3, 3])
+    robot, beside = whole[:, :, :own], whole[:, :, own:]
+    try:
+        follows = -np.linalg.solve(robot, beside)
+    except np.linalg.LinAlgError:
+        follows = -np.linalg.pinv(robot) @ beside
+    rates = []
+    for j in range(count - own):
+        rate = np.zeros((len(joints), count))
+        rate[:, :own], rate[:, own + j] = follows[:, :, j], 1.0
+        rates.append(rate)
+    return rates
+
+
+def axes_in_world(external: ExternalAxes, values: Array) -> list[Array]:
+    """(T, 3) where each turning axis of the positioner points in the world, from the floor on, with values (T, k)."""
+    found = []
+    for number, axis in enumerate(external.turning):
+        seen = np.tile(axis, (len(values), 1))
+        for before, which in reversed(list(zip(external.turning[:number], external.turned[:number], strict=True))):
+            seen = np.einsum("nij,nj->ni", frames.rotation_about(before, values[:, which]), seen)
+        found.append(seen)
+    return found

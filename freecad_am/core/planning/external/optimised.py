@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""External axes `optimised`: polynomials of all free coordinates per bead, the rotation about the tool and every external
+axis together.
+
+It starts from the joint path whose external axes `level` put in place. For each bead other standing places of the external
+axes are looked at, the rotation searched anew at each; from the best and from the path itself two local optima follow: the
+least objective with no less margin, then the largest margin that keeps most of what was gained. A bead that is not better
+than it was, or that meets something, stays as it was.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...kinematics.external import tilt_from
+from ..joint_path import BeadPath
+from ..points import Points, gather, thinned
+from ..rotation import basis, refine, search
+from ..rotation.evaluation import judged
+from ..rotation.given import GIVEN
+from ..task import Task
+from .descent import largest_margin, least_objective
+from .freedom import Freedom, moved
+
+Array = NDArray[np.float64]
+
+OPTIMISED = "rotation and external axes together"
+POINTS_PER_BEAD = 40
+GIVEN_BACK = 0.25  # of what the objective gained, for a larger margin
+ENOUGH = 0.5  # a margin that need not be larger: half way from the limit to the middle
+TRIES = 2  # of a bead that leans too far between the points looked at
+SPARE = 1e-4  # of margin and angle, so that what lies between the points keeps them too
+STANDING = 12  # places of an axis that is free to stand anywhere
+LEANING = np.array([-1.0, -0.5, 0.5, 1.0])  # shares of the largest angle from the vertical, tried of every axis
+SLIDING = np.array([-0.2, -0.1, 0.1, 0.2])  # shares of the arm's reach
+
+
+def optimised(
+    task: Task, paths: Sequence[BeadPath], directions: Callable[[Array], Array], allowed: Mapping[int, float],
+    told: Callable[[float], None] = lambda share: None,
+) -> list[BeadPath]:
+    """The paths with better ones in the place of those there are: less objective, and no less margin.
+
+    directions: tool axes (n, 3) of the part as seen from the face that carries it. allowed: rad from the vertical, by layer.
+    told: the share of the beads that is done; it may raise to cancel.
+    """
+    usable = [
+        k for k, path in enumerate(paths) if path.coefficients is not None and path.reason != GIVEN and len(path.bead) > 2
+    ]
+    if not usable:
+        return list(paths)
+    result = list(paths)
+    starts = _elsewhere(task, [paths[k] for k in usable], directions, allowed)
+    for number, (k, start) in enumerate(zip(usable, starts, strict=True)):
+        told(number / len(usable))
+        result[k] = _bead(task, paths[k], start, directions, allowed[paths[k].layer])
+    return result
+
+
+def better(one: BeadPath, other: BeadPath) -> bool:
+    """Whether a path keeps its limits with less objective and no less margin than another, or the other does not."""
+    if not one.reachable or one.margin < 0.0 or not np.isfinite(one.objective):
+        return False
+    if not other.reachable or other.margin < 0.0:
+        return True
+    return one.objective <= other.objective and one.margin >= min(other.margin, ENOUGH)
+
+
+Start = tuple[Array, Array]  # shift (k,) of the external axes, coefficients of the rotation
+
+
+def _elsewhere(
+    task: Task, paths: Sequence[BeadPath], directions: Callable[[Array], Array], allowed: Mapping[int, float]
+) -> list[Start | None]:
+    """For each path the shift of its external axes, and the rotation there, that serve best; None where its own are."""
+    external = task.cell.external
+    assert external is not None
+    beads = [path.bead for path in paths]
+    points = gather(beads, task.cell, search.POINTS_PER_BEAD)
+    most = np.array([allowed[path.layer] for path in paths])
+    thresholds = np.concatenate([path.threshold[thinned(path.bead, search.POINTS_PER_BEAD)] for path in paths])
+    best = _here(task, points, thresholds, most, directions, np.zeros((len(paths), external.axes)))
+    for axis in reversed(range(external.axes)):
+        tried = [best]
+        for step in _steps(task, axis, float(most.max())):
+            shifts = best[0].copy()
+            shifts[:, axis] += step
+            tried.append(_here(task, points, thresholds, most, directions, shifts))
+        rank = np.argmin([np.where(one[3] >= 0.0, one[2], 1e6 - one[3]) for one in tried], axis=0)
+        best = tuple(  # type: ignore[assignment]
+            np.stack([tried[r][part][k] for k, r in enumerate(rank)]) for part in range(4)
+        )
+    return [
+        (best[0][k], best[1][k]) if best[3][k] >= 0.0 and best[0][k].any() else None for k in range(len(paths))
+    ]
+
+
+def _here(
+    task: Task, points: Points, thresholds: Array, most: Array, directions: Callable[[Array], Array], shifts: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Of each bead with its external axes shifted by (B, k): these, the best coefficients, objective and margin there."""
+    assert points.external is not None
+    values = points.external + shifts[points.bead]
+    found = search.everywhere(task, moved(points, task.cell, values), thresholds)
+    best, each = found.best(), np.arange(points.beads)
+    margin = found.margin[best, each]
+    if task.cell.external is not None and task.cell.external.turning:
+        external = task.cell.external
+        upright = external.upright(directions(points.tool), values) @ external.up
+        before = external.upright(directions(points.tool), points.external) @ external.up
+        keeps = points.worst(upright - np.minimum(np.cos(most)[points.bead], before)) >= -1e-9
+        margin = np.where(keeps, margin, -np.inf)
+    return shifts, found.coefficients[best, each], found.objective[best, each], margin
+
+
+def _steps(task: Task, axis: int, most: float) -> Array:
+    """By how much an external axis is shifted to see whether it should stand elsewhere."""
+    external, arm = task.cell.external, task.cell.robot.arm
+    assert external is not None and arm is not None
+    if axis == external.slides:
+        return SLIDING * arm.reach
+    if most < math.radians(90.0):
+        return LEANING * most
+    turn = 2.0 * math.pi / STANDING
+    return np.asarray((np.arange(1, STANDING) - STANDING // 2) * turn)
+
+
+def _bead(
+    task: Task, path: BeadPath, start: Start | None, directions: Callable[[Array], Array], allowed: float
+) -> BeadPath:
+    """The best of what the path, and another start, lead to."""
+    best = path
+    for shift, coefficients in ([] if start is None else [start]) + [(None, path.coefficients)]:
+        assert coefficients is not None and path.bead.external is not None
+        values = path.bead.external if shift is None else path.bead.external + shift
+        shifted = dataclasses.replace(path, bead=dataclasses.replace(path.bead, external=values))
+        found = _upright_enough(task, path, shifted, coefficients, directions, allowed)
+        if found is not None and better(found, best) and (best is path or found.objective < best.objective):
+            best = found
+    return best
+
+
+def _upright_enough(
+    task: Task, path: BeadPath, shifted: BeadPath, coefficients: Array, directions: Callable[[Array], Array], allowed: float
+) -> BeadPath | None:
+    """What a start leads to, kept so much more upright where it is looked at that no point in between leans too far."""
+    external, spare = task.cell.external, SPARE
+    assert external is not None
+    for _ in range(TRIES):
+        freedom = _freedom(task, shifted, coefficients, directions, allowed - spare)
+        found = _judged(task, shifted, *_climbed(freedom, path))
+        assert found.bead.external is not None
+        leans = tilt_from(external.upright(directions(found.bead.tool), found.bead.external), external.up)
+        over = float(leans.max()) - allowed
+        if over <= 0.0:
+            return found
+        spare += 2.0 * over
+    return None
+
+
+def _freedom(
+    task: Task, path: BeadPath, coefficients: Array, directions: Callable[[Array], Array], allowed: float
+) -> Freedom:
+    thin = thinned(path.bead, POINTS_PER_BEAD)
+    points = gather([path.bead], task.cell, POINTS_PER_BEAD)
+    full = np.zeros(max(len(coefficients), task.parameters.degree + 1))
+    full[: len(coefficients)] = coefficients
+    changes = basis.changes(task, points, len(full) - 1)[0]
+    changes = changes[:, np.abs(changes).any(axis=0)]
+    way = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1) / path.bead.speed[1:]
+    times = np.diff(np.concatenate([[0.0], np.cumsum(way)])[thin], prepend=0.0)
+    return Freedom(task, points, path.threshold[thin], full, changes, allowed, directions(points.tool), times)
+
+
+def _judged(task: Task, path: BeadPath, freedom: Freedom, x: Array, iterations: int) -> BeadPath:
+    """The path of a bead with changes x, at all its points."""
+    coefficients, _ = freedom.values(x)
+    points = gather([path.bead], task.cell)
+    rows = x.reshape(1 + freedom.external.axes, -1)
+    assert points.external is not None
+    shape = points.powers(len(coefficients) - 1) @ freedom.changes
+    bead = dataclasses.replace(path.bead, external=points.external + shape @ rows[1:].T * freedom.unit)
+    points = gather([bead], task.cell)
+    why = refine.Refined(coefficients[None], np.zeros(1), (OPTIMISED,), (iterations,))
+    (found,) = judged(task, [bead], [(path.layer, path.index)], points, task.thresholds(points), coefficients[None], why)
+    return found
+
+
+def _climbed(freedom: Freedom, path: BeadPath) -> tuple[Freedom, Array, int]:
+    """Least objective with no less margin than the path, then the largest margin that gives back little of the gain."""
+    x = np.zeros((1 + freedom.external.axes) * freedom.shape.shape[1])
+    here = freedom.look(x)
+    if here is None:
+        return freedom, x, 0
+    sound = path.reachable and path.margin >= 0.0
+    wanted = min(max(path.margin, 0.0), ENOUGH) if sound else 0.0
+    x, count = least_objective(freedom, x, wanted + SPARE)
+    here = freedom.look(x)
+    if here is None:
+        return freedom, x, count
+    most = here.objective + GIVEN_BACK * max(0.0, path.objective - here.objective) if sound else 2.0 * here.objective
+    x, more = largest_margin(freedom, x, most, ENOUGH)
+    return freedom, x, count + more

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cells that may make an infeasible job feasible: a positioner that stands elsewhere, or axes beside the robot where there
+are none."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry import frames
+from ...kinematics import external
+from ...kinematics.arrangement import of_setup
+from ...kinematics.machines import machine as machines
+from ...kinematics.machines.machine import Machine
+from ...parameters.cell import CellParameters
+from ...parameters.external import MORE, PART, ROBOT, WHERE, External, Pose, externals
+from ...toolpath import Toolpath
+
+Array = NDArray[np.float64]
+Cells = Iterator[tuple[str, CellParameters]]
+
+# of the arm's reach, how far the face is ahead of the shoulder, and, mm, higher than it is
+AHEAD = ((0.75, 0.0), (0.6, 0.0), (0.9, 0.0), (0.75, 300.0), (0.6, -300.0))
+TRACK, POSITIONER = "kuka-kl100-2", "motoman-motopos-d500"  # of those built in
+LONG = 0.6  # of the reach; along a part as long as that a track may help
+NOT_LEVEL, AUTO = "NOT_LEVEL", " and `cell.branch: auto`"
+
+
+def moved(settings: CellParameters, folders: Sequence[str]) -> Cells:
+    """The positioner, with all that carries the part, nearer to the robot, or farther off; nothing of a cell without one."""
+    named = externals(settings.external)
+    carriers = [k for k, one in enumerate(named) if one.carries == PART]
+    robot = machines.load(settings.machine, tuple(folders))
+    if not carriers or robot.arm is None:
+        return
+    last = named[carriers[-1]]
+    face = _face(external.load(last.machine, tuple(folders)), last.pose)
+    for place in _before(robot, face[:2], float(face[2])):
+        others = list(named)
+        for k in carriers:
+            x, y, z, a, b, c = named[k].pose
+            moved = np.round((x, y, z) + (place - face))
+            others[k] = dataclasses.replace(named[k], pose=(float(moved[0]), float(moved[1]), float(moved[2]), a, b, c))
+        told = " and ".join(f"`{WHERE}[{k}].pose: {_shown(others[k].pose)}`" for k in carriers)
+        yield told, dataclasses.replace(settings, external=_text(others))
+
+
+def added(settings: CellParameters, folders: Sequence[str], toolpath: Toolpath, codes: set[str]) -> Cells:
+    """A positioner under a part whose tool axes may not lean, a track along one that is long; nothing of a cell with
+    external axes, or a robot that holds the part."""
+    robot = machines.load(settings.machine, tuple(folders))
+    if externals(settings.external) or of_setup(settings.setup).carries_part or robot.arm is None:
+        return
+    platform = np.array(settings.deposition_point[:3])
+    if NOT_LEVEL in codes:
+        face = _face(external.load(POSITIONER), (0.0,) * 6)
+        for place in _before(robot, platform[:2], float(face[2]))[:3]:
+            x, y, _ = place - face
+            one = External(POSITIONER, (float(round(x)), float(round(y)), 0.0, 0.0, 0.0, 0.0), PART)
+            yield _told(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
+        return
+    points = np.concatenate([bead.points for _, _, bead in toolpath])
+    spans = np.ptp(points, axis=0)
+    longest = int(spans.argmax())
+    if spans[longest] < LONG * robot.arm.reach:
+        return
+    along = frames.bryant(settings.deposition_point)[:3, :3][:, longest]
+    turn = math.atan2(along[1], along[0]) if math.hypot(along[0], along[1]) > 0.5 else 0.5 * math.pi
+    track = external.load(TRACK)
+    height = float(track.chain.forward(np.zeros(1))[2, 3])
+    one = External(TRACK, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
+    yield _told(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
+
+
+def _face(mechanism: Machine, pose: Pose) -> Array:
+    """(3,) where its face is in the world at zero, mm."""
+    at = frames.bryant(pose) @ frames.inverse(mechanism.base) @ mechanism.chain.forward(np.zeros(mechanism.chain.axes))
+    return np.asarray(at[:3, 3])
+
+
+def _before(robot: Machine, towards: Array, height: float) -> list[Array]:
+    """Places (3,) before a robot, in the direction of a place (2,) and about as high as it is told, in the world."""
+    assert robot.arm is not None  # who asks has looked
+    shoulder, _ = robot.arm.shoulder
+    turn = math.atan2(towards[1], towards[0]) if math.hypot(*towards) > 1.0 else 0.0
+    out = np.array([math.cos(turn), math.sin(turn)])
+    return [np.array([*((shoulder + share * robot.arm.reach) * out), height + up]) for share, up in AHEAD]
+
+
+def _text(named: Sequence[External]) -> str:
+    return f"{MORE} ".join(map(str, named))
+
+
+def _told(one: External) -> str:
+    return f"`{WHERE}: [{{machine: {one.machine}, pose: {_shown(one.pose)}, carries: {one.carries}}}]`"
+
+
+def _shown(pose: Any) -> str:
+    values = (*pose[:3], *(math.degrees(angle) for angle in pose[3:]))
+    return f"[{', '.join(f'{value + 0.0:.10g}' for value in values)}]"

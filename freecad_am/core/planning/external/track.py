@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where the track stands that carries the robot.
+
+One law for the whole job: the track goes along with a share of the way that the deposit makes along it, so that the robot is
+never farther than half a window from where it stands best. So a place of the part has one place of the track, whatever was
+deposited before; its motion is as smooth as the beads are; and where all of the part is within the window, the track stands
+still. Windows and places are tried, the least motion first.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry import frames
+from ...kinematics.cell import Cell
+from ...toolpath import Bead
+from ..reserve import RESERVE
+
+Array = NDArray[np.float64]
+
+# shares of the arm's reach: the window, and how far the robot stands before or behind the deposit along the track
+WINDOWS = (0.6, 0.3, 0.0)
+BESIDE = (0.0, 0.4, -0.4)
+MOST = 3  # that are worth planning
+
+
+def placed(beads: Sequence[Bead], cell: Cell, served: Callable[[Sequence[Bead]], float]) -> Iterator[list[Bead]]:
+    """The beads with the values of the track at their points, in the ways worth planning, MOST of them, those with less
+    motion first; beads as they are where the robot stands. `served`: the share of beads looked at that the robot can do."""
+    external = cell.external
+    if external is None or external.slides is None:
+        yield list(beads)
+        return
+    ways = [_at_points(bead, cell) for bead in beads]
+    arm = cell.robot.arm
+    assert arm is not None  # resolve() refuses other machines
+    given, best, most = 0, list(beads), -1.0
+    for window in WINDOWS:
+        for beside in BESIDE:
+            moved = _along(beads, ways, cell, window * arm.reach, beside * arm.reach)
+            share = served(moved)
+            if share > most:
+                best, most = moved, share
+            if share == 1.0:
+                yield moved
+                given += 1
+            if given == MOST:
+                return
+    if not given:
+        yield best
+
+
+def _at_points(bead: Bead, cell: Cell) -> Array:
+    """(n,) mm, how far the points of a bead are along the track in the world."""
+    external = cell.external
+    assert external is not None and external.along is not None and bead.external is not None
+    at_zero = bead.external.copy()
+    at_zero[:, external.slides] = 0.0
+    world = external.base(at_zero) @ cell.robot.base
+    stands = cell.station @ frames.inverse(cell.mount)
+    point = bead.points @ stands[:3, :3].T + stands[:3, 3]
+    seen = np.einsum("nji,nj->ni", world[:, :3, :3], point - world[:, :3, 3])
+    return np.asarray(seen @ external.along)
+
+
+def _along(beads: Sequence[Bead], ways: Sequence[Array], cell: Cell, window: float, beside: float) -> list[Bead]:
+    """The beads with the robot at most half a window from `beside` the deposit along the track, all mm, as far as the track
+    goes."""
+    external = cell.external
+    assert external is not None and external.slides is not None
+    axis = cell.robot.chain.axes + external.slides
+    lower, upper = cell.limits.lower[axis] + RESERVE, cell.limits.upper[axis] - RESERVE
+    low, high = min(float(way.min()) for way in ways), max(float(way.max()) for way in ways)
+    whole = max(high - low, 1e-9)
+    share = min(max(0.0, 1.0 - window / whole), (upper - lower) / whole)
+    room = 0.5 * share * whole
+    middle = float(np.clip(0.5 * (low + high) - beside, lower + room, upper - room))
+    moved = []
+    for bead, way in zip(beads, ways, strict=True):
+        assert bead.external is not None
+        values = bead.external.copy()
+        values[:, external.slides] = middle + share * (way - 0.5 * (low + high))
+        moved.append(dataclasses.replace(bead, external=values))
+    return moved

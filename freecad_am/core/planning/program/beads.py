@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a program tells the welder or extruder about a bead: its schedule, and when the deposit is on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...issues import InputError
+from ...motion import AT_END, AT_START, MIDDLE, Roles
+from ...parameters.process import ProcessParameters
+from ...parameters.program import ProgramParameters
+from ...program import Block, Call, DepositOff, DepositOn, Moves, Schedule
+
+OUTPUT, ARC, CALL = "output", "arc", "call"
+
+
+def deposited(
+    runs: Sequence[tuple[Moves, int | None]], name: str, process: ProcessParameters, parameters: ProgramParameters
+) -> list[Block]:
+    """The blocks of a bead of the class `name` with runs of its moves and the schedule of each. InputError NO_SCHEDULE where
+    it has none and others have, or the arc instruction needs one; SCHEDULE for another one within the bead that is not told
+    by an output."""
+    own, by = process.for_class(name), parameters.schedule.by
+    moves, numbers = zip(*runs, strict=True)
+    if None in numbers and (process.scheduled or by == ARC):
+        raise InputError(
+            "NO_SCHEDULE", "process.schedule", f"beads of the class {name or 'of an earlier version'} have no schedule, "
+            f"{'which arc instructions name' if by == ARC else 'and would be laid by that of the bead before'}; give "
+            f"process.schedule, or one in process.classes.{name}",
+        )
+    if len(set(numbers)) > 1 and by != OUTPUT and not parameters.dry_run:
+        raise InputError(
+            "SCHEDULE", "program.schedule.by", "another schedule within a bead is told by an output alone: calls stop the "
+            "machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and "
+            "end out",
+        )
+    told = numbers[0] if by == ARC and not parameters.dry_run else None
+    on = DepositOn(own.lead_on, None if moves[0].wire is None else float(moves[0].wire[0]), told)
+    blocks: list[Block] = [*_ahead(numbers[0], parameters), on, moves[0]]
+    for run, number in runs[1:]:  # posts may stop between runs, so that there are no more of them than schedules
+        blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
+    return [*blocks, DepositOff(own.lead_off, told)]
+
+
+def parted(phase: Roles, own: ProcessParameters) -> list[tuple[slice, int | None]]:
+    """Stretches of the moves of a bead, by the phase (n,) of each, that have one schedule, and this. own: the process of the
+    bead's class."""
+    of_phase = {MIDDLE: own.schedule, AT_START: own.start.schedule, AT_END: own.end.schedule}
+    numbers = [own.schedule if of_phase[one] is None else of_phase[one] for one in phase.tolist()]
+    cuts = [0, *(k for k in range(1, len(numbers)) if numbers[k] != numbers[k - 1]), len(numbers)]
+    return [(slice(first, end), numbers[first]) for first, end in zip(cuts, cuts[1:])]
+
+
+def _ahead(schedule: int | None, parameters: ProgramParameters) -> list[Block]:
+    """What stands before a bead where its schedule is no part of the arc instruction."""
+    if schedule is None or parameters.dry_run or parameters.schedule.by == ARC:
+        return []
+    if parameters.schedule.by == CALL:
+        return [Call(f"{parameters.schedule.call}{schedule}", "program.schedule.call")]
+    return [Schedule(schedule)]

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Turns a motion into a program: controller values, deposit switching, what happens between layers."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import motion as motions
+from ...controller import Controller
+from ...geometry import frames
+from ...issues import InputError
+from ...kinematics.cell import Cell
+from ...kinematics.inverse import opw
+from ...motion import Motion
+from ...parameters.bead_classes import CLASSES
+from ...parameters.process import BetweenLayersParameters, ProcessParameters
+from ...parameters.program import ProgramParameters, StartParameters
+from ...program import (
+    APPROACH,
+    DEPOSIT,
+    FIRST_TIME,
+    JOINT_MOVE,
+    LINEAR,
+    LINEAR_MOVE,
+    RAPID,
+    RETRACT,
+    ROTARY,
+    TRAVEL,
+    Block,
+    Call,
+    LayerStart,
+    Moves,
+    NcOptions,
+    Program,
+    Six,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
+from ...toolpath import Toolpath
+from ..joint_path import BeadPath
+from .beads import deposited, parted
+from .remarks import frames_of, remarks_of, six_of
+
+# what the rows of a motion are for, by its numbers
+ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
+
+
+def build(
+    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, controller: Controller, name: str,
+    waits: Sequence[float] = (), returns: Collection[tuple[int, int]] = (),
+) -> Program:
+    """The program of a motion, for a controller that takes it.
+
+    returns: beads (layer, index) that return to a place, of `returning`; the torch waits above them until that has cooled.
+    waits: s that the machine stands before each layer (`Layer.wait`), none when left out; `between_layers.wait` counts
+    towards them. Before the first layer that is run there is nothing to wait for.
+
+    Raises InputError: START_AT for a start past the last bead, NO_SCHEDULE.
+    """
+    blocks = _Blocks(motion, cell, process, parameters, controller).of_all(waits, returns)
+    remarks = remarks_of(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
+    return replace(without_moves(cell, parameters, controller, name), blocks=blocks, remarks=remarks)
+
+
+def without_moves(cell: Cell, parameters: ProgramParameters, controller: Controller, name: str) -> Program:
+    """What a program tells of its cell before the first move."""
+    return Program(
+        name=name,
+        machine=cell.machine.title,
+        blocks=(),
+        endless=tuple(bool(e) for e in cell.limits.endless),
+        motion=parameters.motion,
+        setup=cell.setup,
+        max_points=parameters.max_points,
+        blend=parameters.blend,
+        user_frame=parameters.user_frame,
+        tool_frame=parameters.tool_frame,
+        deposit_output=parameters.deposit_output,
+        dry_run=parameters.dry_run,
+        max_speed=tuple(cell.machine.max_speed.tolist()),
+        pulses_per_degree=cell.machine.pulses_per_degree, speed_unit=cell.machine.speed_unit,
+        station=six_of(frames.inverse(cell.machine.base) @ frames_of(cell, parameters)[0]),
+        carried=six_of(frames_of(cell, parameters)[1]),
+        axis_names=tuple(_letter(name) for name in cell.machine.axes) if cell.arrangement.named_axes else (),
+        axis_kinds=tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding)
+        if cell.arrangement.named_axes else (),
+        nc=NcOptions(
+            parameters.nc.feed == "path", parameters.nc.compress, parameters.nc.smooth, parameters.nc.tolerance,
+            parameters.nc.deposit_on or "", parameters.nc.deposit_off or "", parameters.nc.switch_kinematics,
+            parameters.nc.wire_output, parameters.nc.wire_gain,
+        ),
+        external_kinds=external_kinds(cell),
+        unit=_unit(cell, parameters, controller),
+        first_external=parameters.axes.first,
+        schedule_output=parameters.schedule.output,
+    )
+
+
+def external_kinds(cell: Cell) -> tuple[str, ...]:
+    """'linear' or 'rotary' of each axis beside the robot."""
+    return tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding[cell.robot.chain.axes :])
+
+
+def _unit(cell: Cell, parameters: ProgramParameters, controller: Controller) -> str:
+    """What the controller calls the mechanism beside the robot. A track has no name unless one is given: it is always on."""
+    if cell.external is None:
+        return ""
+    return parameters.axes.unit or (controller.positioner if cell.external.turning else "")
+
+
+def returning(toolpath: Toolpath, paths: Sequence[BeadPath]) -> frozenset[tuple[int, int]]:
+    """The beads (layer, index) of a joint path that are the first ones where something was deposited before: of the layers
+    of a solid on a hub, or of whole layers."""
+    if any(path.bead.returns for path in paths):
+        return frozenset((path.layer, path.index) for path in paths if path.bead.returns)
+    if any(bead.kind for _, _, bead in toolpath):
+        return frozenset()
+    return frozenset((k, 0) for k, layer in enumerate(toolpath.layers) if k and not layer.first)
+
+
+def _letter(axis: str) -> str:
+    """How a controller writes an axis: X for mx, which keeps clear of the x of the part, A for a."""
+    return (axis[1:] if len(axis) == 2 and axis[0] == "m" else axis).upper()
+
+
+def on_table(cell: Cell, parameters: ProgramParameters) -> Six | None:
+    """Where the program's origin is on the table as a program tells it; None where it is known only with the toolpath."""
+    if cell.arrangement.redundant or not isinstance(parameters.origin, str):
+        return None
+    return six_of(frames_of(cell, parameters)[1])
+
+
+def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
+    """(n,) bool: the rows run when a job resumes at a bead; its retract from the bead before is left out."""
+    run = (motion.layer > start.layer) | (motion.layer == start.layer) & (motion.bead >= start.bead)
+    if not (run & motion.deposit).any() or not ((motion.layer == start.layer) & (motion.bead == start.bead)).any():
+        raise InputError(
+            "START_AT", "program.start_at",
+            f"there is no bead {start.bead} in a layer {start.layer}; the job has layers 0 to {motion.layer.max()}",
+        )
+    first = int(np.flatnonzero(run)[0])
+    ahead = np.arange(len(motion)) < first + int(motion.deposit[first:].argmax())
+    run[ahead & (motion.role == motions.RETRACT)] = False
+    return np.asarray(run, dtype=np.bool_)
+
+
+@dataclass(frozen=True)
+class _Blocks:
+    """Makes the blocks of a program from rows of its motion."""
+
+    motion: Motion
+    cell: Cell
+    process: ProcessParameters
+    parameters: ProgramParameters
+    controller: Controller
+
+    def of_all(self, waits: Sequence[float], returns: Collection[tuple[int, int]]) -> tuple[Block, ...]:
+        """The blocks of the rows that are run; waits and returns as of `build`."""
+        groups = _groups(self.motion, np.flatnonzero(rows_from(self.motion, self.parameters.start_at)))
+        blocks: list[Block] = []
+        layer: int | None = None
+        for number, rows in enumerate(groups):
+            first = int(rows[0])
+            if self.motion.deposit[first]:
+                blocks += self._bead(number, rows)
+                continue
+            here = int(self.motion.layer[first])
+            if layer is None:
+                blocks += [LayerStart(here), *self._approach(rows, returns, arriving=True)]
+            elif number == len(groups) - 1:
+                blocks.append(self._moves(rows, RAPID))
+            elif here == layer:
+                blocks += self._approach(rows, returns)
+            else:
+                retract = self.motion.role[rows] == motions.RETRACT
+                blocks += [self._moves(rows[retract], RAPID)] if retract.any() else []
+                blocks += _between(self.process.between_layers, waits[here] if len(waits) else 0.0)
+                blocks += [LayerStart(here), *self._approach(rows[~retract], returns)]
+            layer = here
+        return tuple(blocks)
+
+    def _bead(self, number: int, rows: NDArray[np.int64]) -> list[Block]:
+        """A bead, switched on and off, by the group of rows of that number."""
+        kind = _class_of(self.motion, int(rows[0]))
+        parts = parted(self.motion.phase[rows[1:]], self.process.for_class(kind))
+        runs = [(self._moves(rows[1:][part], DEPOSIT), number) for part, number in parts]
+        return deposited(runs, kind, self.process, self.parameters)
+
+    def _approach(
+        self, rows: NDArray[np.int64], returns: Collection[tuple[int, int]], arriving: bool = False
+    ) -> list[Block]:
+        """Rapids that lead to a bead; where it returns to a place the torch waits above it."""
+        cooling = self.process.cooling
+        place = int(self.motion.layer[rows[-1]]), int(self.motion.bead[rows[-1]])
+        if cooling.below is None or place not in returns:
+            return [self._moves(rows, RAPID, arriving)]
+        onto = self.motion.role[rows] == motions.APPROACH
+        if not onto.any():
+            onto[-1] = True
+        above = [self._moves(rows[~onto], RAPID, arriving)] if not onto.all() else []
+        down = self._moves(rows[onto], RAPID, arriving and not above)
+        return [*above, WaitBelow(cooling.input, cooling.zero + cooling.gain * cooling.below, *place), down]
+
+    def _moves(self, rows: NDArray[np.int64], kind: str, arriving: bool = False) -> Moves:
+        """A run of rows; arriving: the first one comes from where the machine happens to stand."""
+        motion, cell, parameters = self.motion, self.cell, self.parameters
+        duration = motion.duration[rows].copy()
+        if arriving:
+            duration[0] = FIRST_TIME
+        position = rotation = direction = flange = None
+        configuration = None
+        if self.controller.flange and cell.arrangement.holds_part:
+            flange = frames.inverse(cell.machine.base) @ cell.machine.chain.forward(motion.joints[rows])
+        if parameters.motion == "cartesian":
+            station, carried = frames_of(cell, parameters)
+            tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
+            seen = frames.inverse(tip) @ station if cell.torch_stands else frames.inverse(station) @ tip
+            position, arm = seen[:, :3, 3], cell.machine.arm
+            if arm is None:
+                direction = seen[:, :3, 2]
+            else:
+                rotation, own = seen[:, :3, :3], motion.joints[rows, : cell.robot.chain.axes]
+                configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(own))
+        wire = motion.wire[rows]
+        told = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
+        return Moves(
+            kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
+            joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
+            position=position, rotation=rotation, configuration=configuration, direction=direction,
+            wire=wire if told else None, flange=flange,
+            interpolation=LINEAR_MOVE if kind == DEPOSIT and parameters.motion == "cartesian" else JOINT_MOVE,
+            stops=motion.stops[rows], role=_roles(motion.role[rows]),
+        )
+
+
+def _class_of(motion: Motion, row: int) -> str:
+    number = int(motion.bead_class[row])
+    return "" if number == motions.UNKNOWN else CLASSES[number]
+
+
+def _groups(motion: Motion, rows: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """Rows in runs of the same kind, layer and bead."""
+    new = (
+        (np.diff(motion.deposit[rows].astype(int)) != 0)
+        | (np.diff(motion.layer[rows]) != 0)
+        | (np.diff(motion.bead[rows]) != 0)
+    )
+    return np.split(rows, np.flatnonzero(new) + 1)
+
+
+def _between(between: BetweenLayersParameters, cooling: float) -> list[Block]:
+    blocks: list[Block] = []
+    wait = max(between.wait, cooling)
+    if wait > 0.0:
+        blocks.append(Wait(wait))
+    if between.input is not None:
+        blocks.append(WaitInput(between.input))
+    if between.call is not None:
+        blocks.append(Call(between.call))
+    return blocks
+
+
+def _roles(role: NDArray[np.int64]) -> tuple[str, ...]:
+    """The words (n,) of roles; those of a bead are alike."""
+    if (role == role[0]).all():
+        return (ROLES[int(role[0])],) * len(role)
+    return tuple(ROLES[one] for one in role.tolist())

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Looks whether the nozzle stays clear of deposit, platform and bodies on the rapid moves between beads.
+
+While depositing, clearance is settled before the joints are planned. A rapid runs straight in the joints, so where the
+nozzle goes is known only now: retract, travel and approach alike are driven through in small steps, against everything
+deposited by then, and against the triangles of the bodies around the part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.bead_ends import BeadEnds, Beads, Size
+from ...collision.bodies import Bodies
+from ...collision.nozzle import Nozzle
+from ...collision.scene import scene
+from ...geometry.surroundings import Body, disc
+from ...kinematics.cell import Cell
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+# largest turn of an axis between two looks, rad, and way of one that slides, mm
+STEP = np.radians(5.0)
+SLIDE = 5.0
+# largest way of a point of the nozzle between two looks, mm: first with a nozzle as much thicker, then, where that meets
+# anything, with the nozzle itself
+COARSE = 5.0
+FINE = 0.5
+# moves driven at once, so that large jobs need no more memory than small ones
+MOVES = 4096
+
+
+class Moves(NamedTuple):
+    """Rapid moves: joints (k, axes) they start and end at, and how many deposit rows (k,) are there by then: the last of
+    these is where the bead before ends, the one after it where the next starts."""
+
+    start: Array
+    end: Array
+    laid: Index
+
+    def of(self, rows: Index) -> Moves:
+        """Those of the rows."""
+        return Moves(self.start[rows], self.end[rows], self.laid[rows])
+
+
+class Looks(NamedTuple):
+    """Where the nozzle is looked at: tip and tool axis (l, 3) in part coordinates, the move (l,) and the share of it."""
+
+    tip: Array
+    axis: Array
+    move: Index
+    share: Array
+
+
+class Surroundings:
+    """What is in the way of rapids: beads of their width and height, with the row from which they are there, platform and
+    bodies."""
+
+    def __init__(self, cell: Cell, deposit: Beads, bodies: Sequence[Body]) -> None:
+        self.cell = cell
+        platform = [disc(cell.platform_diameter, cell.mount, "the platform")] if cell.platform_diameter > 0.0 else []
+        self.bodies = (*bodies, *platform, *cell.in_part())
+        self.laid = deposit.solid()
+        nozzle = cell.nozzle
+        self._size = Size(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length)
+        self._ends = BeadEnds(deposit, self.laid, self._size)
+        self._box = np.array([[np.inf] * 3, [-np.inf] * 3])
+        self._bodies = scene((), deposit.points, 0.0).bodies
+
+    def met(self, moves: Moves) -> Mask:
+        """(k,) whether the nozzle meets anything on each of the moves; not on those whose joints are NaN."""
+        met = np.zeros(len(moves.start), dtype=bool)
+        known = np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1))
+        for first in range(0, len(known), MOVES):
+            rows = known[first : first + MOVES]
+            met[rows] = self._met(moves.of(rows))
+        return met
+
+    def names(self, moves: Moves) -> list[str]:
+        """What is met on any of the moves but those whose joints are NaN: deposit, bodies by their names, the platform."""
+        moves = moves.of(np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1)))
+        if not len(moves.start):
+            return []
+        looks = _driven(self.cell, moves, FINE)
+        nozzle = self._nozzle(moves, looks)
+        found = ["the deposit"] if self._deposit_touched(nozzle, looks, moves).any() else []
+        near = [(body.name, scene((body,), looks.tip, nozzle.reach).bodies) for body in self.bodies]
+        return found + [name for name, one in near if one.touched(nozzle.bodies, looks.tip, looks.axis).any()]
+
+    def _met(self, moves: Moves) -> Mask:
+        looks = _driven(self.cell, moves, COARSE)
+        near = self._touched(_thicker(self._nozzle(moves, looks), 0.5 * COARSE), looks, moves)
+        before = np.flatnonzero((looks.move[1:] == looks.move[:-1]) & (near[1:] | near[:-1]))
+        parts = int(np.ceil(COARSE / FINE))
+        step = np.linspace(0.0, 1.0, parts + 1)
+        share = looks.share[before, None] + step * (looks.share[before + 1] - looks.share[before])[:, None]
+        close = _looks(self.cell, moves, np.repeat(looks.move[before], parts + 1), share.ravel())
+        touched = self._touched(self._nozzle(moves, close), close, moves)
+        return np.bincount(close.move, touched, minlength=len(moves.start)) > 0
+
+    def _touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
+        found = self._deposit_touched(nozzle, looks, moves)
+        rows = np.flatnonzero(~found)
+        if len(rows):
+            tip = looks.tip[rows]
+            found[rows] = self._around(tip).touched(nozzle.bodies.rows(rows), tip, looks.axis[rows])
+        return found
+
+    def _deposit_touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
+        found: Mask = self.laid.touched(nozzle.deposit, looks.tip, looks.axis, moves.laid[looks.move])
+        return found
+
+    def _around(self, tip: Array) -> Bodies:
+        """The bodies that nozzles at the tips (k, 3) may meet. Trees of bodies take long and are kept for the next moves."""
+        low, high = tip.min(axis=0), tip.max(axis=0)
+        if (low < self._box[0]).any() or (high > self._box[1]).any():
+            # larger at once by half where it is too small, so that it seldom is again
+            known = np.isfinite(self._box).all()
+            more = 0.5 * (high - low) if known else np.zeros(3)
+            least, most = self._box
+            self._box = np.array([np.where(low < least, low - more, least), np.where(high > most, high + more, most)])
+            radius, slope, length = self._size
+            reach = float(np.hypot(length, radius + slope * length))
+            self._bodies = scene(self.bodies, self._box, reach).bodies
+        return self._bodies
+
+    def _nozzle(self, moves: Moves, looks: Looks) -> Nozzle:
+        """The nozzle at each look, less what touches rightly near the ends of beads."""
+        return self._ends.nozzle(looks.tip, moves.laid[looks.move])
+
+
+def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
+    """Looks along all moves, between which no point of the nozzle goes farther than the largest way, mm."""
+    chain = cell.machine.chain
+    steps = np.where(chain.sliding, SLIDE, STEP)
+    count = 1 + np.ceil((np.abs(moves.end - moves.start) / steps).max(axis=1)).astype(np.intp)
+    looks = _evenly(cell, moves, count)
+    # an arm's tip goes far while its axes hardly turn
+    same = looks.move[1:] == looks.move[:-1]
+    way = np.linalg.norm(np.diff(looks.tip, axis=0), axis=1) + cell.nozzle.length * np.linalg.norm(
+        np.diff(looks.axis, axis=0), axis=1)
+    longest = np.zeros(len(count))
+    np.maximum.at(longest, looks.move[1:][same], way[same])
+    more = count * np.maximum(np.ceil(longest / largest).astype(np.intp), 1)
+    return looks if (more == count).all() else _evenly(cell, moves, more)
+
+
+def _evenly(cell: Cell, moves: Moves, count: Index) -> Looks:
+    """One look more along each move than the count (k,)."""
+    return _looks(cell, moves, *evenly(count))
+
+
+def evenly(count: Index) -> tuple[Index, Array]:
+    """The move (l,), and the share of it, of one look more along each move than the count (k,), both ends among them."""
+    move = np.repeat(np.arange(len(count)), count + 1)
+    step = np.arange(len(move)) - np.repeat(np.cumsum(count + 1) - count - 1, count + 1)
+    return move, step / count[move]
+
+
+def _looks(cell: Cell, moves: Moves, move: Index, share: Array) -> Looks:
+    joints = moves.start[move] + share[:, None] * (moves.end - moves.start)[move]
+    tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
+    return Looks(tip, axis, move, share)
+
+
+def _thicker(nozzle: Nozzle, more: float) -> Nozzle:
+    """A nozzle that holds all that is no farther than so many mm from the nozzle."""
+    return Nozzle(*(
+        replace(solid, radius=solid.radius + more * np.hypot(1.0, solid.slope), low=solid.low - more, high=solid.high + more)
+        for solid in (nozzle.bodies, nozzle.deposit)
+    ))
+

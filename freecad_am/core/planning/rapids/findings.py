@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is wrong with the rapid ways of a job, and where others than asked for were taken."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...issues import ERROR, NOTE, Issue
+from ...kinematics.cell import Cell
+from ..joint_path import BeadPath
+from .retract_ways import ASKED, LIMIT, SINGULAR, Failure, Leg
+from .ways import RapidWays
+
+
+def findings(ways: RapidWays) -> tuple[Issue, ...]:
+    """An error for each bead that cannot be come to or left, and notes about what was taken in place of what was asked."""
+    met: list[Issue] = []
+    for k in ways.met:
+        names, arm = ways.told(k), ways.arm_issue(k)
+        if names or arm is None:
+            met.append(_collision(names, ways.place(k).layer, ways.place(k).index))
+        if arm is not None:
+            met.append(arm)
+    return (*met, *_failures(ways), *_lifted(ways), *_others(ways))
+
+
+def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
+    """About a bead on the rapid way to which the nozzle would meet what the names tell."""
+    return Issue(
+        ERROR, "RAPID_COLLISION",
+        f"on its way from the bead before the nozzle would meet {', '.join(names)} at every retract distance and direction "
+        "tried; move the seam or the part, or take a more slender nozzle", layer, bead,
+    )
+
+
+def _failures(ways: RapidWays) -> list[Issue]:
+    """One issue for each bead, for its first reason."""
+    found: dict[tuple[int, int], Issue] = {}
+    told = [(ways.beads[end // 2], failure) for end, failure in sorted(ways.failures.items())]
+    told += [
+        (ways.place(k), Failure(SINGULAR, 0, way.singular, ways.retracts.floor))
+        for k, way in enumerate(ways.ways) if way.singular is not None and ways.retracts.sound[ways.ends(k)].all()
+    ]
+    for path, failure in told:
+        found.setdefault((path.layer, path.index), _failed(failure, path, ways.cell))
+    return list(found.values())
+
+
+def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
+    limits, machine = cell.limits, cell.machine
+    if failure.kind == LIMIT:
+        # what couples axes couples turning ones
+        alone = failure.label < limits.axes
+        unit, per = (machine.units[failure.label], float(machine.unit_values[failure.label])) if alone else (
+            "deg", float(machine.unit_values[-1]))
+        text = (
+            f"{limits.labels[failure.label]} would be at {failure.value / per:.2f} {unit} on the retract before or after "
+            f"the bead, its limit is {failure.bound / per:g} {unit}, and no other height, direction or rotation keeps "
+            "within limits; lower process.between_layers.lift or move the part in the cell"
+        )
+    elif failure.kind == SINGULAR:
+        text = (
+            f"condition {failure.value:.4f} on a rapid move before or after the bead is below the {failure.bound:g} "
+            "allowed, and no other height, direction or rotation is farther from a singularity; lower "
+            "joints.min_condition or move the part in the cell"
+        )
+    else:
+        text = ("the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower "
+                "process.between_layers.lift or move the part in the cell")
+    return Issue(ERROR, f"RAPID_{failure.kind}", text, path.layer, path.index)
+
+
+def _lifted(ways: RapidWays) -> list[Issue]:
+    """Notes about other ways taken because something was met."""
+    raised, aside, highest = [], [], 0.0
+    for k in sorted(ways.lifted):
+        legs = [leg for end in ways.ends(k) if (leg := ways.legs[end]) is not None]
+        height = max((leg.height for leg in legs), default=0.0)
+        if height > ways.lift:
+            raised.append(ways.place(k).layer)
+            highest = max(highest, height)
+        if any(leg.choice != ASKED for leg in legs):
+            aside.append(ways.place(k).layer)
+    notes = []
+    if raised:
+        notes.append(Issue(
+            NOTE, "RAPID_LIFTED", f"before {len(raised)} beads the tool is withdrawn by up to {highest:.3g} mm instead of "
+            f"{ways.lift:g} mm to pass clear", raised[0]))
+    if aside:
+        notes.append(Issue(
+            NOTE, "RAPID_ASIDE", f"before {len(aside)} beads the tool is retracted in another direction than along its "
+            "axis, or turned on the way, to pass clear", aside[0]))
+    return notes
+
+
+def _others(ways: RapidWays) -> list[Issue]:
+    """A note about other ways taken because the machine cannot go those asked for."""
+    cleared = {end for k in ways.lifted for end in ways.ends(k)}
+    other: list[tuple[int, Leg]] = [
+        (end, leg) for end, leg in ways.legs.items() if leg is not None and leg.choice != ASKED and end not in cleared
+    ]
+    if not other:
+        return []
+    heights = [leg.height for _, leg in other]
+    leaning = sum(leg.choice.direction != ASKED.direction for _, leg in other)
+    turning = sum((leg.choice.turn, leg.choice.lean) != (ASKED.turn, ASKED.lean) for _, leg in other)
+    return [Issue(
+        NOTE, "RAPID_OTHER", f"at {len(other)} ends of beads the retract of {ways.lift:g} mm would leave limits, reach or "
+        f"condition; it is {min(heights):.3g} to {max(heights):.3g} mm there, {leaning} times in another direction than "
+        f"along the tool axis and {turning} times with the tool turned", ways.beads[other[0][0] // 2].layer,
+    )]

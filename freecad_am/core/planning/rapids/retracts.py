@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Ways off the ends of beads that the machine can go: within its limits and reach, and clear of singularities.
+
+A retract leads straight from the end of a bead to the retract distance along the tool axis, an approach the same way
+back. The machine runs straight in its joints, so where that would leave the line by more than a tolerance there are rows
+between. Where the way asked for is beyond what the machine can do, others are tried in an order that never changes: other
+heights, other directions, other rotations about the tool axis and other tool axes at the far end.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...kinematics import jacobian as jac
+from ...kinematics.cell import Cell
+from ...kinematics.inverse import opw
+from ...kinematics.inverse.five_axis import FiveAxis
+from ...parameters.joints import JointParameters
+from ..reserve import RESERVE
+from ..task import CONDITION_FLOOR
+from ..turns import configurations as following
+from .retract_ways import (
+    ASKED,
+    LEANS_RAD,
+    LIMIT,
+    SIDES,
+    SINGULAR,
+    UNREACHABLE,
+    Choice,
+    Ends,
+    Failure,
+    Leg,
+    Ways,
+    groups,
+)
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+TURN = 2.0 * np.pi
+# how far the tip may stray from the straight way, mm: a twentieth of what is usual beside a wall
+STRAY_MM = 0.5
+# the most moves that a way is cut into, and the largest turn about the tool axis in one of them, rad
+MOST_MOVES = 64
+MOVE_TURN_RAD = math.radians(60.0)
+BETWEEN = np.array([0.25, 0.5, 0.75])
+# what a program's last digit may take away, rad: free beside the limits on the way asked for, all others keep RESERVE
+LAST_DIGIT_RAD = math.radians(0.001)
+ROUNDING_RAD = 1e-9
+# a direction must lead away from the bead: least cosine of its angle to the tool axis
+AWAY = 0.2
+SAME_DIRECTION = 1e-6
+
+
+@dataclass(frozen=True)
+class Retracts:
+    """Finds ways off the ends of beads. branch: of the robot, None for a machine with five axes."""
+
+    cell: Cell
+    ends: Ends
+    branch: int | None
+    parameters: JointParameters
+
+    @cached_property
+    def directions(self) -> Array:
+        """(10, n, 3) where ways may lead: along tool axis, build direction, platform's normal, halfway between two of them,
+        and from the tool axis to four sides; NaN where that leads back to the bead or is one of those before."""
+        tool, build = self.ends.tool, self.ends.build
+        normal = np.broadcast_to(self.cell.mount[:3, 2], tool.shape)
+        sides = (tool + self._sides(2.0 * np.pi * k / 4) for k in range(4))
+        ways: Array = np.stack([tool, tool + build, build, tool + normal, normal, build + normal, *sides])
+        size = np.linalg.norm(ways, axis=2, keepdims=True)
+        ways[1:] = np.where(size > SAME_DIRECTION, ways / np.maximum(size, SAME_DIRECTION), np.nan)[1:]
+        for k in range(1, len(ways)):
+            apart = np.linalg.norm(ways[:k] - ways[k], axis=2)
+            useless = np.nanmin(apart, axis=0) < SAME_DIRECTION
+            ways[k, useless | ~((ways[k] * tool).sum(axis=1) > AWAY)] = np.nan
+        return ways
+
+    def _sides(self, angle: float) -> Array:
+        """(n, 3) unit vectors across the tool axes, at an angle (rad) about them from one that the platform gives."""
+        tool = self.ends.tool
+        x, y = self.cell.mount[:3, 0], self.cell.mount[:3, 1]
+        # where two choices are as good, rounding must not choose
+        one = np.cross(tool, np.where((np.abs(tool @ x) < 0.8)[:, None], x, y))
+        one /= np.linalg.norm(one, axis=1, keepdims=True)
+        side: Array = math.cos(angle) * one + math.sin(angle) * np.cross(tool, one)
+        return side
+
+    @cached_property
+    def leaning(self) -> Array:
+        """(1 + leans, n, 3) what is added to the tool axes at the far end."""
+        sides = [self._sides(2.0 * np.pi * k / SIDES) for k in range(SIDES)]
+        return np.stack([0.0 * sides[0], *(math.tan(angle) * side for angle in LEANS_RAD[1:] for side in sides)])
+
+    @cached_property
+    def sound(self) -> Mask:
+        """(n,) whether the end itself is reached within limits; where it is not, the bead has an issue of its own."""
+        known = np.flatnonzero(np.isfinite(self.ends.joints).all(axis=1))
+        sound = np.zeros(len(self.ends.phi), dtype=bool)
+        sound[known] = (self.cell.limits.margin(self.ends.joints[known]) >= -ROUNDING_RAD).all(axis=1)
+        return sound
+
+    @cached_property
+    def floor(self) -> float:
+        """The least condition of a way's rows."""
+        wanted = self.parameters.min_condition
+        return CONDITION_FLOOR if isinstance(wanted, str) else float(wanted)
+
+    def found(
+        self, some: Index, height: Array, direction: int = 0, tolerance: float = STRAY_MM, thorough: bool = True
+    ) -> tuple[list[Leg | None], list[Failure | None]]:
+        """The ways off the ends `some` (k,) by the heights (k,) mm along a direction, or what comes nearest to that; and
+        where there is none at all, None and why the one asked for is none. Not `thorough`: by other rotations alone."""
+        legs: list[Leg | None] = [None] * len(some)
+        failures: list[Failure | None] = [None] * len(some)
+        # the way asked for is left as it is wherever it can be gone
+        asked = True
+        for reserve in (RESERVE, LAST_DIGIT_RAD) if thorough else (RESERVE,):
+            for group in groups(direction, thorough):
+                rows = np.array([k for k, leg in enumerate(legs) if leg is None], dtype=np.intp)
+                if not len(rows):
+                    return legs, failures
+                kept = self._kept(LAST_DIGIT_RAD if asked else reserve)
+                for k, leg in zip(rows.tolist(), self._first(some[rows], height[rows], group, tolerance, kept)):
+                    legs[k] = leg
+                if asked:
+                    lost = [k for k in rows.tolist() if legs[k] is None]
+                    for k, why in zip(lost, self._why(some[lost], height[lost], direction, kept)):
+                        failures[k] = why
+                asked = False
+        return legs, failures
+
+    def asked(self, some: Index, height: Array) -> list[Leg]:
+        """The ways asked for, whether the machine can go them or not; NaN where they cannot be reached."""
+        joints, position = self._courses(self._ways(some, height, (ASKED,)), 1)
+        return [Leg(joints[k], position[k], float(height[k]), ASKED) for k in range(len(some))]
+
+    def _first(
+        self, some: Index, height: Array, group: Sequence[Choice], tolerance: float, kept: Array
+    ) -> list[Leg | None]:
+        """The first way of the group that fits, of each end."""
+        count = len(group)
+        ways = self._ways(some, height, group)
+        legs: list[Leg | None] = [None] * len(some)
+        best = np.full(len(some), count)
+        left = np.flatnonzero(self._possible(ways))
+        moves = 1
+        while len(left) and moves <= MOST_MOVES:
+            # no more is looked at of a way than it takes to see that it is none, and of none after one that is found
+            ready = left[(np.abs(ways.turn[left]) <= MOVE_TURN_RAD * moves)]
+            left = left[np.abs(ways.turn[left]) > MOVE_TURN_RAD * moves]
+            joints, position = self._courses(ways.of(ready), moves)
+            able = np.flatnonzero(self._fits(joints[:, -1:], kept))
+            stray = self._stray(ways.of(ready[able]), joints[able]) > tolerance
+            left = np.union1d(left, ready[able[stray]])
+            able = able[~stray]
+            for k in able[self._fits(joints[able], kept)].tolist():
+                number, choice = divmod(int(ready[k]), count)
+                if choice < best[number]:
+                    best[number] = choice
+                    legs[number] = Leg(joints[k], position[k], float(ways.height[ready[k]]), group[choice])
+            left = left[left % count < best[left // count]]
+            moves *= 2
+        return legs
+
+    def _ways(self, some: Index, height: Array, group: Sequence[Choice]) -> Ways:
+        """All ways of a group of all ends, those of an end together."""
+        count = len(group)
+        end = np.repeat(some, count)
+        column = {name: np.tile([getattr(choice, name) for choice in group], len(some)) for name in Choice._fields}
+        return Ways(
+            end, np.repeat(height, count) * column["share"], self.directions[column["direction"], end], column["turn"],
+            self.leaning[column["lean"], end],
+        )
+
+    def _possible(self, ways: Ways) -> Mask:
+        """Which ways lead away, and turn no further than the rotation about the tool axis may; five axes leave no turn."""
+        turned = (ways.turn != 0.0) | (ways.lean != 0.0).any(axis=1)
+        possible: Mask = np.isfinite(ways.direction).all(axis=1)
+        if self.branch is None:
+            return np.asarray(possible & ~turned)
+        low, high = self.parameters.rotation_range
+        if high - low >= TURN - 1e-9:
+            return possible
+        phi = self.ends.phi[ways.end] + ways.turn
+        return np.asarray(possible & (~turned | (phi >= low) & (phi <= high)))
+
+    def _courses(self, ways: Ways, moves: int) -> tuple[Array, Array]:
+        """Joints (k, moves, axes) at the ends of so many equal moves, each in the turns of the one before, and the tip there
+        (k, moves, 3); joints NaN where the machine does not reach."""
+        share = np.arange(1, moves + 1) / moves
+        point, tool, joints = (column[ways.end] for column in (self.ends.point, self.ends.tool, self.ends.joints))
+        tip = point[:, None] + (share[:, None] * ways.height[:, None, None]) * ways.direction[:, None]
+        tools = np.repeat(tool, moves, axis=0)
+        lean = (share[:, None] * ways.lean[:, None]).reshape(-1, 3)
+        leans = (lean != 0.0).any(axis=1)
+        tools[leans] += lean[leans]
+        tools[leans] /= np.linalg.norm(tools[leans], axis=1, keepdims=True)
+        shape = (len(point), moves, joints.shape[1])
+        if self.branch is None:
+            five = FiveAxis(self.cell.machine.chain)
+            above, _ = self.cell.on_flange(tip.reshape(-1, 3), tools)
+            return five.placed(np.repeat(joints[:, list(five.turning)], moves, axis=0), above, self.cell.station).reshape(
+                shape), tip
+        arm, own = self.cell.robot.arm, self.cell.robot.chain.axes
+        assert arm is not None
+        phi = self.ends.phi[ways.end, None] + share * ways.turn[:, None]
+        # external axes stand still on these ways
+        held = np.repeat(joints[:, None], moves, axis=1)
+        flange = self.cell.flange_poses(tip.reshape(-1, 3), tools, phi.ravel(), held.reshape(-1, shape[2]))
+        if arm.followed:
+            raw = following.step_by_step(arm, flange.reshape(*shape[:2], 4, 4), self.branch, joints[:, :own])
+        else:
+            raw = arm.inverse_branch(flange, self.branch).reshape(*shape[:2], own)
+        raw = np.concatenate([raw, held[..., own:]], axis=2)
+        before = np.concatenate([joints[:, None], raw[:, :-1]], axis=1)
+        return raw + TURN * np.cumsum(np.round((before - raw) / TURN), axis=1), tip
+
+    def _stray(self, ways: Ways, joints: Array) -> Array:
+        """How far (k,) mm the tip leaves the straight way while the machine runs straight in its joints."""
+        whole = np.concatenate([self.ends.joints[ways.end, None], joints], axis=1)
+        between = whole[:, :-1, None] + BETWEEN[:, None] * np.diff(whole, axis=1)[:, :, None]
+        chain = self.cell.machine.chain
+        tip, _ = self.cell.tip_in_part(chain.forward(between.reshape(-1, chain.axes)))
+        offset = tip.reshape(len(whole), joints.shape[1] * len(BETWEEN), 3) - self.ends.point[ways.end, None]
+        along = np.clip((offset * ways.direction[:, None]).sum(axis=2), 0.0, ways.height[:, None])
+        away: Array = np.linalg.norm(offset - along[..., None] * ways.direction[:, None], axis=2).max(axis=1, initial=0.0)
+        return away
+
+    def _fits(self, joints: Array, kept: Array) -> Mask:
+        """Whether all rows of the ways (k, m, axes) are reached, keep this much free beside every limit, and are not below
+        the least condition."""
+        with np.errstate(invalid="ignore"):
+            fits: Mask = (self.cell.limits.margin(joints) >= kept - ROUNDING_RAD).all(axis=(1, 2))
+        some = np.flatnonzero(fits)
+        if self.branch is not None and len(some):
+            fits[some] = (self.condition(joints[some].reshape(-1, joints.shape[2])) >= self.floor).reshape(
+                len(some), joints.shape[1]).all(axis=1)
+        return fits
+
+    def condition(self, joints: Array) -> Array:
+        """(n,) the robot's condition at joints (n, axes), as of deposit rows."""
+        chain = self.cell.robot.chain
+        joints = joints[:, : chain.axes]
+        point = self.cell.deposition_point(chain.forward(joints))
+        value = jac.condition(jac.jacobian(chain, joints, point), self.parameters.characteristic_length)
+        return np.round(value, 12)
+
+    @cached_property
+    def _least(self) -> Array:
+        """(axes + m,) RESERVE, which no way of a sliding axis goes below: text has as many digits of a mm as of a degree."""
+        limits = self.cell.limits
+        sliding = np.concatenate([self.cell.machine.chain.sliding, np.zeros(len(limits.coupled_lower), dtype=bool)])
+        return np.where(sliding, RESERVE, 0.0)
+
+    def _kept(self, reserve: float) -> Array:
+        return np.maximum(self._least, reserve)
+
+    def _why(self, some: Index, height: Array, direction: int, kept: Array) -> list[Failure]:
+        """What is wrong with the ways asked for."""
+        found = []
+        joints = self._courses(self._ways(some, height, (Choice(1.0, direction),)), 1)[0][:, 0]
+        limits = self.cell.limits
+        for row in joints:
+            if not np.isfinite(row).all():
+                found.append(Failure(UNREACHABLE))
+                continue
+            margin = limits.margin(row) - kept
+            worst = int(margin.argmin())
+            if margin[worst] >= 0.0:
+                value = float(self.condition(row[None])[0]) if self.branch is not None else 1.0
+                # the way there may be what is wrong, not its end
+                found.append(Failure(SINGULAR, 0, value, self.floor) if value < self.floor else Failure(UNREACHABLE))
+                continue
+            values = np.concatenate([row, limits.coefficients @ row])
+            lower, upper = (np.concatenate(both) for both in (
+                (limits.lower, limits.coupled_lower), (limits.upper, limits.coupled_upper)))
+            low = values[worst] - lower[worst] < upper[worst] - values[worst]
+            found.append(Failure(LIMIT, worst, float(values[worst]), float((lower if low else upper)[worst])))
+        return found
+
+
+def branch_of(words: Sequence[str]) -> int | None:
+    """The index of a joint path's branch; None of a machine with five axes."""
+    return opw.branch_index(words) if words else None

@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The rapid ways between beads: away from one, over to the next, onto it. The machine can go them, and nothing is met."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.bead_ends import Beads
+from ...geometry.surroundings import Body
+from ...issues import Issue
+from ...kinematics.cell import Cell
+from ...motion import APPROACH, RETRACT, TRAVEL
+from ...parameters.joints import JointParameters
+from ..arm.kept import Rods, clearance_issue, contact_of, on_moves
+from ..joint_path import BeadPath, JointPath
+from .clearance import Moves, Surroundings
+from .retract_ways import DIRECTIONS, Ends, Failure, Leg
+from .retracts import STRAY_MM, Retracts, branch_of
+
+Array = NDArray[np.float64]
+
+# largest turn of an endless axis in one rapid move, rad: such an axis takes the shorter way, so half a turn is in doubt
+LARGEST_TURN = np.radians(170.0)
+# how many moves more than it takes such a turn is tried in, where a place between is near a singularity
+MORE_MOVES = 3
+# how many times the retract distance is tried where the nozzle would meet something, and further, beyond everything there is
+HIGHER = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+FURTHER = 1.5
+# of a retract distance of nothing, mm
+FIRST_LIFT = 2.0
+# how near to the straight line a retract is held that meets something on its way, mm
+FINE_MM = 0.02
+# retract distances in directions other than the tool axis, as shares of the one asked for
+ASIDE = (1.0, 4.0)
+
+
+@dataclass(frozen=True)
+class Way:
+    """The rapid rows to a bead, or after the last one: joints (m, axes) and roles (m,). start: (axes,) where the first of
+    them comes from, None before the first bead."""
+
+    start: Array | None
+    joints: Array
+    role: NDArray[np.int64]
+    singular: float | None = None  # the condition of a row between, where it is below the floor
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """Height (mm) and direction of a retract, and how near (mm) it is held to the line."""
+
+    height: float
+    direction: int = 0
+    tolerance: float = STRAY_MM
+
+
+class RapidWays:
+    """Ways for all beads of a joint path; way k leads to bead k, the last one away from the last bead."""
+
+    def __init__(
+        self, joint_path: JointPath, cell: Cell, lift: float, bodies: Sequence[Body], parameters: JointParameters,
+        width: float = 0.0, height: float = 0.0, rods: Rods = (),
+    ) -> None:
+        """width, height: mm, of beads that do not tell theirs."""
+        self.beads, self.cell, self.lift = joint_path.beads, cell, lift
+        self.retracts = Retracts(cell, Ends.of(self.beads), branch_of(joint_path.branch), parameters)
+        # by number of the end of a bead, as `Ends` counts them
+        self.legs: dict[int, Leg | None] = dict.fromkeys(range(2 * len(self.beads)))
+        self.failures: dict[int, Failure] = {}
+        if lift > 0.0:
+            self._ask()
+        self.ways = [self._way(k, self.legs) for k in range(len(self.beads) + 1)]
+        self.rows = np.concatenate([[0], np.cumsum([len(path.bead) for path in self.beads])])
+        beads = [path.bead for path in self.beads]
+        self.surroundings = Surroundings(cell, Beads.of(beads, width, height), bodies)
+        self.arm = contact_of(beads, cell, rods, bodies, width, height)
+        self.lifted: list[int] = []
+        self.met = self._clear(self._attempts(bodies))
+
+    def _ask(self) -> None:
+        """The legs as asked for, or what comes nearest where the machine cannot go them."""
+        sound = np.flatnonzero(self.retracts.sound)
+        legs, failures = self.retracts.found(sound, np.full(len(sound), self.lift))
+        for end, leg, failure in zip(sound.tolist(), legs, failures):
+            self.legs[end] = leg
+            if leg is None and failure is not None:
+                self.failures[end] = failure
+        lost = np.array([end for end, leg in self.legs.items() if leg is None], dtype=np.intp)
+        for end, leg in zip(lost.tolist(), self.retracts.asked(lost, np.full(len(lost), self.lift))):
+            self.legs[end] = leg
+
+    def ends(self, k: int) -> list[int]:
+        """The ends of beads that way k leaves and comes to."""
+        return [end for end in (2 * k - 1, 2 * k) if end in self.legs]
+
+    def _way(self, k: int, legs: Mapping[int, Leg | None]) -> Way:
+        before = self.beads[k - 1] if k else None
+        path = self.beads[k] if k < len(self.beads) else None
+        away, onto = legs.get(2 * k - 1), legs.get(2 * k)
+        rows: list[Array] = []
+        role: list[int] = []
+        if away is not None:
+            rows += list(away.joints)
+            role += [RETRACT] * len(rows)
+        if path is not None:
+            onward = [path.joints[0]] if onto is None else [*onto.joints[::-1], path.joints[0]]
+            rows += onward
+            role += [TRAVEL] + [APPROACH] * (len(onward) - 1)
+        start = None if before is None else before.joints[-1]
+        joints = np.array(rows).reshape(-1, self.cell.machine.chain.axes)
+        if start is None or path is None:
+            return Way(start, joints, np.array(role, dtype=np.int64))
+        return self._in_shorter_turns(Way(start, joints, np.array(role, dtype=np.int64)))
+
+    def _in_shorter_turns(self, way: Way) -> Way:
+        """The way with more rows, straight in the joints, where an endless axis would turn too far at once."""
+        assert way.start is not None
+        whole = np.vstack([way.start, way.joints])
+        endless = self.cell.limits.endless
+        turn = np.nan_to_num(np.abs(np.diff(whole[:, endless], axis=0))).max(axis=1, initial=0.0)
+        if turn.max() <= LARGEST_TURN:
+            return way
+        rows: list[Array] = []
+        role: list[int] = []
+        singular: float | None = None
+        for start, end, kind, far in zip(whole[:-1], whole[1:], way.role.tolist(), turn.tolist()):
+            between, least = self._between(start, end, max(1, math.ceil(far / LARGEST_TURN)))
+            singular = least if singular is None else singular
+            rows += [*between, end]
+            role += [kind] * (len(between) + 1)
+        return Way(way.start, np.array(rows), np.array(role, dtype=np.int64), singular)
+
+    def _between(self, start: Array, end: Array, moves: int) -> tuple[list[Array], float | None]:
+        """Rows that cut a move into so many, or a few more where one of them is near a singularity; and how near, where that
+        does not help."""
+        ways = [
+            [start + (end - start) * (k / count) for k in range(1, count)] for count in range(moves, moves + MORE_MOVES + 1)
+        ]
+        if moves == 1 or not self.cell.arrangement.redundant or not np.isfinite(ways[0]).all():
+            return ways[0], None
+        least = [float(self.retracts.condition(np.array(rows)).min()) for rows in ways]
+        for rows, condition in zip(ways, least):
+            if condition >= self.retracts.floor:
+                return rows, None
+        return ways[0], least[0]
+
+    def _moves(self, k: int, way: Way) -> Moves:
+        """The moves of way k as they are looked at."""
+        joints = way.joints if way.start is None else np.vstack([way.start, way.joints])
+        return Moves(joints[:-1], joints[1:], np.full(max(len(joints) - 1, 0), self.rows[k], dtype=np.intp))
+
+    def _met(self, some: Sequence[int], ways: Sequence[Way]) -> list[int]:
+        """The ways, of those numbered, on which anything is met."""
+        moves = [self._moves(k, way) for k, way in zip(some, ways)]
+        if not moves:
+            return []
+        together = Moves(*(np.concatenate(parts) for parts in zip(*moves)))
+        met = self.surroundings.met(together)
+        if self.arm is not None:
+            move, touched = on_moves(self.arm, *together)
+            met[move[touched.any]] = True
+        number = np.repeat(np.arange(len(moves)), [len(one.start) for one in moves])
+        return [some[k] for k in np.unique(number[met]).tolist()]
+
+    def _clear(self, attempts: Sequence[Attempt]) -> list[int]:
+        """Finds other ways where something is met; the ways where nothing helps."""
+        sound = self.retracts.sound
+        some = [k for k in range(len(self.ways)) if sound[self.ends(k)].all()]
+        met = self._met(some, [self.ways[k] for k in some])
+        # where a link is too near at the very end of a bead, no way off or onto it helps
+        hopeless = self._standing_too_near(met)
+        met = [k for k in met if k not in hopeless]
+        for attempt in attempts:
+            if not met:
+                break
+            met = self._without_cleared(met, attempt)
+        return sorted({*met, *hopeless})
+
+    def _standing_too_near(self, some: Sequence[int]) -> set[int]:
+        """The ways, of those numbered, at whose beginning or end on a bead a link of the arm is too near to something."""
+        if self.arm is None or not some:
+            return set()
+        ends = [(k, self.beads[k - 1].joints[-1]) for k in some if k > 0]
+        ends += [(k, self.beads[k].joints[0]) for k in some if k < len(self.beads)]
+        touches = self.arm.touches(np.array([joints for _, joints in ends]), np.array([self.rows[k] for k, _ in ends]))
+        return {k for (k, _), near in zip(ends, touches.any) if near}
+
+    def _without_cleared(self, met: Sequence[int], attempt: Attempt) -> list[int]:
+        """Takes an attempt for the ways where nothing is met with it; the others."""
+        # without a retract distance the machine stays where the last bead ends
+        some = [k for k in met if self.lift > 0.0 or k < len(self.beads)]
+        ends = np.array(sorted({end for k in some for end in self.ends(k)}), dtype=np.intp)
+        found, _ = self.retracts.found(
+            ends, np.full(len(ends), attempt.height), attempt.direction, attempt.tolerance, thorough=False)
+        legs: dict[int, Leg | None] = {end: leg for end, leg in zip(ends.tolist(), found) if leg is not None}
+        able = [k for k in some if all(end in legs for end in self.ends(k))]
+        tried = {k: self._way(k, legs) for k in able}
+        still = set(self._met(able, list(tried.values())))
+        for k in able:
+            if k not in still:
+                self.ways[k] = tried[k]
+                for end in self.ends(k):
+                    self.legs[end] = legs[end]
+                    self.failures.pop(end, None)
+                self.lifted.append(k)
+        return [k for k in met if k not in tried or k in still]
+
+    def _attempts(self, bodies: Sequence[Body]) -> list[Attempt]:
+        """What is tried in turn after the way asked for, up to where the nozzle is beyond the sphere about all that is
+        there."""
+        cell = self.cell
+        radius = 0.5 * cell.platform_diameter
+        x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
+        platform = [origin + radius * (a * x + b * y) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
+        all_ = (*bodies, *cell.in_part())
+        points = np.vstack([*(path.bead.points for path in self.beads), platform, *(body.vertices for body in all_)])
+        # from anywhere inside, a way of the diameter along any direction leads out of it
+        furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
+        base = self.lift or FIRST_LIFT
+        heights = [*([] if self.lift else [base]), *(factor * base for factor in HIGHER)]
+        while heights[-1] < furthest:
+            heights.append(min(FURTHER * heights[-1], furthest))
+        return [
+            *([Attempt(self.lift, 0, FINE_MM)] if self.lift else []),
+            *(Attempt(height) for height in heights),
+            *(Attempt(share * base, direction) for direction in DIRECTIONS for share in ASIDE),
+        ]
+
+    def place(self, k: int) -> BeadPath:
+        """The bead that way k is told of: that which it leads to, or the last one."""
+        return self.beads[min(k, len(self.beads) - 1)]
+
+    def told(self, k: int) -> list[str]:
+        """What the nozzle meets on way k."""
+        return self.surroundings.names(self._moves(k, self.ways[k]))
+
+    def arm_issue(self, k: int) -> Issue | None:
+        """What a link comes too near on way k, where one does."""
+        if self.arm is None:
+            return None
+        _, touched = on_moves(self.arm, *self._moves(k, self.ways[k]))
+        if not touched.any.any():
+            return None
+        first, path = int(np.argmax(touched.any)), self.place(k)
+        link, what = self.arm.links[touched.link[first]], self.arm.names[touched.what[first]]
+        return clearance_issue(self.cell, link, what, path.layer, path.index, on_way=True)

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A curve of the free rotation along a path: what the machine makes of it at once, and handles to change it by."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...issues import Issue, has_errors
+from ...toolpath import Bead
+from .. import criteria
+from ..findings import ROUNDING, findings
+from ..joint_path import BeadPath
+from ..plan import METHODS
+from ..points import TURN, Points, gather, steps
+from ..rotation import basis
+from ..task import Task
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Progress = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class Followed:
+    """What a curve asks of the machine at T points of B beads.
+
+    joints: (T, axes) rad, counted on along each bead, NaN out of reach. margin: (T,) the share left to the nearest limit, 1
+    in the middle, less than 0 beyond, -inf out of reach. condition: (T,), 0 out of reach. displacement: (B,) eq. 17, NaN
+    out of reach. ratio: (T,) the largest joint speed on the segment that ends at the point, as a share of what the axis can
+    do. good: (T,) points that the planner has nothing to say against. wound: (T,) points past a limit that would not be,
+    were an axis whole turns elsewhere: along the bead it runs out of turns.
+    """
+
+    phi: Array
+    joints: Array
+    margin: Array
+    condition: Array
+    displacement: Array
+    ratio: Array
+    good: Mask
+    wound: Mask
+
+
+@dataclass(frozen=True)
+class Sums:
+    """A curve in figures. lost, wound: points that the planner objects to, and those whose axes run out of turns. margin,
+    condition: the least. ratio: the largest share of a joint speed, at the speed that is asked for. displacement: eq. 17 of
+    all beads, NaN out of reach."""
+
+    lost: int
+    wound: int
+    margin: float
+    condition: float
+    ratio: float
+    displacement: float
+
+
+def durations(beads: Sequence[Bead], kept: Sequence[NDArray[np.int64]] | None = None) -> Array:
+    """(T,) s from each point to the next at travel speed, as the time of the segment that ends at a point; 0 where a bead
+    begins. kept: the points of each bead that are looked at, all of them where they are not given."""
+    found = []
+    for k, bead in enumerate(beads):
+        length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+        at = np.concatenate([[0.0], np.cumsum(length / bead.speed[1:])])
+        found.append(np.diff(at if kept is None else at[kept[k]], prepend=0.0))
+    return np.concatenate(found)
+
+
+def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Array) -> Followed:
+    """What the rotations phi (T,), rad, ask of the machine; lasts (T,) s as of `durations`."""
+    joints = task.joints(points, phi)
+    condition, margin = task.condition(points, phi, joints), task.given_rows.margin(joints)
+    speed = np.abs(steps(joints, points)) / np.where(lasts > 0.0, lasts, np.inf)[:, None]
+    ratio = (speed / task.cell.machine.max_speed).max(axis=1)
+    low, high = task.parameters.rotation_range
+    good = (margin >= -ROUNDING) & (thresholds - condition <= ROUNDING)
+    if high - low < TURN - 1e-9:
+        good &= (phi >= low - ROUNDING) & (phi <= high + ROUNDING)
+    wound = margin < -ROUNDING
+    turns = np.where(task.endless, 0.0, np.round((task.middle - joints[wound]) / TURN))
+    wound[wound] = task.given_rows.margin(joints[wound] + TURN * turns) >= -ROUNDING
+    return Followed(phi, joints, margin, condition, criteria.displacement(task, points, joints), ratio, good, wound)
+
+
+def sums(of: Followed) -> Sums:
+    """The figures of a curve."""
+    ratio = of.ratio[np.isfinite(of.ratio)]
+    return Sums(
+        int((~of.good).sum()), int(of.wound.sum()), float(of.margin.min()), float(of.condition.min()),
+        float(ratio.max()) if len(ratio) else float("nan"), float(of.displacement.sum()),
+    )
+
+
+# ---- handles
+
+
+def fitted(points: Points, values: Array, degree: int) -> Array:
+    """(B, degree + 1) the polynomials of the beads' parameters that come nearest to values (T,), the constant first."""
+    result = np.zeros((points.beads, degree + 1))
+    low, high = points.ends
+    for bead in range(points.beads):
+        part, chosen = points.only(bead)
+        # about the middle of the bead, so that powers of large angles do not drown the rest
+        middle, half = 0.5 * (low[bead] + high[bead]), 0.5 * (high[bead] - low[bead])
+        share = np.vander((part.parameter - middle) / half, min(degree, len(part) - 1) + 1, increasing=True)
+        found = np.linalg.lstsq(share, values[chosen], rcond=None)[0]
+        # in the parameter itself, by Horner: the polynomials are few and short, and their class is slow
+        for order in range(len(found) - 1, -1, -1):
+            shifted = result[bead] / half
+            result[bead] *= -middle / half
+            result[bead, 1:] += shifted[:-1]
+            result[bead, 0] += found[order]
+    return result
+
+
+def handles(task: Task, points: Points, bead: int, degree: int) -> Array:
+    """(n,) parameters of a bead at which its polynomial is taken hold of: as many as it has freedoms."""
+    part, _ = points.only(bead)
+    low, high = (float(end[0]) for end in part.ends)
+    count = int(np.abs(basis.changes(task, part, degree)[0]).any(axis=0).sum())
+    if count == 1:
+        return np.array([0.5 * (low + high)])
+    # the end of a bead that joins up is its start
+    joined = task.joined and bool(part.closed[0])
+    return np.linspace(low, high, count, endpoint=not joined)
+
+
+def pull(task: Task, points: Points, bead: int, degree: int, handle: int) -> Array:
+    """(degree + 1,) the change of a bead's coefficients that moves one of its handles by 1 rad and leaves all others where
+    they are; a closed bead that has to join up still does."""
+    part, _ = points.only(bead)
+    at = handles(task, points, bead, degree)
+    free = basis.changes(task, part, degree)[0]
+    free = free[:, np.abs(free).any(axis=0)]
+    wanted = np.where(np.arange(len(at)) == handle, 1.0, 0.0)
+    return np.asarray(free @ np.linalg.solve(np.vander(at, degree + 1, increasing=True) @ free, wanted))
+
+
+# ---- side by side
+
+
+@dataclass(frozen=True)
+class Compared:
+    """What one method of planning makes of the beads, before rapid moves and added points. issues: what forbids it and what
+    else there is to say; seconds: what the planning took."""
+
+    name: str
+    paths: tuple[BeadPath, ...]
+    sums: Sums
+    issues: tuple[Issue, ...]
+    seconds: float
+
+    @property
+    def feasible(self) -> bool:
+        """Whether nothing forbids it."""
+        return not has_errors(self.issues)
+
+
+def compared(
+    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], progress: Progress
+) -> tuple[Compared, ...]:
+    """All methods of the planner on the branch of the task, none with polynomials that are given; progress may raise."""
+    found = []
+    for number, (method, plan) in enumerate(METHODS.items()):
+        started = time.perf_counter()
+        own = replace(task, parameters=replace(task.parameters, method=method, given=(), rz="auto"))
+
+        def part(fraction: float, text: str, done: int = number, name: str = method) -> None:
+            progress((done + fraction) / len(METHODS), f"{name}: {text}")
+
+        part(0.0, "planning")
+        paths, issues = plan(own, beads, places, part)
+        issues = issues + [issue for path in paths for issue in findings(own, path)]
+        found.append(Compared(method, tuple(paths), sums_of(own, paths), tuple(issues), time.perf_counter() - started))
+    return tuple(found)
+
+
+def sums_of(task: Task, paths: Sequence[BeadPath]) -> Sums:
+    """The figures of planned paths."""
+    beads = [path.bead for path in paths]
+    phi, threshold = (np.concatenate([getattr(path, name) for path in paths]) for name in ("phi", "threshold"))
+    return sums(follow(task, gather(beads, task.cell), threshold, durations(beads), phi))

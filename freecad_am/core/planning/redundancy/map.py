@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The free rotation as a map: points of a path against the whole turn, and what the machine makes of each cell.
+
+Every cell is judged as the planner judges a point that stands for itself: the closed form of all branches at once, limited
+axes in the turn nearest to the middle of their range. What a curve on the map means besides, such as an axis that runs out
+of turns along a bead, is told by `spin_curve`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision import nozzle as nozzles
+from ...collision.scene import scene
+from ...geometry import frames
+from ...geometry.surroundings import Body, disc
+from ...kinematics.cell import Cell
+from ...kinematics.links.contact import ArmContact
+from ...toolpath import Bead
+from ..findings import ROUNDING
+from ..points import TURN, Points
+from ..task import UNREACHABLE, LimitRows, Task, beside
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+RZ, ROTATION = "rz", "rotation"
+ROWS, MOST = 181, 300
+LEAST = 12  # points of a bead, fewer of which would not show what a curve does
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Points of a path that are looked at. bead: (C,) which of the beads; point: (C,) which point of it; points: them,
+    each standing for itself."""
+
+    bead: Index
+    point: Index
+    points: Points
+
+    def __len__(self) -> int:
+        return len(self.bead)
+
+
+@dataclass(frozen=True)
+class SpinMap:
+    """Cells of `values` (R,) rad by columns C. axis: what the values are, RZ or ROTATION.
+
+    phi: (R, C) rotation about the tool axis. margin: (8, R, C) of each branch the share left to the nearest limit, 1 in
+    the middle of all ranges, 0 at a limit, -inf out of reach. touching: (C,) whether the nozzle meets the platform or a
+    body, whatever the rotation. outside: (R, C) whether the rotation is one that the job does not allow.
+    """
+
+    columns: Columns
+    axis: str
+    values: Array
+    phi: Array
+    margin: Array
+    touching: Mask
+    outside: Mask
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One branch of a map. margin, condition: (R, C). threshold: (C,) smallest condition allowed. forbidden: (R, C) what is
+    outside of the rotations allowed or where the nozzle touches. arm: (R, C) where a link of the robot touches something,
+    None as long as nobody has looked."""
+
+    branch: int
+    margin: Array
+    condition: Array
+    threshold: Array
+    outside: Mask
+    forbidden: Mask
+    arm: Mask | None = None
+
+    @property
+    def hatched(self) -> Mask:
+        """(R, C) cells in which a rotation is not allowed, or nozzle or robot touch something."""
+        return self.forbidden if self.arm is None else self.forbidden | self.arm
+
+    @property
+    def reachable(self) -> Mask:
+        """(R, C) cells with joint values."""
+        return np.asarray(self.margin > UNREACHABLE)
+
+    @property
+    def beyond(self) -> Mask:
+        """(R, C) cells past a limit."""
+        return self.reachable & (self.margin < -ROUNDING)
+
+    @property
+    def singular(self) -> Mask:
+        """(R, C) cells too near to a singularity."""
+        return self.reachable & (self.threshold - self.condition > ROUNDING)
+
+    @property
+    def feasible(self) -> Mask:
+        """(R, C) cells in which the planner has nothing to say against a point."""
+        return self.reachable & ~self.beyond & ~self.singular & ~self.outside
+
+
+def columns(beads: Sequence[Bead], cell: Cell, most: int = MOST) -> Columns:
+    """Points of the beads, evenly among all, at most `most`; the ends of beads are among them.
+
+    Of more beads than have room for LEAST points each, as many as do, evenly among them.
+    """
+    counts = np.array([len(bead) for bead in beads])
+    shown = list(range(len(beads)))
+    if counts.sum() > most and LEAST * len(beads) > most:
+        shown = np.unique(np.round(np.linspace(0, len(beads) - 1, max(1, most // LEAST))).astype(int)).tolist()
+        share = np.full(len(shown), most // len(shown))
+    else:
+        share = np.maximum(2, counts * most // max(int(counts.sum()), most))
+    kept = [
+        np.unique(np.round(np.linspace(0, counts[k] - 1, min(int(number), int(counts[k])))).astype(np.int64))
+        for k, number in zip(shown, share)
+    ]
+    position, tool, parameter = (
+        np.concatenate([getattr(beads[k], name)[index] for k, index in zip(shown, kept)])
+        for name in ("points", "tool", "parameter")
+    )
+    return Columns(
+        np.repeat(np.array(shown), [len(index) for index in kept]), np.concatenate(kept),
+        alone(cell, position, tool, parameter, external_of(cell, [beads[k] for k in shown], kept)),
+    )
+
+
+def external_of(cell: Cell, beads: Sequence[Bead], kept: Sequence[Index]) -> Array | None:
+    """(T, k) values of the external axes at so many points of beads, None of a cell without."""
+    if cell.external is None:
+        return None
+    found: Array = np.concatenate([planned_external(bead)[index] for bead, index in zip(beads, kept, strict=True)])
+    return found
+
+
+def planned_external(bead: Bead) -> Array:
+    """(n, k) values of the external axes at the points of a bead of a plan that has some."""
+    assert bead.external is not None  # beads of a plan with external axes tell where these are
+    return bead.external
+
+
+def alone(cell: Cell, position: Array, tool: Array, parameter: Array, external: Array | None) -> Points:
+    """Points each standing for itself."""
+    number, slides = np.arange(len(position)), cell.machine.chain.sliding
+    return Points(
+        position, tool, parameter, number, number, np.zeros(len(number), dtype=bool),
+        cell.pose_frames(position, tool, external), external, slides if slides.any() else None,
+    )
+
+
+def spin_map(
+    task: Task, at: Columns, axis: str = RZ, bodies: Sequence[Body] = (), values: Array | None = None
+) -> SpinMap:
+    """The map of all branches for the columns, of a job's cell, limits and rotation range; bodies in part coordinates.
+
+    values: (R,) rad of the rows, else the whole turn.
+    """
+    values = np.linspace(-np.pi, np.pi, ROWS) if values is None else values
+    phi = rotation_of(task.cell, at.points.tool, values[:, None], axis)
+    joints = _of_all_branches(task, at.points, phi)
+    margin = _margin(task, task.given_rows, joints)
+    low, high = task.parameters.rotation_range
+    outside = np.zeros(phi.shape, dtype=bool)
+    if high - low < TURN - 1e-9:
+        outside = (phi - low) % TURN > high - low + ROUNDING
+    return SpinMap(at, axis, values, phi, margin, _touching(task.cell, at.points, bodies), outside)
+
+
+def picture(task: Task, of: SpinMap, branch: int) -> Picture:
+    """One branch of a map, with its condition."""
+    own = dataclasses.replace(task, branch=branch)
+    points = of.columns.points
+    flange = points.frames.at(of.phi).reshape(-1, 4, 4)
+    condition = own.condition_at(flange, own.arm.inverse_branch(flange, branch)).reshape(of.phi.shape)
+    return Picture(
+        branch, of.margin[branch], condition, own.thresholds(points), of.outside, of.outside | of.touching,
+    )
+
+
+def arm_touched(
+    task: Task, of: SpinMap, branch: int, arm: ArmContact, moment: Index, every: int = 1
+) -> Mask:
+    """(R, C) the cells of a branch in which a link of the robot touches nozzle, platform, a body or the deposit there is.
+
+    moment: (C,) how many points of the deposit are there at a column. every: one of so many rows is looked at and stands for
+    those about it. Cells past a limit, or not allowed for another reason, are not looked at.
+    """
+    count = len(of.values)
+    rows = np.arange(min(every // 2, count - 1), count, every)
+    own = dataclasses.replace(task, branch=branch)
+    points = of.columns.points
+    joints = own.arm.inverse_branch(points.frames.at(of.phi[rows]).reshape(-1, 4, 4), branch)
+    if points.external is not None:
+        joints = beside(joints, np.tile(points.external, (len(rows), 1)))
+    looked = (of.margin[branch] >= -ROUNDING) & ~of.outside & ~of.touching
+    joints[~looked[rows].ravel()] = np.nan
+    found = arm.touches(joints, np.tile(moment, len(rows))).any.reshape(len(rows), -1)
+    return np.asarray(found[np.minimum(np.arange(count) // every, len(rows) - 1)] & looked)
+
+
+def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
+    """The rotation phi about the tool axes (C, 3) of values (..., C) on an axis of the map, rad."""
+    if axis == ROTATION:
+        return np.array(np.broadcast_to(value, np.broadcast_shapes(value.shape, (len(tool),))))
+    # eq. 9 and 10 solved for phi, as Cell.rz_of_phi has them for RZ
+    upright = frames.smallest_rotation(tool @ cell.mount[:3, :3], (0.0, 0.0, 1.0))
+    sin, cos = np.sin(value), np.cos(value)
+    return np.asarray(np.arctan2(
+        upright[:, 0, 0] * sin + upright[:, 0, 1] * cos, upright[:, 1, 0] * sin + upright[:, 1, 1] * cos,
+    ))
+
+
+def value_of(cell: Cell, tool: Array, phi: Array, axis: str) -> Array:
+    """The value (C,) on an axis of the map of rotations phi (C,) about the tool axes (C, 3), rad; RZ is in -pi..pi."""
+    return phi if axis == ROTATION else cell.rz_of_phi(tool, phi)
+
+
+def in_turns(values: Array, starts: Mask) -> Array:
+    """Values (C,) rad counted on along each bead from where it starts, which is within half a turn of 0."""
+    step = np.diff(values, prepend=values[:1])
+    step -= TURN * np.round(step / TURN)
+    step[starts] = 0.0
+    rising = np.cumsum(step)
+    first = np.flatnonzero(starts)
+    begin = values[first] - TURN * np.round(values[first] / TURN)
+    number = np.cumsum(starts) - 1
+    return np.asarray(rising - rising[first][number] + begin[number])
+
+
+def joints_at(task: Task, at: Columns, column: int, phi: float) -> Array:
+    """(8, axes) joints of all branches at one cell, in the turn that the map counts with; NaN out of reach."""
+    joints = _of_all_branches(task, at.points.each(np.array([column])), np.array([[phi]]))[:, 0, 0]
+    turns = np.where(task.endless, 0.0, np.round((task.middle - joints) / TURN))
+    turns[:, task.cell.robot.chain.axes :] = 0.0  # external axes are where they are said to be
+    return np.asarray(joints + TURN * turns)
+
+
+def _of_all_branches(task: Task, points: Points, phi: Array) -> Array:
+    """(8, R, C, axes) joints of all branches for rotations phi (R, C) of C points; NaN out of reach."""
+    arm = task.cell.machine.arm
+    assert arm is not None  # resolve() refuses other machines
+    joints = arm.inverse(points.frames.at(phi).reshape(-1, 4, 4))[:8]
+    joints = joints.reshape(len(joints), *phi.shape, -1)
+    return joints if points.external is None else beside(joints, points.external)
+
+
+def _margin(task: Task, rows: LimitRows, joints: Array) -> Array:
+    """(...) what `rows.margin` gives for joints (..., axes) in the turns that suit limited axes best, axis by axis."""
+    angle = []
+    for axis in range(joints.shape[-1]):
+        value = joints[..., axis]
+        if axis < task.cell.robot.chain.axes and not task.endless[axis]:
+            turns = np.round((task.middle[axis] - value) / TURN)
+            value = value + TURN * turns if np.nan_to_num(turns).any() else value
+        angle.append(value)
+    worst = np.zeros(joints.shape[:-1])
+    for row, mean, half in zip(rows.matrix, rows.mean, rows.half):
+        value = sum(factor * angle[axis] for axis, factor in enumerate(row) if factor)
+        np.maximum(worst, np.abs((value - mean) / half), out=worst)
+    return np.where(np.isnan(worst + angle[0]), UNREACHABLE, 1.0 - worst)
+
+
+def _touching(cell: Cell, points: Points, bodies: Sequence[Body]) -> Mask:
+    """(C,) whether the nozzle, which is round about the tool axis, meets the platform or a body at a point; its lowest part
+    is left out, as where toolpaths are kept clear."""
+    around = list(bodies)
+    if cell.platform_diameter > 0.0:
+        around.append(disc(cell.platform_diameter, cell.mount))
+    if not around:
+        return np.zeros(len(points), dtype=bool)
+    slope = float(np.tan(cell.nozzle.half_angle))
+    nozzle = nozzles.depositing(0.5 * cell.nozzle.diameter, slope, cell.nozzle.length, 0.0)
+    return scene(around, points.position, nozzle.reach).touched(nozzle, points.position, points.tool)

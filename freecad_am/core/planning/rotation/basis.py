@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the optimiser may change of a polynomial: all of it, or what leaves a closed bead joined.
+
+A closed bead whose polynomial takes the same value at both ends, but for whole turns, comes back to the pose it started
+with. The turns are chosen by the search; what is left to vary are polynomials that are alike at both ends.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial import chebyshev, polynomial
+from numpy.typing import NDArray
+
+from ..points import Points
+from ..task import Task
+
+Array = NDArray[np.float64]
+
+
+def changes(task: Task, points: Points, degree: int) -> Array:
+    """(B, degree + 1, degree + 1) per bead the coefficients, the constant first, of independent changes as columns.
+
+    They are Chebyshev polynomials over the bead's parameter, so that all are of the size of a rotation; the column that
+    would part the ends of a closed bead is zero.
+    """
+    low, high = points.ends
+    result = np.zeros((points.beads, degree + 1, degree + 1))
+    joined = task.joined & points.closed
+    for bead in range(points.beads):
+        result[bead] = _chebyshev(low[bead], high[bead], degree)
+    if degree > 0:
+        result[joined, :, 3::2] -= result[joined, :, 1:2]
+        result[joined, :, 1] = 0.0
+    return result
+
+
+def _chebyshev(low: float, high: float, degree: int) -> Array:
+    """Columns T_0 .. T_degree of the parameter brought from low .. high to -1 .. 1."""
+    columns = np.zeros((degree + 1, degree + 1))
+    shift = np.array([-(high + low) / (high - low), 2.0 / (high - low)])
+    for j in range(degree + 1):
+        value = np.zeros(1)
+        for coefficient in chebyshev.cheb2poly(np.eye(degree + 1)[j])[::-1]:
+            value = polynomial.polyadd(polynomial.polymul(value, shift), [coefficient])
+        columns[: len(value), j] = value[: degree + 1]
+    return columns

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Evaluates polynomials of the rotation at all points of their beads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...toolpath import Bead
+from .. import criteria
+from ..joint_path import BeadPath
+from ..points import Points
+from ..task import Task, condition_margin
+from . import refine
+
+Array = NDArray[np.float64]
+Place = tuple[int, int]
+
+
+def judged(
+    task: Task, beads: Sequence[Bead], places: Sequence[Place], points: Points, threshold: Array, coefficients: Array,
+    refined: refine.Refined,
+) -> list[BeadPath]:
+    """The paths of all beads for given coefficients (B, degree + 1), evaluated at all their points."""
+    phi, _ = task.rotation(points, points.polynomial(coefficients))
+    joints = task.joints(points, phi)
+    condition = task.condition(points, phi, joints)
+    matrix = None
+    if task.parameters.objective not in criteria.JOINT_ONLY and np.isfinite(joints).all():
+        matrix = task.jacobian_at(points.frames.at(phi), joints)
+    objective = (
+        criteria.value(task, points, joints, matrix)
+        if matrix is not None or task.parameters.objective in criteria.JOINT_ONLY
+        else np.full(points.beads, np.nan)
+    )
+    margin = points.worst(np.minimum(task.rows.margin(joints), condition_margin(condition, threshold)))
+    ends = np.append(points.first, len(points))
+    return [
+        BeadPath(
+            layer, index, bead, phi[a:b], joints[a:b], condition[a:b], threshold[a:b], float(objective[k]),
+            float(margin[k]), coefficients[k], refined.reason[k], refined.iterations[k],
+        )
+        for k, (bead, (layer, index), a, b) in enumerate(zip(beads, places, ends[:-1], ends[1:]))
+    ]

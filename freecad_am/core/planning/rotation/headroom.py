@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How near each point of planned beads is to what the machine cannot do, and where it is nearest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...kinematics.limits import Limits
+from ..joint_path import BeadPath
+from ..redundancy.curve import durations
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Worst:
+    """A worst value, in which layer it is, and of which limit or axis, '' for none."""
+
+    value: float
+    layer: int
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """T points of beads. margin: (T,) share left to the nearest limit, 1 in the middle, less than 0 beyond. condition: (T,).
+    ratio: (T,) largest joint speed on the segment that ends at the point, as a share of what the axis can do, where a bead
+    begins that of its second point. All NaN out of reach. The worst of each is None where no point is reached."""
+
+    margin: Array
+    condition: Array
+    ratio: Array
+    worst_margin: Worst | None
+    worst_condition: Worst | None
+    worst_ratio: Worst | None
+
+
+def judged(paths: Sequence[BeadPath], limits: Limits, max_speed: Array) -> Judgement:
+    """What planned beads leave of limits, condition and joint speeds (axes,), rad/s or mm/s; rapid moves do not count."""
+    joints = np.concatenate([path.joints for path in paths])
+    layer = np.repeat([path.layer for path in paths], [len(path.joints) for path in paths])
+    reached = np.isfinite(joints).all(axis=1)
+    shares = limits.shares(joints)
+    speeds = np.concatenate([_speeds(path) for path in paths]) / max_speed
+    condition = np.where(reached, np.concatenate([path.condition for path in paths]), np.nan)
+    margin, ratio = shares.min(axis=1), speeds.max(axis=1)
+    return Judgement(
+        margin, condition, ratio, _worst(shares, layer, limits.labels), _worst(condition[:, None], layer, ("",)),
+        _worst(speeds, layer, limits.labels, largest=True),
+    )
+
+
+def _speeds(path: BeadPath) -> Array:
+    """(n, axes) speed of each axis, rad/s or mm/s."""
+    lasts = durations([path.bead])[1:, None]
+    speed = np.abs(np.diff(path.joints, axis=0)) / np.maximum(lasts, 1e-12)
+    return np.concatenate([speed[:1], speed])
+
+
+def _worst(values: Array, layer: NDArray[np.int64], labels: Sequence[str], largest: bool = False) -> Worst | None:
+    """Of (T, k) values of k things."""
+    if not np.isfinite(values).any():
+        return None
+    at, what = np.unravel_index(np.nanargmax(values) if largest else np.nanargmin(values), values.shape)
+    return Worst(float(values[at, what]), int(layer[at]), labels[int(what)])

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What coefficients of polynomials give: objective, constraints, and how these change with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...kinematics import jacobian as jac
+from .. import criteria
+from ..points import Points
+from ..task import Task, in_pieces
+from . import basis
+
+Array = NDArray[np.float64]
+# share by which the condition stays above its threshold, so that an optimum on it does not fall below between the points
+CONDITION_RESERVE = 1e-3
+
+
+@dataclass(frozen=True)
+class State:
+    """Everything eqs. 17 to 19 need at one set of coefficients; constraints are >= 0 where kept."""
+
+    objective: Array
+    gradient: Array
+    predicted: Array
+    constraints: Array
+    constraint_rates: Array
+
+
+def state_of(task: Task, points: Points, thresholds: Array, coefficients: Array, slopes: bool = True) -> State:
+    """The state at coefficients (B, degree + 1): with the derivatives of the constraints, or else `predicted`."""
+    phi, phi_rate = task.rotation(points, points.polynomial(coefficients))
+    joints = task.joints(points, phi)
+    if np.isnan(joints).any():
+        return _partly_unreachable(task, points, thresholds, coefficients, joints, slopes)
+    powers = points.powers(coefficients.shape[1] - 1)
+    if not slopes and task.parameters.objective in criteria.JOINT_ONLY:
+        return _state_in_pieces(task, points, thresholds, phi, phi_rate, joints, powers)
+    rates, matrix = task.spin_rates(points.frames.at(phi), joints)
+    rates = rates * phi_rate[:, None]
+    objective = criteria.value(task, points, joints, matrix)
+    gradient = _gradient(points, criteria.rate(task, points, joints, rates, matrix), powers)
+    value = values_of(task, thresholds, phi, joints, jac.condition(matrix, task.parameters.characteristic_length))
+    worst = points.worst(value)
+    if not slopes:
+        predicted = _predicted(task, points, joints, rates, powers, gradient)
+        return State(objective, gradient, predicted, worst.T, np.zeros((points.beads, len(value), powers.shape[1])))
+    slope = slopes_of(task, phi, phi_rate, joints, rates, matrix)
+    at = np.stack([_where_worst(points, row, least) for row, least in zip(value, worst)])
+    rows = np.arange(len(value))[:, None]
+    constraint_rates = (slope[rows, at][:, :, None] * powers[at]).transpose(1, 0, 2)
+    return State(objective, gradient, np.full(points.beads, np.nan), worst.T, constraint_rates)
+
+
+def _state_in_pieces(
+    task: Task, points: Points, thresholds: Array, phi: Array, phi_rate: Array, joints: Array, powers: Array
+) -> State:
+    """The state without the derivatives of the constraints, of many beads at once. The condition is taken from below
+    where that tells that it is kept, which is at all but a few points."""
+    length = task.parameters.characteristic_length
+    rates, ratio = np.empty_like(joints), np.empty(len(points))
+    for some in in_pieces(len(points)):
+        rates[some], matrix = task.spin_rates(points.frames.of(some).at(phi[some]), joints[some])
+        bound = jac.condition_bound(matrix, length)
+        open_ = bound < thresholds[some] * (1.0 + CONDITION_RESERVE)
+        bound[open_] = jac.condition(matrix[open_], length)
+        ratio[some] = bound
+    rates *= phi_rate[:, None]
+    gradient = _gradient(points, criteria.joint_rate(task, points, joints, rates), powers)
+    worst = points.worst(values_of(task, thresholds, phi, joints, ratio))
+    return State(
+        criteria.value(task, points, joints, None), gradient, _predicted(task, points, joints, rates, powers, gradient),
+        worst.T, np.zeros((points.beads, len(worst), powers.shape[1])),
+    )
+
+
+def _gradient(points: Points, slope: Array, powers: Array) -> Array:
+    return points.total((slope[:, None] * powers).T).T
+
+
+def _partly_unreachable(
+    task: Task, points: Points, thresholds: Array, coefficients: Array, joints: Array, slopes: bool
+) -> State:
+    """With one bead there is nothing to say; with several, those within reach are still worth judging."""
+    b, k = coefficients.shape
+    rows = len(task.rows.labels) + 1 + _narrow(task)
+    state = State(
+        np.full(b, np.inf), np.zeros((b, k)), np.full(b, np.inf), np.full((b, rows), -1.0), np.zeros((b, rows, k))
+    )
+    if b == 1:
+        return state
+    lost = np.add.reduceat(np.isnan(joints).any(axis=1), points.first) > 0
+    for bead in np.flatnonzero(~lost):
+        part, chosen = points.only(int(bead))
+        one = state_of(task, part, thresholds[chosen], coefficients[bead : bead + 1], slopes)
+        for name in ("objective", "gradient", "predicted", "constraints", "constraint_rates"):
+            getattr(state, name)[bead] = getattr(one, name)[0]
+    return state
+
+
+def _narrow(task: Task) -> int:
+    low, high = task.parameters.rotation_range
+    return int(high - low < 2.0 * np.pi - 1e-9)
+
+
+def values_of(task: Task, thresholds: Array, phi: Array, joints: Array, ratio: Array) -> Array:
+    """Eqs. 18 and 19 as corrected, one row per limit and one for the condition `ratio` (T,): (m + 1, T)."""
+    values = [
+        0.25 * (1.0 - task.rows.offset(joints).T ** 2), (ratio - thresholds * (1.0 + CONDITION_RESERVE))[None],
+    ]
+    if _narrow(task):
+        values.append(0.25 * (1.0 - _share(task, phi) ** 2)[None])
+    return np.concatenate(values)
+
+
+def slopes_of(task: Task, phi: Array, phi_rate: Array, joints: Array, rates: Array, matrix: Array) -> Array:
+    """(m + 1, T) their derivatives by the value of the polynomial at each point."""
+    slopes = [
+        -0.5 * task.rows.offset(joints).T * (rates @ task.rows.matrix.T / task.rows.half).T,
+        criteria.condition_rate(task, joints, rates, matrix)[None],
+    ]
+    if _narrow(task):
+        low, high = task.parameters.rotation_range
+        slopes.append((-0.5 * _share(task, phi) / (0.5 * (high - low)) * phi_rate)[None])
+    return np.concatenate(slopes)
+
+
+def _share(task: Task, phi: Array) -> Array:
+    low, high = task.parameters.rotation_range
+    return (phi - 0.5 * (low + high)) / (0.5 * (high - low))
+
+
+def _where_worst(points: Points, values: Array, worst: Array) -> NDArray[np.int64]:
+    """(B,) index of the first point of each bead that has the bead's smallest value."""
+    hits = np.flatnonzero(values <= worst[points.bead])
+    _, position = np.unique(points.bead[hits], return_index=True)
+    return hits[position]
+
+
+def _predicted(task: Task, points: Points, joints: Array, rates: Array, powers: Array, gradient: Array) -> Array:
+    """(B,) how much the objective would still fall by its second-order model, joined beads staying joined.
+
+    Eq. 17 is a sum of squares, so its curvature is known (Gauss-Newton); of other objectives the
+    gradient alone is taken.
+    """
+    free = basis.changes(task, points, powers.shape[1] - 1)
+    gradient = (gradient[:, None] @ free)[:, 0]
+    if task.parameters.objective != "displacement":
+        return np.asarray(np.linalg.norm(gradient, axis=1))
+    change = [_between(rates * power[:, None], points) for power in powers.T]
+    curvature = np.empty((points.beads, len(change), len(change)))
+    for j, one in enumerate(change):
+        weighed = one * task.weights
+        for k, other in enumerate(change[: j + 1]):
+            curvature[:, j, k] = curvature[:, k, j] = 2.0 * points.total(np.einsum("ia,ia->i", weighed, other))
+    curvature = np.swapaxes(free, 1, 2) @ curvature @ free
+    inverse = np.linalg.pinv(curvature, rcond=1e-10, hermitian=True)
+    fall: Array = 0.5 * np.einsum("bj,bjk,bk->b", gradient, inverse, gradient)
+    return fall
+
+
+def _between(values: Array, points: Points) -> Array:
+    """What values (T, axes) change by from the point before; 0 at the first point of a bead."""
+    change = np.zeros_like(values)
+    np.subtract(values[1:], values[:-1], out=change[1:])
+    change[points.starts] = 0.0
+    return change

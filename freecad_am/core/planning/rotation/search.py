@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The search over the whole range of offset and slope that every layer starts from.
+
+One start of a local optimiser loses layers whose feasible rotations lie elsewhere. Kinematics over arrays makes
+looking everywhere cheap: few points per bead, the limits first, a cheap bound of the condition as screen, the
+true condition only for what the bound leaves open.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.ties import first_least, first_most
+from ...kinematics import jacobian as jac
+from .. import criteria
+from ..points import Points, steps
+from ..task import UNREACHABLE, Task, condition_margin
+
+Array = NDArray[np.float64]
+
+POINTS_PER_BEAD = 10
+OFFSETS = 24
+SLOPES = np.linspace(-2.0, 2.0, 13)
+# slopes that close a full turn in joint space
+CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
+# of candidates with the same objective the one that moves the joints less is taken
+TIE = 1e-6
+# poses handled at once, so that a long job does not fill the memory
+CHUNK = 200_000
+# sigma_min / sigma_max lies between the bound 1 / kappa_F and its 6-fold: kappa_2 <= kappa_F <= 6 kappa_2
+BOUND_SPREAD = 6.0
+
+
+@dataclass(frozen=True)
+class Found:
+    """C candidates per bead: coefficients (C, B, degree + 1), objective and margin (C, B).
+
+    margin is the smallest of the limit and condition margins, negative where one is exceeded, -inf where a point
+    cannot be reached.
+    """
+
+    coefficients: Array
+    objective: Array
+    margin: Array
+
+    def of_slope(self, slope: float) -> Found:
+        """The candidates of one slope alone."""
+        chosen = np.abs(self.coefficients[:, 0, 1] - slope) < 1e-9
+        return Found(self.coefficients[chosen], self.objective[chosen], self.margin[chosen])
+
+    def best(self) -> NDArray[np.int64]:
+        """(B,) index of the candidate with the least objective among the feasible, else of the largest margin."""
+        feasible = self.margin >= 0.0
+        ranked = first_least(np.where(feasible, self.objective, np.inf), axis=0)
+        return np.asarray(np.where(feasible.any(axis=0), ranked, first_most(self.margin, axis=0)), dtype=np.int64)
+
+
+def everywhere(
+    task: Task, points: Points, thresholds: Array, slopes: Array | None = None, offsets: int = OFFSETS
+) -> Found:
+    """Candidates over the whole range of offset (one turn) and slope, for every bead of the points.
+
+    Of closed beads that have to join up those of slopes that do not make whole turns are out of the question.
+    """
+    joined = task.joined & points.closed
+    if slopes is None:
+        slopes = CLOSING_SLOPES if joined.all() else SLOPES
+    degree = task.parameters.degree
+    turn = np.arange(offsets) * (2.0 * np.pi / offsets) - np.pi
+    slope = slopes if degree > 0 else np.zeros(1)
+    offset_grid, slope_grid = (grid.ravel() for grid in np.meshgrid(turn, slope, indexing="ij"))
+    coefficients = np.zeros((len(offset_grid), points.beads, degree + 1))
+    coefficients[:, :, 0] = offset_grid[:, None]
+    if degree > 0:
+        coefficients[:, :, 1] = slope_grid[:, None]
+    found = judge(task, points, thresholds, coefficients)
+    apart = np.abs(slope_grid - np.round(slope_grid)) > 1e-9
+    found.margin[np.ix_(apart, joined)] = UNREACHABLE
+    return found
+
+
+def judge(task: Task, points: Points, thresholds: Array, coefficients: Array) -> Found:
+    """Objective and margin of given candidates (C, B, degree + 1)."""
+    size = max(1, CHUNK // len(points))
+    parts = [
+        _judge(task, points, thresholds, coefficients[start : start + size])
+        for start in range(0, len(coefficients), size)
+    ]
+    return Found(
+        coefficients,
+        np.concatenate([objective for objective, _ in parts]),
+        np.concatenate([margin for _, margin in parts]),
+    )
+
+
+def _judge(task: Task, points: Points, thresholds: Array, coefficients: Array) -> tuple[Array, Array]:
+    value = np.zeros((len(coefficients), len(points)))
+    for power in range(coefficients.shape[2] - 1, -1, -1):
+        value = value * points.parameter + coefficients[:, points.bead, power]
+    phi = np.stack([task.rotation(points, row)[0] for row in value]) if task.parameters.parameter == "rz" else value
+    joints = task.joints(points, phi)
+    limit = points.worst(task.rows.margin(joints))
+    margin = np.minimum(limit, _range_margin(task, points, phi))
+    objective = _objective(task, points, phi, joints)
+    open_beads = (margin >= 0.0)[:, points.bead]
+    condition = np.full(len(coefficients) * len(points), UNREACHABLE)
+    chosen = np.flatnonzero(open_beads.ravel())
+    if len(chosen):
+        condition[chosen] = _screened_condition_margin(
+            task, points, phi.ravel()[chosen], joints.reshape(-1, joints.shape[-1])[chosen], chosen % len(points), thresholds
+        )
+    worst = points.worst(condition.reshape(phi.shape))
+    margin = np.where(margin >= 0.0, np.minimum(margin, worst), margin)
+    return np.where(np.isnan(objective), np.inf, objective), margin
+
+
+def _range_margin(task: Task, points: Points, phi: Array) -> Array | float:
+    low, high = task.parameters.rotation_range
+    if high - low >= 2.0 * np.pi - 1e-9:
+        return np.inf
+    half = 0.5 * (high - low)
+    return points.worst(1.0 - np.abs(phi - (low + half)) / half)
+
+
+def _objective(task: Task, points: Points, phi: Array, joints: Array) -> Array:
+    name = task.parameters.objective
+    if name in criteria.JOINT_ONLY:
+        value = criteria.JOINT_ONLY[name](task, points, joints)
+        return value if name == "displacement" else value + TIE * _turned(points, joints)
+    flat = joints.reshape(-1, joints.shape[-1])
+    flange = points.frames.at(phi).reshape(-1, 4, 4)
+    good = np.isfinite(flat).all(axis=1)
+    worth = np.full(len(flat), np.nan)
+    matrix = task.jacobian_at(flange[good], flat[good])
+    length = task.parameters.characteristic_length
+    measure = jac.manipulability if name == "manipulability" else jac.condition
+    worth[good] = 1.0 / np.maximum(measure(matrix, length), 1e-300)
+    mean: Array = points.total(worth.reshape(phi.shape)) / np.bincount(points.bead)
+    return mean + TIE * _turned(points, joints)
+
+
+def _turned(points: Points, joints: Array) -> Array:
+    """(..., B) sum of the squared steps of all axes alike, rad^2."""
+    step = steps(joints, points)
+    return points.total((step * step).sum(axis=-1))
+
+
+def _screened_condition_margin(
+    task: Task, points: Points, phi: Array, joints: Array, index: NDArray[np.int64], thresholds: Array
+) -> Array:
+    """Condition margins of chosen poses: exact near the threshold, by the bound where that settles the sign."""
+    flange = points.frames.of(index).at(phi)
+    matrix = task.jacobian_at(flange, joints)
+    length = task.parameters.characteristic_length
+    bound = jac.condition_bound(matrix, length)
+    threshold = thresholds[index]
+    undecided = (bound < threshold) & (BOUND_SPREAD * bound >= threshold)
+    bound[undecided] = jac.condition(matrix[undecided], length)
+    return condition_margin(bound, threshold)

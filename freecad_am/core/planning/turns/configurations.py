@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Arms of which several solutions bear the same words: along a bead the one before is followed.
+
+Only solutions of the words wanted are looked at, and of these the nearest.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...kinematics.inverse.serial_arm import SerialArm
+from ..points import TURN, Points
+
+Array = NDArray[np.float64]
+
+
+def along_beads(arm: SerialArm, flange: Array, branch: int, points: Points) -> Array:
+    """Joints (R, T, axes) for flange poses (R, T, 4, 4), followed from the first point of each bead, which has the least
+    singular solution. NaN where none bears the words."""
+    found, several = _bearing(arm, flange, branch)
+    joints: Array = found[0]
+    if not several:
+        return joints
+    counts = np.diff(np.append(points.first, len(points)))
+    for number in range(1, int(counts.max())):
+        index = points.first[counts > number] + number
+        joints[:, index] = _nearest(found[:, :, index], joints[:, index - 1])
+    return joints
+
+
+def from_before(arm: SerialArm, flange: Array, branch: int, before: Array) -> Array:
+    """Joints (..., axes) for flange poses (..., 4, 4), nearest to those before, whose leading axes may be fewer."""
+    found, several = _bearing(arm, flange, branch)
+    first: Array = found[0]
+    return _nearest(found, np.broadcast_to(before, first.shape)) if several else first
+
+
+def step_by_step(arm: SerialArm, flange: Array, branch: int, before: Array) -> Array:
+    """Joints (k, moves, axes) for flange poses (k, moves, 4, 4), followed from joints before (k, axes)."""
+    found, several = _bearing(arm, flange, branch)
+    joints: Array = found[0]
+    if several:
+        for move in range(joints.shape[1]):
+            before = joints[:, move] = _nearest(found[:, :, move], before)
+    return joints
+
+
+def _bearing(arm: SerialArm, flange: Array, branch: int) -> tuple[Array, bool]:
+    """Joints (solutions, ..., axes) that bear the words, the least singular first, NaN for those that do not; and whether
+    there is more than one anywhere."""
+    lead = flange.shape[:-2]
+    joints, words = arm.solutions(flange.reshape(-1, 4, 4))
+    bearing = words == branch
+    several = bool((bearing.sum(axis=0) > 1).any())
+    if not several:
+        return joints[branch].reshape(1, *lead, joints.shape[-1]), False
+    joints = np.where(bearing[..., None], joints, np.nan)
+    order = [branch, *(k for k in range(len(joints)) if k != branch and bearing[k].any())]
+    return joints[order].reshape(len(order), *lead, joints.shape[-1]), True
+
+
+def _nearest(found: Array, before: Array) -> Array:
+    """Of joints (solutions, ..., axes) those nearest to the joints before (..., axes), whole turns aside; the first where
+    that is not known."""
+    step = found - before
+    step -= TURN * np.round(step / TURN)
+    away = (step * step).sum(axis=-1)
+    best = np.argmin(np.where(np.isnan(away), np.inf, away), axis=0)
+    return np.asarray(np.take_along_axis(found, best[None, ..., None], axis=0)[0])

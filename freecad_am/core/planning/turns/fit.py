@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Finds room for the turns of limited axes: another seam, or as the last resort a split bead."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...issues import ERROR, Issue
+from ...kinematics.cell import Cell
+from ...toolpath import Bead
+from ..joint_path import BeadPath
+from ..points import gather
+from ..rotation import refine, search, ties
+from ..rotation.evaluation import judged
+from ..task import FITS, Task
+from . import unwrap as turns
+
+Array = NDArray[np.float64]
+Place = tuple[int, int]
+
+OFFSETS = 72
+MORE_PIECES = 3
+MOVED, SPLIT = "seam moved for a limited axis", "split for a limited axis"
+
+
+def for_beads(task: Task, beads: Sequence[Bead], places: Sequence[Place]) -> list[list[BeadPath] | None]:
+    """For each bead the path from another seam, or of its pieces; None where neither keeps all limits.
+
+    The rotations are looked for as if the robot's last axis, and those beside it, had no end; then a start, or cuts, are
+    found that suit their limits.
+    """
+    usable = [k for k, bead in enumerate(beads) if not turns.is_spiral(bead)]
+    result: list[list[BeadPath] | None] = [None] * len(beads)
+    if task.endless.all() or not usable:
+        return result
+    free = dataclasses.replace(task, cell=_last_endless(task.cell))
+    coarse = gather([beads[k] for k in usable], task.cell, search.POINTS_PER_BEAD)
+    threshold = task.thresholds(coarse)
+    # only with slopes of whole turns can a seam be moved after the planning
+    found = search.everywhere(free, coarse, threshold, search.CLOSING_SLOPES, OFFSETS)
+    best, each = found.best(), np.arange(len(usable))
+    settled = ties.settle(free, coarse, threshold, found.coefficients[best, each])
+    for number, k in enumerate(usable):
+        if found.margin[best[number], number] >= 0.0:
+            result[k] = _fitted(task, free, beads[k], places[k], settled[number : number + 1])
+    return result
+
+
+def put_in(
+    task: Task, paths: Sequence[BeadPath], helped: Mapping[int, list[BeadPath]]
+) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths with those that were helped in their places, beads numbered anew, and what was done said."""
+    result: list[BeadPath] = []
+    issues: list[Issue] = []
+    for k, path in enumerate(paths):
+        result += helped.get(k, [path])
+        lost = k not in helped and path.margin < FITS and turns.is_spiral(path.bead)
+        if lost and _would_fit_endless(task, path):
+            issues.append(Issue(
+                ERROR, "SPIRAL_LIMITED",
+                "a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with "
+                "an endless axis", layer=path.layer,
+            ))
+    moved = sorted({found[0].layer for found in helped.values() if len(found) == 1})
+    split = sorted({found[0].layer for found in helped.values() if len(found) > 1})
+    issues += ([turns.seam_note(moved)] if moved else []) + ([turns.split_note(split)] if split else [])
+    return _numbered(result), issues
+
+
+def _would_fit_endless(task: Task, path: BeadPath) -> bool:
+    """Whether the end of the last axis is what keeps a spiral from its limits: it turns an axis that ends, or all limits
+    would hold if the last one had none. Of the least evils the search may have taken one at another axis.
+    """
+    if turns.turning_axis(task, path.joints) is not None:
+        return True
+    free = dataclasses.replace(task, cell=_last_endless(task.cell))
+    coarse = gather([path.bead], task.cell, search.POINTS_PER_BEAD)
+    return bool((search.everywhere(free, coarse, task.thresholds(coarse)).margin >= 0.0).any())
+
+
+def _fitted(task: Task, free: Task, bead: Bead, place: Place, coefficients: Array) -> list[BeadPath] | None:
+    whole = _one(free, bead, place, coefficients, MOVED)
+    started, index = turns.moved_seam(task, bead, whole.joints)
+    if index:
+        moved = _one(task, started, place, coefficients, MOVED)
+        if moved.margin >= FITS:
+            return [moved]
+    for more in range(MORE_PIECES):
+        parts = turns.pieces(task, bead, whole.joints, more)
+        if len(parts) == 1:
+            return None
+        cuts = [_piece(task, bead.part(part), place, coefficients) for part in parts]
+        if all(piece.margin >= FITS for piece in cuts):
+            return cuts
+    return None
+
+
+def _piece(task: Task, bead: Bead, place: Place, coefficients: Array) -> BeadPath:
+    """A piece with the rotation of the whole bead, or where that does not serve with one of its own."""
+    path = _one(task, bead, place, coefficients, SPLIT)
+    if path.margin >= FITS:
+        return path
+    coarse, full = gather([bead], task.cell, search.POINTS_PER_BEAD), gather([bead], task.cell)
+    found = search.everywhere(task, coarse, task.thresholds(coarse))
+    threshold = task.thresholds(full)
+    refined = refine.refine(task, full, threshold, found.coefficients[None, found.best()[0]])
+    return judged(task, [bead], [place], full, threshold, refined.coefficients, refined)[0]
+
+
+def _one(task: Task, bead: Bead, place: Place, coefficients: Array, reason: str) -> BeadPath:
+    points = gather([bead], task.cell)
+    given = refine.Refined(coefficients, np.zeros(1), (reason,), (0,))
+    return judged(task, [bead], [place], points, task.thresholds(points), coefficients, given)[0]
+
+
+def _last_endless(cell: Cell) -> Cell:
+    limits = cell.limits
+    last = np.arange(limits.axes) >= cell.robot.chain.axes - 1
+    free = dataclasses.replace(
+        limits, lower=np.where(last, -np.inf, limits.lower), upper=np.where(last, np.inf, limits.upper)
+    )
+    return dataclasses.replace(cell, limits=free)
+
+
+def _numbered(paths: Sequence[BeadPath]) -> list[BeadPath]:
+    count: dict[int, int] = {}
+    result = []
+    for path in paths:
+        index = count.get(path.layer, 0)
+        count[path.layer] = index + 1
+        result.append(dataclasses.replace(path, index=index))
+    return result

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Width and height of a bead from travel speed and curvature: w = m v^(-1/3) + p / r + t (Dai 2020, section 4).
+
+The model holds the width, not the section: at one wire feed a bead that runs faster in a bend is lower there (ERRATA), so
+the height has a fit of its own, of the same form, and is predicted beside the width. Inside the fit the speed is in
+mm/min, as in the paper; all arguments are mm and mm/s. The radius has no sign: inside and outside of a bend are not told
+apart. A bead is made by the wire that each millimetre of it gets: beads laid at several wire feeds f count at the speed at
+which the nominal one f0 lays as much, v f0 / f, and another feed within theirs scales the speeds alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...issues import InputError
+from ...toolpath import SpeedLaw
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+MINUTE = 60.0
+FEWEST = 4  # rows; three coefficients and one that says how well they fit
+FLATTEST = 1e-8  # least relative singular value of a table that determines the coefficients
+
+
+@dataclass(frozen=True)
+class Fit:
+    """coefficients of v^(-1/3) [mm (mm/min)^(1/3)], 1/r [mm^2] and one [mm]; r_squared; rmse in mm with the degrees of
+    freedom left as divisor."""
+
+    m: float
+    p: float
+    t: float
+    r_squared: float
+    rmse: float
+
+    def at(self, speed: Array, radius: Array) -> Array:
+        """Value (...,) mm at speeds mm/s and radii of curvature mm, infinite where straight."""
+        value: Array = self.m * np.cbrt(1.0 / (MINUTE * speed)) + self.p / radius + self.t
+        return value
+
+
+@dataclass(frozen=True)
+class Asked:
+    """speed (n,) mm/s; too_slow, too_fast, too_tight (n,) where the width asked for, or the radius, is outside the table."""
+
+    speed: Array
+    too_slow: Mask
+    too_fast: Mask
+    too_tight: Mask
+
+
+@dataclass(frozen=True)
+class BeadModel:
+    """The fits of width and height, and what they were made from: speeds mm/s, radii mm, infinite of straight beads,
+    wire_feed mm/s. feeds: least and largest wire feed, mm/s, paces: speeds as shares of their wire feed."""
+
+    width: Fit
+    height: Fit
+    speeds: tuple[float, float]
+    radii: tuple[float, float]
+    wire_feed: float
+    feeds: tuple[float, float] | None = field(default=None, repr=False)
+    paces: tuple[float, float] | None = field(default=None, repr=False)
+
+    def at_feed(self, feed: float) -> BeadModel:
+        """The model of beads at another wire feed, mm/s; the same where nothing like it was measured."""
+        if self.feeds is None or self.paces is None or not self.feeds[0] <= feed <= self.feeds[1]:
+            return self
+        more = float(np.cbrt(feed / self.wire_feed))
+        low, high = (feed * pace for pace in self.paces)
+        return replace(
+            self, width=replace(self.width, m=more * self.width.m), height=replace(self.height, m=more * self.height.m),
+            speeds=(max(low, self.speeds[0]), min(high, self.speeds[1])), wire_feed=feed,
+        )
+
+    def widths(self, speed: Array, radius: Array) -> Array:
+        """Width (...,) mm at travel speeds mm/s; radii below the table's count as its least."""
+        return self.width.at(speed, np.maximum(radius, self.radii[0]))
+
+    def heights(self, speed: Array, radius: Array) -> Array:
+        """Height (...,) mm of the bead, the same way."""
+        return self.height.at(speed, np.maximum(radius, self.radii[0]))
+
+    def law(self, acceleration: float) -> SpeedLaw:
+        """What the model says of beads at other speeds than theirs; speeds change by `acceleration` mm/s^2 at most."""
+        root = float(np.cbrt(1.0 / MINUTE))
+        return SpeedLaw(self.width.m * root, self.height.m * root, self.speeds[0], acceleration)
+
+    def straight_speed(self, width: float) -> float:
+        """The speed, mm/s, that keeps `width` mm where a bead is straight: there the wire runs at its nominal feed."""
+        return float(self.speed_for(width, np.array([np.inf])).speed[0])
+
+    def heights_of_section(self, widths: Array, width: float) -> Array:
+        """Height (n,) mm of beads of these widths (n,) mm that have the section of a straight one of `width` mm, as with a
+        wire feed in proportion to the speed. Sections of the same shape: height times width is the same."""
+        speed, straight = np.array([self.straight_speed(width)]), np.array([np.inf])
+        section: Array = self.heights(speed, straight) * self.widths(speed, straight)
+        return section / widths
+
+    def speed_for(self, width: float | Array, radius: Array) -> Asked:
+        """The travel speed that keeps `width` mm, one or (n,), at radii of curvature (n,) mm; within those of the table."""
+        tight = radius < self.radii[0] * (1.0 - 1e-9)
+        rest = width - self.width.p / np.maximum(radius, self.radii[0]) - self.width.t
+        with np.errstate(divide="ignore", over="ignore"):
+            speed = np.where(rest > 0.0, (self.width.m / np.where(rest > 0.0, rest, 1.0)) ** 3, np.inf) / MINUTE
+        slowest, fastest = self.speeds
+        slack = 1e-9 * fastest
+        return Asked(
+            np.clip(speed, slowest, fastest), speed < slowest - slack, speed > fastest + slack, np.asarray(tight)
+        )
+
+
+def fit(
+    radius: Array, speed: Array, width: Array, height: Array, wire_feed: float, label: str = "table",
+    lines: Sequence[int] = (), feeds: Array | None = None,
+) -> BeadModel:
+    """The model of a calibration table: columns (n,) in mm and mm/s, and where each row stands in its file, for messages.
+    Least squares, linear in the three coefficients; two where all beads are straight, radii infinite. feeds: (n,) mm/s of
+    beads laid at several, of which `wire_feed` is the nominal one.
+
+    InputError 'TOO_FEW_ROWS', 'BAD_TABLE' (values that are no beads: not positive, not finite), 'COLLINEAR_TABLE' (radii
+    or speeds do not vary, or only together) or 'NO_MODEL' (width does not fall with speed).
+    """
+    columns = {
+        "radius": (radius, "mm"), "travel speed": (MINUTE * speed, "mm/min"), "width": (width, "mm"),
+        "height": (height, "mm"),
+    }
+    if len(radius) < FEWEST:
+        rows = "1 row" if len(radius) == 1 else f"{len(radius)} rows"
+        raise InputError("TOO_FEW_ROWS", label, f"it has {rows}; measure at least {FEWEST} beads")
+    for name, (column, unit) in columns.items():
+        wrong = np.flatnonzero(~((np.isfinite(column) | (column is radius)) & (column > 0.0)))
+        if len(wrong):
+            told = f"{name} {column[wrong[0]]:.9g} {unit} is not a positive number; mend the row, or leave it out"
+            raise InputError("BAD_TABLE", row_name(label, int(wrong[0]), lines), told)
+    counted = speed if feeds is None else speed * (wire_feed / feeds)
+    terms = np.stack([np.cbrt(1.0 / (MINUTE * counted)), np.ones(len(radius))], axis=1)
+    if np.isfinite(radius).any():
+        terms = np.insert(terms, 1, 1.0 / radius, axis=1)
+    scaled = terms / np.linalg.norm(terms, axis=0)
+    singular = np.linalg.svd(scaled, compute_uv=False)
+    if singular[-1] < FLATTEST * singular[0]:
+        raise InputError("COLLINEAR_TABLE", label, _alike(radius, speed, counted))
+    fits = [_fit(terms, column) for column in (width, height)]
+    if fits[0].m <= 0.0:
+        raise InputError("NO_MODEL", label, f"beads get wider with speed (m = {fits[0].m:.4g}); check the table's columns")
+    made = BeadModel(
+        fits[0], fits[1], (float(speed.min()), float(speed.max())), (float(radius.min()), float(radius.max())), wire_feed
+    )
+    return made if feeds is None else replace(made, feeds=_ends(feeds), paces=_ends(speed / feeds))
+
+
+def _ends(values: Array) -> tuple[float, float]:
+    return float(values.min()), float(values.max())
+
+
+def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
+    """How messages name a row, from 0, of a table: counted from 1, and by its line in the file where that is known."""
+    return f"{label} row {row + 1}" + (f" (line {lines[row]})" if len(lines) else "")
+
+
+def _alike(radius: Array, speed: Array, counted: Array) -> str:
+    """Why speeds and radii of a table do not determine the coefficients, and what to measure."""
+    straight = np.isinf(radius).all()
+    same = [
+        f"all beads have the {name} {column[0]:.9g} {unit}"
+        for name, column, unit in (("radius", radius, "mm"), ("travel speed", MINUTE * speed, "mm/min"))
+        if not np.isinf(column).any() and np.ptp(column) <= FLATTEST * column.max()
+    ]
+    if not same and np.ptp(counted) <= FLATTEST * counted.max():
+        return "all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed"
+    told = ", and ".join(same) or "speeds and radii vary only together"
+    return f"{told}; measure at least two speeds{'' if straight else ' and two radii'}"
+
+
+def _fit(terms: Array, values: Array) -> Fit:
+    found = np.linalg.lstsq(terms, values, rcond=None)[0]
+    rest = float(((values - terms @ found) ** 2).sum())
+    spread = float(((values - values.mean()) ** 2).sum())
+    bend = float(found[1]) if len(found) == 3 else 0.0
+    return Fit(
+        float(found[0]), bend, float(found[-1]), 1.0 - rest / spread if spread > 0.0 else 1.0,
+        float(np.sqrt(rest / (len(values) - len(found)))),
+    )

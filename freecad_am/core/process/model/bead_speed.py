@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Travel speeds along a bead: its local radius of curvature, and what a machine can follow of a speed that varies."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.columns import columns, dots, lengths
+
+Array = NDArray[np.float64]
+
+STRAIGHT = 1e-9  # rad of turn over the window; less is none
+
+
+def radii(flat: Array, closed: bool, window: float) -> Array:
+    """Local radius of curvature (n,) mm of a bead laid flat, points (n, 2), infinite where straight.
+
+    The way's turn over `window` mm about each point, for a bead as wide as that feels no sharper bend: a corner counts as
+    the arc of that length. A closed bead repeats its first point.
+    """
+    step = np.diff(flat, axis=0)
+    x, y = columns(step)
+    heading = np.unwrap(np.arctan2(y, x))
+    last = float(np.unwrap([heading[-1], heading[0]])[1] - heading[0]) if closed else None  # turn of a whole round
+    return _radii(np.linalg.norm(step, axis=1), heading, last, window)
+
+
+def radii_beside(points: Array, build: Array, closed: bool, window: float) -> Array:
+    """The same of a bead in space, points (n, 3): how it bends about its build directions (n, 3), to its sides."""
+    step = np.diff(points, axis=0)
+    before, after, up = step[:-1], step[1:], build[1:-1]
+    if closed:
+        before, after, up = (np.vstack([rows, last[None]]) for rows, last in
+                             ((before, step[-1]), (after, step[0]), (up, build[0])))
+    level = dots(before, after) - dots(before, up) * dots(after, up)
+    turn = np.arctan2(dots(np.cross(before, after), up), level)
+    heading = np.r_[0.0, np.cumsum(turn[: len(step) - 1])]
+    return _radii(lengths(step), heading, float(turn.sum()) if closed else None, window)
+
+
+def _radii(length: Array, heading: Array, last: float | None, window: float) -> Array:
+    """The radii at the ends of segments of these lengths (n-1,) that run at these headings (n-1,), which turn by `last` in
+    a round where the bead is closed."""
+    closed = last is not None
+    s = np.r_[0.0, np.cumsum(length)]
+    if last is not None:
+        rounds = max(1, int(np.ceil(window / s[-1])))
+        turns = np.arange(-rounds, rounds + 1)
+        knots = np.concatenate([s[:-1] + k * s[-1] for k in turns])
+        values = np.concatenate([heading + k * last for k in turns])
+    else:
+        knots, values = s[:-1], heading
+    # the heading as a step function of the way; its mean over half a window on either side tells the turn between
+    total = np.r_[0.0, np.cumsum(values * np.diff(np.r_[knots, knots[-1] + length[-1]]))]
+    ends = np.r_[knots, knots[-1] + length[-1]]
+    low, high = np.maximum(s - window, ends[0]), np.minimum(s + window, ends[-1])
+    before = (np.interp(s, ends, total) - np.interp(low, ends, total)) / np.maximum(s - low, 1e-12)
+    after = (np.interp(high, ends, total) - np.interp(s, ends, total)) / np.maximum(high - s, 1e-12)
+    apart = 0.5 * (high - low)
+    at_end = (s - low < 1e-9) | (high - s < 1e-9)
+    turn = np.where(at_end, 0.0, np.abs(after - before))
+    if not closed and len(s) > 2:
+        turn[[0, -1]] = turn[[1, -2]] * (apart[[0, -1]] / apart[[1, -2]])
+    radius: Array = np.where(turn > STRAIGHT, apart / np.maximum(turn, STRAIGHT), np.inf)
+    return radius
+
+
+def followed(points: Array, speed: Array, closed: bool, acceleration: float) -> Array:
+    """Speeds (n,) mm/s no higher than those asked that change by no more than `acceleration` mm/s^2 along points (n, k)."""
+    s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    square = speed * speed
+    if closed:
+        s = np.r_[s[:-1] - s[-1], s, s[1:] + s[-1]]
+        square = np.r_[square[:-1], square, square[1:]]
+    slope = 2.0 * acceleration * s
+    rising = np.minimum.accumulate(square - slope) + slope
+    falling = np.minimum.accumulate((square + slope)[::-1])[::-1] - slope
+    limited = np.sqrt(np.minimum(rising, falling))
+    n = len(points)
+    kept: Array = limited[n - 1 : 2 * n - 1] if closed else limited
+    return np.minimum(kept, speed)

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Calibration tables of bead models: comma separated values with one measured bead per row.
+
+Columns by name, in any order: radius_mm (inf of a straight bead), travel_speed_mm_min, width_mm, height_mm and
+wire_feed_m_min; lines that begin with # are remarks.
+"""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.file_content import content
+from ...issues import InputError
+from ...parameters.process import ProcessParameters
+from .bead_model import MINUTE, Array, BeadModel, fit, row_name
+from .wire import with_model
+
+BUILT_IN = {"csw": "dai-2020.csv", "li-2025": "li-2025.csv"}
+LARGEST = 16  # MB
+FOLDER = Path(__file__).resolve().parents[3] / "beads"
+COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_feed_m_min")
+
+
+class Measured(NamedTuple):
+    """Beads of a calibration table: columns (n,) in mm and mm/s, and the wire feed of all, or their mean, mm/s. label: the
+    file's name; lines: where in it each row stands, from 1. feeds: (n,) mm/s where they differ."""
+
+    radius: Array
+    speed: Array
+    width: Array
+    height: Array
+    wire_feed: float
+    label: str
+    lines: tuple[int, ...]
+    feeds: Array | None = None
+
+
+def of_process(process: ProcessParameters) -> BeadModel | None:
+    """The bead model of a process at the wire feed that it gives; None without one. InputError: those of `load`."""
+    if process.bead_model == "none":
+        return None
+    model = load(process.bead_model)
+    return model.at_feed(with_model(process, model))
+
+
+def load(name: str, folder: Path | None = None) -> BeadModel:
+    """The bead model of a table, named as `measured` takes it. InputError: those of `measured` and `bead_model.fit`."""
+    return fit(*measured(name, folder))
+
+
+def measured(name: str, folder: Path | None = None) -> Measured:
+    """The beads of a built-in table ('csw': table 1 of Dai 2020; 'li-2025': of table 5 of Li 2025) or of the table at a
+    path, relative to `folder`.
+
+    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column, or that it is no text).
+    """
+    path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
+    try:
+        text = content(path, LARGEST, "BAD_TABLE", name).decode("utf-8-sig")
+    except (OSError, ValueError) as error:
+        if isinstance(error, UnicodeError):
+            raise InputError(
+                "BAD_TABLE", name, "it is no table: it holds bytes that are no text in UTF-8; save it as CSV in UTF-8",
+            ) from None
+        why = (getattr(error, "strerror", None) or str(error) or "no access").lower()
+        raise InputError(
+            "NO_FILE", name, f"the calibration table cannot be read ({why}); give none, csw or the path of one",
+        ) from None
+    numbered = enumerate(text.splitlines(), 1)
+    told = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
+    lines, numbers = [line for _, line in told], tuple(number for number, _ in told[1:])
+    rows = list(csv.DictReader(lines))
+    header = [] if not lines else next(csv.reader(lines[:1]))
+    missing = [column for column in COLUMNS if column not in header]
+    if missing:
+        raise InputError("BAD_TABLE", path.name, f"it has no column {missing[0]}; its first line names {', '.join(COLUMNS)}")
+    table = np.array([
+        [_number(row, column, row_name(path.name, number, numbers)) for column in COLUMNS] for number, row in enumerate(rows)
+    ])
+    if not len(rows):
+        table = np.empty((0, len(COLUMNS)))
+    radius, speed, width, height, feed = table.T
+    wrong = np.flatnonzero(~(np.isfinite(feed) & (feed > 0.0)))
+    if len(wrong):
+        where = row_name(path.name, int(wrong[0]), numbers)
+        raise InputError(
+            "BAD_TABLE", where, f"wire feed {feed[wrong[0]]:g} m/min is not a positive number; mend the row, or leave it out"
+        )
+    several = len(feed) > 0 and np.ptp(feed) > 1e-9 * feed.max()
+    feeds = feed * 1000.0 / MINUTE
+    nominal = 0.0 if not len(feed) else float(feeds.mean()) if several else float(feed[0]) * 1000.0 / MINUTE
+    return Measured(radius, speed / MINUTE, width, height, nominal, path.name, numbers, feeds if several else None)
+
+
+def _number(row: dict[str, str | None], column: str, where: str) -> float:
+    if None in row:
+        raise InputError("BAD_TABLE", where, "it has more values than there are columns; write decimals with a point")
+    text = (row[column] or "").strip()
+    try:
+        return float(text)
+    except ValueError:
+        told = f"{column} {text!r} is not a number" if text else f"there is no {column}"
+        raise InputError("BAD_TABLE", where, f"{told}; mend the row, or leave it out") from None

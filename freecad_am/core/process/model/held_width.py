@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Walls, parts of revolution and curves at the travel speeds by which a bead model holds the width of their beads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...parameters.process import ProcessParameters
+from ...toolpath import Array, Bead, Toolpath
+from .bead_model import BeadModel
+from .bead_speed import followed, radii_beside
+from .notes import of_model
+from .wire import with_model
+
+Mask = NDArray[np.bool_]
+
+
+class AtSpeed(NamedTuple):
+    """A bead at the speeds of a model, where (n,) the speed is not what the width asks for, and where it bends more than the
+    table's beads."""
+
+    bead: Bead
+    clamped: Mask
+    tight: Mask
+
+
+def at_speed(
+    bead: Bead, radius: Array, course: Array, closed: bool, process: ProcessParameters, model: BeadModel,
+    part: Array | float = 1.0,
+) -> AtSpeed:
+    """The bead at the speeds that keep its width, or a part (n,) of it, with its radii of curvature (n,) mm; speeds change
+    along its course, points (n, k), by no more than the process says."""
+    asked = model.speed_for(process.bead_width * part, radius)
+    speed = followed(course, asked.speed, closed, process.acceleration)
+    widths, heights, share = model.widths(speed, radius), model.heights(speed, radius), None
+    if process.wire.feed_mode == "proportional":
+        heights = model.heights_of_section(widths, process.bead_width)
+        share = with_model(process, model) / model.straight_speed(process.bead_width)
+    made = replace(bead, speed=of_segments(speed), width=widths, height=heights, wire_share=share)
+    return AtSpeed(made, asked.too_slow | asked.too_fast, asked.too_tight)
+
+
+def of_segments(speed: Array) -> Array:
+    """Speeds (n,) of the segments that end at points, from those at points (n,)."""
+    return np.concatenate([speed[:1], 0.5 * (speed[:-1] + speed[1:])])
+
+
+def held(toolpath: Toolpath, process: ProcessParameters, model: BeadModel) -> Toolpath:
+    """The toolpath of beads that fill nothing, each as wide as asked for where it bends about its build directions, with
+    what the model says of widths and heights."""
+    made: list[AtSpeed] = []
+    layers = []
+    for layer in toolpath.layers:
+        some = [_held(bead, process, model) for bead in layer.beads]
+        made += some
+        layers.append(replace(layer, beads=tuple(one.bead for one in some)))
+    told = of_model(made, toolpath.layer_height, process, model)
+    return replace(
+        toolpath, layers=tuple(layers), law=model.law(process.acceleration), issues=(*toolpath.issues, *told),
+    )
+
+
+def _held(bead: Bead, process: ProcessParameters, model: BeadModel) -> AtSpeed:
+    radius = radii_beside(bead.points, bead.build, bead.closed, process.bead_width)
+    return at_speed(bead, radius, bead.points, bead.closed, process, model)

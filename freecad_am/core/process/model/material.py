@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Beads against the travel speeds at which their material is laid."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...issues import WARNING, InputError, Issue
+from ...parameters.process import ProcessParameters
+from ...toolpath import Toolpath
+
+CODE = "MATERIAL_SPEED"
+ROUNDING = 1e-6  # of a speed
+
+
+def speeds_told(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+    """The toolpath with a warning where beads are slower or faster than their material is laid, at the worst of them.
+    InputError BAD_VALUE for a slowest speed above the fastest."""
+    slowest, fastest = process.material.slowest or 0.0, process.material.fastest
+    if fastest is not None and slowest > fastest:
+        raise InputError(
+            "BAD_VALUE", "process.material.slowest", f"{slowest:g} mm/s is more than the fastest, {fastest:g} mm/s; give "
+            "the slower speed here"
+        )
+    if not slowest and fastest is None:
+        return toolpath
+    worst, where, some = 1.0 + ROUNDING, (0, 0), [float("inf"), 0.0]
+    for layer, number, bead in toolpath:
+        at_ends = [speed for speed in bead.ends[1::2] if speed]
+        low, high = float(min(bead.speed[1:].min(), *at_ends, np.inf)), float(max(bead.speed[1:].max(), *at_ends, 0.0))
+        some = [min(some[0], low), max(some[1], high)]
+        off = max(slowest / low, 0.0 if fastest is None else high / fastest)
+        if off > worst:
+            worst, where = off, (layer, number)
+    if worst <= 1.0 + ROUNDING:
+        return toolpath
+    bounds = f"at {slowest:.4g} mm/s or more" if fastest is None else f"at {slowest:.4g} to {fastest:.4g} mm/s"
+    return replace(toolpath, issues=(*toolpath.issues, Issue(
+        WARNING, CODE, f"beads are laid at {some[0]:.4g} to {some[1]:.4g} mm/s, and "
+        f"{process.material.name or 'the material'} {bounds}; change process.travel_speed, process.bead_width or "
+        "process.classes, or measure beads at these speeds",
+        *where,
+    )))

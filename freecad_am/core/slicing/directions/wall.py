@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Build directions and tool axes of beads on a wall (Chalvin 2019, section II.D).
+
+Rows (n, 3) are unit vectors in part coordinates, one per point of a bead. At corners the local direction jumps: there it is
+the bisector of both sides, and `limited` spreads the jump over as much of the bead as a turn per mm asks for.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.columns import columns
+from ...geometry.walls.surface import dot
+from ...issues import InputError
+
+Array = NDArray[np.float64]
+
+LEAST = 1e-6  # a direction shorter than this after projection points nowhere
+HALVINGS = 30  # of the width over which directions are spread
+ROUNDING = 1e-9  # rad
+
+
+class Limited(NamedTuple):
+    """directions (n, 3), and by how much each departs from what was asked, departure (n,) rad."""
+
+    directions: Array
+    departure: Array
+
+
+def local(normal: Array, into: Array, out: Array, up: Array) -> Array:
+    """Tangent to the wall and normal to the bead, (n, 3).
+
+    normal: of the wall, either side. into, out: direction of the bead before and after each point, of any length, the
+    same but at corners. up: vectors that point away from the layer below, not along the bead.
+    """
+    sides = [np.cross(normal, side / np.linalg.norm(side, axis=1, keepdims=True)) for side in (into, out)]
+    upright = [side * np.where(dot(side, up) < 0.0, -1.0, 1.0)[:, None] for side in sides]
+    return _unit(_unit(upright[0]) + _unit(upright[1]))
+
+
+def in_plane(directions: Array, plane: Array, label: str = "build_direction") -> Array:
+    """Directions projected onto the plane of symmetry with the unit normal `plane` (3,): one rotation about that normal is
+    left.
+
+    InputError NO_DIRECTION where a direction stands across the plane.
+    """
+    flat = directions - (directions @ plane)[:, None] * plane
+    if np.linalg.norm(flat, axis=1).min() < LEAST:
+        raise InputError(
+            "NO_DIRECTION", "build_direction.mode",
+            f"a build direction of {label} is normal to its plane of symmetry; use local",
+        )
+    return _unit(flat)
+
+
+def held(build: Array, forward: Array, outside: Array, lead: float, tilt: float) -> Array:
+    """Tool axes (n, 3): build directions turned by `lead` forward along the bead, then by `tilt` to the outside, rad.
+
+    forward: (n, 3) unit vectors along the bead. outside: (n, 3) normals of the wall that point to its outside.
+    """
+    if lead == 0.0 and tilt == 0.0:
+        return build
+    forward = _unit(forward - dot(forward, build)[:, None] * build)
+    out = np.cross(build, forward)
+    out *= np.sign(dot(out, outside))[:, None]
+    leaning = np.cos(lead) * build + np.sin(lead) * forward
+    return _unit(np.cos(tilt) * leaning + np.sin(tilt) * out)
+
+
+def capped(vectors: Array, most: float) -> tuple[Array, float]:
+    """Directions turned back to `most` rad from the vertical where they lean over more, and by how much the farthest is."""
+    x, y, z = columns(vectors)
+    level = np.hypot(x, y)
+    angle = np.arctan2(level, z)
+    over = angle > most + 1e-12
+    if not over.any():
+        return vectors, 0.0
+    away = np.divide(vectors[:, :2], level[:, None], out=np.tile([1.0, 0.0], (len(vectors), 1)), where=level[:, None] > 0.0)
+    turned = np.column_stack([np.sin(most) * away, np.full(len(vectors), np.cos(most))])
+    return np.where(over[:, None], turned, vectors), float((angle - most).max())
+
+
+def turn_rates(points: Array, directions: Array) -> Array:
+    """Turn of the direction per length (n - 1,) from point to point, rad/mm."""
+    cross = np.linalg.norm(np.cross(directions[:-1], directions[1:]), axis=1)
+    angle = np.arctan2(cross, dot(directions[:-1], directions[1:]))
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    rate: Array = np.maximum(angle - ROUNDING, 0.0) / np.maximum(steps, 1e-12)
+    return rate
+
+
+def limited(
+    points: Array, directions: Array, closed: bool, rate: float, label: str = "build_direction", most: float = np.pi
+) -> Limited:
+    """Directions that turn by no more than `rate` rad/mm from point to point (n, 3), and lean by no more than `most` rad.
+
+    Where they turn faster, and near there, each is the mean over a stretch of the bead; stretches shrink to nothing away
+    from such places, and are as short as the limit allows. Closed beads repeat their first point. InputError
+    TURN_LIMIT when even the mean over the whole bead turns faster, or has no direction.
+    """
+    fast = turn_rates(points, directions) > rate
+    if not fast.any():
+        return Limited(directions, np.zeros(len(points)))
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    s = np.r_[0.0, np.cumsum(steps)]
+    away = _distance_along(s, fast, closed)
+    low, high = 0.0, 1e-3 * s[-1]  # narrow ones first
+    while (good := _checked(points, s, directions, closed, high - away, rate, most)) is None:
+        low, high = high, 1.5 * high
+        if high > 2.0 * s[-1]:
+            raise InputError(
+                "TURN_LIMIT", label, f"build directions cannot be brought below {np.degrees(rate):.3g} deg/mm on a bead of "
+                f"{s[-1]:.4g} mm: allow a faster turn, or use the mode fixed",
+            )
+    for _ in range(HALVINGS):
+        if high - low < 1e-4 * high:
+            break
+        middle = 0.5 * (low + high)
+        tried = _checked(points, s, directions, closed, middle - away, rate, most)
+        if tried is None:
+            low = middle
+        else:
+            high, good = middle, tried
+    cross = np.linalg.norm(np.cross(directions, good), axis=1)
+    return Limited(good, np.arctan2(cross, dot(directions, good)))
+
+
+def _checked(
+    points: Array, s: Array, directions: Array, closed: bool, half: Array, rate: float, most: float
+) -> Array | None:
+    found = _spread(s, directions, closed, np.maximum(half, 0.0))
+    if found is None:
+        return None
+    found = capped(found, most)[0]  # a mean of directions beyond the level leans over more than they do
+    return None if (turn_rates(points, found) > rate).any() else found
+
+
+def _spread(s: Array, directions: Array, closed: bool, half: Array) -> Array | None:
+    """Means of the directions over s - half .. s + half (n,), the directions themselves where half is 0."""
+    if closed:  # as many rounds on either side as the longest stretch reaches
+        rounds = int(np.ceil(half.max() / s[-1])) + 1
+        turns = np.arange(-rounds, rounds + 1)
+        line = np.r_[(s[:-1] + s[-1] * turns[:, None]).ravel(), s[-1] * (rounds + 1)]
+        rows = np.vstack([np.tile(directions[:-1], (len(turns), 1)), directions[:1]])
+        low, high = s - half, s + half
+    else:
+        line, rows = s, directions
+        low, high = np.maximum(s - half, 0.0), np.minimum(s + half, s[-1])
+    steps = np.diff(line)
+    area = np.vstack([np.zeros(3), np.cumsum(0.5 * (rows[1:] + rows[:-1]) * steps[:, None], axis=0)])
+
+    def integral(at: Array) -> Array:
+        i = np.clip(np.searchsorted(line, at, side="right") - 1, 0, len(steps) - 1)
+        t = (at - line[i])[:, None]
+        slope = (rows[i + 1] - rows[i]) / np.maximum(steps[i], 1e-300)[:, None]
+        value: Array = area[i] + t * (rows[i] + 0.5 * t * slope)
+        return value
+
+    width = high - low
+    wide = width > 1e-9 * s[-1]
+    mean = np.where(wide[:, None], (integral(high) - integral(low)) / np.where(wide, width, 1.0)[:, None], directions)
+    if np.linalg.norm(mean, axis=1).min() < 1e-6:
+        return None
+    return _unit(mean)
+
+
+def _distance_along(s: Array, fast: NDArray[np.bool_], closed: bool) -> Array:
+    """Length along the bead (n,) from each point to the nearest segment that turns too fast."""
+    ends = np.unique(np.r_[s[:-1][fast], s[1:][fast]])
+    if closed:
+        ends = np.unique(np.r_[ends - s[-1], ends, ends + s[-1]])
+    i = np.clip(np.searchsorted(ends, s), 1, len(ends) - 1)
+    distance: Array = np.minimum(np.abs(s - ends[i - 1]), np.abs(s - ends[i]))
+    return distance
+
+
+def _unit(vectors: Array) -> Array:
+    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return unit

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fronts on any wall whose local distance varies within a band, so that they stay free of corners.
+
+What smooth_spacing does over the parameter of a surface is done here over the front itself: a rounded copy of the exact
+front is the line from which heights are measured, along the wall and across the front. From there the exact distance and the
+band's ends are sought for each place; the smooth front is what bends least between them. See `banded`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.walls.surface import dot
+from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest
+from ..directions.wall_turn import turns_in_wall
+from .curve import Wall, feet
+from .even_line import even, rounded
+from .on_wall import on_wall
+from .rims import ON_RIM, Rims
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+PLACES = 8  # per layer height along a front
+FEWEST = 48  # of a front
+ROUND = 0.75  # layer heights; standard deviation of the mean that rounds the front
+WIDEST = 1.0 / 16.0  # of the front, the same
+REACH = 1.5  # layer heights; the exact front is not farther from the rounded one
+STEPS = 40
+FOUND = 1e-6  # of the height
+ROOM = 0.4  # of the way to the next front of the layer; no front runs farther ahead
+FINER = 4  # places per arc at which the result is measured
+ENDS = np.array([0, -1])
+SPREAD = 4.0  # layer heights over which the slide of an end is spread
+SLIDES = 0.3  # share of a way along a rim that leads across the front; less, and the end stays
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """band: largest departure of the local distance, as a share of the height. limit: rad/mm, turn within the wall that
+    fronts are to stay below where the band allows."""
+
+    band: float
+    limit: float
+
+
+class SmoothFront(NamedTuple):
+    """A front, its sharpest turn within the wall (rad/mm), and which of banded.WEIGHTS it was made with."""
+
+    curve: SpaceCurve
+    turn: float
+    weight: int
+
+
+def turn(wall: Wall, curve: SpaceCurve) -> float:
+    """The sharpest turn of a front within the wall, rad/mm, on a grid finer than its own."""
+    w = curve.refined(FINER)
+    points, slope, _ = curve.at(w)
+    into, out = slope.copy(), slope.copy()
+    into[::FINER], out[::FINER] = curve.into, curve.out
+    if not curve.closed:
+        into[0], out[-1] = out[0], into[-1]
+    fine = SpaceCurve(w, points, into, out, curve.closed)
+    return float(turns_in_wall(fine, wall.project(points)[1]).max())
+
+
+def smoothed(
+    wall: Wall, rims: Rims, below: list[SpaceCurve], front: SpaceCurve, others: list[SpaceCurve], height: float,
+    smoothing: Smoothing, weight: int = HEAVY,
+) -> SmoothFront:
+    """The front near an exact one, as near to `height` mm as a turn within the wall of smoothing.limit allows.
+
+    Its ends move along the rims that they lie on. others: the further fronts of the layer, which it leaves room. weight:
+    where the search begins, best that of the layer below. Where the band is too narrow for the limit, the band holds;
+    where no smooth front is found within it, the exact one comes back.
+    """
+    kept = SmoothFront(front, turn(wall, front), weight)
+    if kept.turn <= AIM * smoothing.limit:
+        return kept
+    line = _Line.of(wall, rims, front, height)
+    shares = np.array([1.0, 1.0 - smoothing.band * (1.0 - MARGIN), 1.0 + smoothing.band * (1.0 - MARGIN)])
+    levels = line.levels(wall, below, height * shares)
+    if levels is None:
+        return kept
+    wanted, low, high = levels
+    if others:
+        high = np.minimum(high, wanted + ROOM * feet(others, line.points + wanted[:, None] * line.across).distance)
+    least, most = (1.0 - smoothing.band) * height, (1.0 + smoothing.band) * height
+
+    def trial(index: int) -> SmoothFront | None:
+        curve = line.curve(wall, rims, line.smooth(wanted, low, high, float(WEIGHTS[index])))
+        distance = feet(below, curve.at(curve.refined(FINER))[0]).distance
+        if distance.min() < least or distance.max() > most:
+            return None
+        return SmoothFront(curve, float(turns_in_wall(curve, wall.project(curve.points)[1]).max()), index)
+
+    best = lightest(trial, min(weight, HEAVY), AIM * smoothing.limit)
+    if best is None or best.turn >= kept.turn:
+        return kept
+    return best._replace(curve=on_wall(wall, best.curve))
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A smooth line on a wall: points (n, 3), unit vectors (n, 3) in the wall to its left, `bend` (n,) its own second
+    differences along those. A closed one does not repeat its first point. sliding: (2,) whether the ends of an open one lie
+    on rims, along which their `across` is then, as long as leads as far to the left, and theirs near there lean
+    likewise; other ends stay."""
+
+    points: Array
+    across: Array
+    bend: Array
+    closed: bool
+    sliding: Mask
+
+    @classmethod
+    def of(cls, wall: Wall, rims: Rims, front: SpaceCurve, height: float) -> _Line:
+        """The front, rounded, with equally spread places."""
+        count = max(FEWEST, int(np.ceil(front.length * PLACES / height)))
+        line = even(front.at(front.refined(FINER))[0], front.closed, count)
+        wide = min(ROUND * height / (front.length / count), WIDEST * count)
+        points = even(rounded(line, front.closed, wide), front.closed, count)
+        points, normal = wall.project(points)
+        if front.closed:
+            before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
+        else:
+            before = np.vstack([2.0 * points[:1] - points[1:2], points[:-1]])
+            after = np.vstack([points[1:], 2.0 * points[-1:] - points[-2:-1]])
+        across = np.cross(normal, after - before)
+        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        bend, sliding = dot(after - 2.0 * points + before, across), np.zeros(2, dtype=bool)
+        if not front.closed:
+            off, _, along = rims.nearest(points[ENDS])
+            pace = dot(along, across[ENDS])
+            sliding = (off < ON_RIM) & (np.abs(pace) > SLIDES)
+            length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
+            away = np.linspace(0.0, length, len(points)) / min(SPREAD * height, 0.5 * length)
+            for end, s in ((0, away), (1, away[::-1])):
+                if sliding[end]:  # what the end slides along the front is spread over its neighbours
+                    aside = along[end] / pace[end] - across[ENDS[end]]
+                    across = across + np.maximum(1.0 - s, 0.0)[:, None] * aside
+        return cls(points, across, bend, front.closed, sliding)
+
+    def levels(self, wall: Wall, below: list[SpaceCurve], distances: Array) -> Array | None:
+        """How far across the line (k, n) mm the places at the distances (k,) from the fronts below lie; none where some
+        place is not found."""
+        goal = np.repeat(distances, len(self.points))
+        start, across = (np.tile(column, (len(distances), 1)) for column in (self.points, self.across))
+        x = np.zeros(len(goal))
+        farthest = REACH * distances.max()
+        low, high = x - farthest, x + farthest
+        todo = np.arange(len(goal))
+        for _ in range(STEPS):
+            place = feet(below, wall.project(start[todo] + x[todo, None] * across[todo])[0])
+            off = place.distance - goal[todo]
+            above = off > 0.0
+            high[todo[above]], low[todo[~above]] = x[todo[above]], x[todo[~above]]
+            step = off / np.maximum(dot(place.away, across[todo]), 0.2)
+            new = x[todo] - step
+            inside = (new > low[todo]) & (new < high[todo])
+            moving = np.abs(off) > FOUND * goal[todo]
+            x[todo] = np.where(moving, np.where(inside, new, 0.5 * (low[todo] + high[todo])), x[todo])
+            todo = todo[moving]
+            if not len(todo):
+                return np.asarray(x.reshape(len(distances), -1))
+        return None
+
+    def smooth(self, wanted: Array, low: Array, high: Array, weight: float) -> Array:
+        """Heights (n,) over the line that bend little between low and high."""
+        if self.closed:
+            return between(wanted, low, high, weight, self.bend)
+        wanted, low, high = wanted.copy(), low.copy(), high.copy()
+        for bound in (wanted, low, high):
+            bound[ENDS[~self.sliding]] = 0.0
+        return between(wanted, low, high, weight, self.bend[1:-1], False)
+
+    def curve(self, wall: Wall, rims: Rims, x: Array) -> SpaceCurve:
+        """The curve at heights (n,) over the line."""
+        points, normal = wall.project(self.points + x[:, None] * self.across)
+        if self.closed:
+            points, normal = (np.vstack([column, column[:1]]) for column in (points, normal))
+        else:
+            slid = rims.nearest(points[ENDS])[1] if self.sliding.any() else points[ENDS]
+            points[ENDS] = np.where(self.sliding[:, None], slid, self.points[ENDS])
+        w, slope = _spline(points, self.closed)
+        slope -= dot(slope, normal)[:, None] * normal
+        return SpaceCurve(w, points, slope, slope, self.closed)
+
+
+def _spline(points: Array, closed: bool) -> tuple[Array, Array]:
+    """Parameters (n,) and derivatives (n, 3) of a smooth curve through points; a closed one repeats its first."""
+    w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    return w, CubicSpline(w, points, bc_type="periodic" if closed else "not-a-knot")(w, 1)

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Which cylinder or cone each solid stands on: the one that it is cut by in the longest contour."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.developable import Array
+from ...geometry.on_hub import Group, Seat, SolidsOnHub, downwards, middle_azimuth
+from ...geometry.surroundings import Body
+from ...geometry.told import place
+from ...issues import InputError, Issue
+from .equidistant import Facets
+from .overlap import refuse_overlaps
+from .unrolled import cut
+
+UNITS = ((25.4, "inches"), (10.0, "cm"), (1000.0, "m"))  # mm of one
+NEAR = 0.05  # mm past the ends of a face at which a solid still stands on it
+
+
+def on_hub(
+    bodies: Sequence[Body], seats: Sequence[Seat], chord_error: float, label: str, issues: tuple[Issue, ...] = (),
+    hub: str = "", unitless: Sequence[Body] = (),
+) -> SolidsOnHub:
+    """Bodies grouped by the base that each stands on with the longest contour; groups up the first base's axis.
+
+    hub: the name of what has the seats, for errors, where it is not that of the bodies. unitless: bodies of files without a
+    unit of their own. InputError NOT_ON_HUB for a solid that stands on none, NO_BASE where there is no base, OVERLAP.
+    """
+    if not seats:
+        raise InputError(
+            "NO_BASE", hub or label, "the hub has no cylinder and no cone on its outside; choose a face of it, or give "
+            "strategy.base",
+        )
+    standing: dict[int, list[Body]] = {}
+    for body in bodies:
+        standing.setdefault(_seat_of(body, seats, chord_error, any(body is one for one in unitless)), []).append(body)
+    axis = seats[min(standing)].base.frame[:3, 2]
+    axis = -axis if downwards(axis) else axis
+    groups = [
+        Group(seats[k].base, tuple(sorted(some, key=lambda body: middle_azimuth(seats[k].base, body.vertices))))
+        for k, some in standing.items()
+    ]
+    groups.sort(key=lambda group: min(float((body.vertices @ axis).min()) for body in group.bodies))
+    refuse_overlaps(groups, chord_error)
+    return SolidsOnHub(label, tuple(groups), chord_error, (), issues)
+
+
+def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bool = False) -> int:
+    contact, beside = np.zeros(len(seats)), np.zeros(len(seats))
+    away = np.zeros((len(seats), 2))
+    for k, seat in enumerate(seats):
+        # seats are on cylinders and cones
+        facets = Facets(seat.base.surface, seat.base.inside(body.vertices), body.triangles, body.name)  # type: ignore[arg-type]
+        away[k] = facets.away.min(), facets.away.max()
+        for loop in cut(facets, 0.0, chord_error):
+            step = np.linalg.norm(np.roll(loop.points, -1, axis=0) - loop.points, axis=1)
+            middle = 0.5 * (loop.points + np.roll(loop.points, -1, axis=0))
+            contact[k] += step[_near(seat, middle)].sum()
+            beside[k] += step[_near(seat, middle, all_round=True)].sum() if seat.chosen else 0.0
+    contact = contact if contact.any() else beside
+    best = int(np.argmax(contact))
+    if contact[best] > 0.0:
+        return best
+    nearest = int(np.argmin(np.where(away[:, 1] > 0.0, np.maximum(away[:, 0], 0.0), np.inf)))
+    where = place(body.vertices[np.argmin(seats[nearest].base.surface.distance(seats[nearest].base.inside(body.vertices)))])
+    if (away[:, 1] <= 0.0).all():
+        told = "it lies inside of the hub"
+    elif away[nearest, 0] > 0.0:
+        told = f"it begins {away[nearest, 0]:.4g} mm outside of {seats[nearest].base.name}, at {where}"
+    else:
+        told = f"it passes {seats[nearest].base.name} beside the face, near {where}"
+    hint = _of_units(body, seats) if unitless else ""
+    raise InputError("NOT_ON_HUB", body.name, f"it does not stand on the hub: {told}; move it, or choose its base{hint}")
+
+
+def _of_units(body: Body, seats: Sequence[Seat]) -> str:
+    """A hint where the body would reach a base from both sides if its numbers were of another unit."""
+    for factor, unit in UNITS:
+        for seat in seats:
+            vertices = seat.base.inside(factor * body.vertices)
+            away = seat.base.surface.distance(vertices)
+            z = vertices[:, 2]
+            beside = any(face.low <= z.max() and face.high >= z.min() for face in seat.faces)
+            if away.min() <= NEAR < away.max() and beside:
+                return (
+                    f". Times {factor:g} it would reach {seat.base.name}: is its file in {unit}? Then export it in mm, or "
+                    f"give scale: {factor:g} mm with it, as part.scale (in the window: Meshes, Scale)"
+                )
+    return ""
+
+
+def _near(seat: Seat, points: Array, all_round: bool = False) -> NDArray[np.bool_]:
+    return np.asarray(np.any([face.near(points, NEAR, all_round) for face in seat.faces], axis=0), dtype=np.bool_)
+
+
+def hub_among(bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_error: float, label: str) -> int:
+    """Which of the solids of a part is the hub: the one that most of the others stand on.
+
+    seats: of each solid. InputError NO_HUB.
+    """
+    votes = np.zeros(len(bodies), dtype=int)
+    for k in range(len(bodies)):
+        for j, body in enumerate(bodies):
+            if j == k or not seats[k]:
+                continue
+            try:
+                _seat_of(body, seats[k], chord_error)
+            except InputError:
+                continue
+            votes[k] += 1
+    if not votes.any():
+        raise InputError(
+            "NO_HUB", label, "none of its solids stands on a cylinder or cone of another: name the hub as substrate, choose "
+            "a face of it, or give strategy.base; what stands on a flat base is deposited by kind: solid",
+        )
+    return int(np.argmax(votes))

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers at a constant distance along the lines v = const of the wall (Chalvin 2019, equation 2)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.walls.surface import Surface, dot
+from ...issues import InputError
+from ..backstop import refuse_endless
+from ..refinement import ROUNDS, finer_grid
+from .wall_layer import WallLayer
+
+Array = NDArray[np.float64]
+
+STEPS = 40
+
+
+def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "wall") -> WallLayer:
+    """The layer whose points lie at the chord `height` (mm) from those of the layer below with the same v.
+
+    The chord is measured in space, as in equation 2, whose closed form this is on a torus. InputError
+    LAYER_HEIGHT where the wall bends so much that no such point exists.
+    """
+    v, u, into, out = below.v, below.u, *below.slopes(surface)
+    for _ in range(ROUNDS):
+        new, slopes = _stepped(surface, v, u, (into, out), height, label)
+        layer = WallLayer.of(surface, v, new, *slopes)
+        added = finer_grid(layer.curve)
+        if not len(added):
+            break
+        v = np.sort(np.r_[v, added])
+        u, into, out = below.heights(surface, v)
+    return layer
+
+
+def layers(
+    surface: Surface, first: WallLayer, height: float, u_end: float, label: str = "wall"
+) -> list[WallLayer]:
+    """All layers from the first to the first one wholly past u_end."""
+    done = [first]
+    while done[-1].u.min() < u_end:
+        refuse_endless(len(done), height, label)
+        done.append(next_layer(surface, done[-1], height, label))
+    return done
+
+
+def _stepped(
+    surface: Surface, v: Array, u: Array, slopes: tuple[Array, Array], height: float, label: str
+) -> tuple[Array, tuple[Array, Array]]:
+    """New u (m,) and its slopes on either side, from the implicit derivative of the chord."""
+    base, along, around = surface.derivatives(u, v)
+    new = u + height / np.linalg.norm(along, axis=1)
+    for _ in range(STEPS):
+        point, rise, turn = surface.derivatives(new, v)
+        chord = point - base
+        pace = 2.0 * dot(chord, rise)
+        step = (dot(chord, chord) - height * height) / np.where(pace > 0.0, pace, np.inf)
+        new = new - step
+        if np.abs(step * np.linalg.norm(rise, axis=1)).max() < 1e-12 * max(1.0, height):
+            break
+    if not np.allclose(np.linalg.norm(surface.point(new, v) - base, axis=1), height, rtol=1e-9, atol=0.0):
+        raise InputError("LAYER_HEIGHT", label, f"a layer height of {height:g} mm is more than the wall's bend allows")
+    point, rise, turn = surface.derivatives(new, v)
+    chord = point - base
+    into, out = (
+        (dot(chord, around + slope[:, None] * along) - dot(chord, turn)) / dot(chord, rise) for slope in slopes
+    )
+    return new, (into, out)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers in planes normal to the centreline of a tube: what multi-axis slicing of tubes did before (Chalvin 2018).
+
+Planes a layer height apart along the centreline open up like a fan on the outside of a bend and close on its inside;
+here they stand for comparison. On a torus their local distance is 2 rho sin(h / 2R) at the outside (rho = R + r) and
+at the inside (rho = R - r) of the bend.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ...geometry.walls.surface import Surface, dot
+from ...issues import InputError
+from ..backstop import refuse_endless
+from .wall_layer import WallLayer
+
+Array = NDArray[np.float64]
+
+SECTIONS, AROUND = 401, 256  # sections of the wall from whose middles the centreline is taken, and points of each
+BEYOND = 0.5  # of the wall's length, how far past its end the centreline is followed
+STEPS = 50
+
+
+class Centreline(NamedTuple):
+    """The middles of the sections u = const: `middle` gives points (n, 3) and, derived, tangents along u; `place` gives u
+    at a length (mm) along it."""
+
+    middle: CubicSpline
+    place: CubicSpline
+
+
+def centreline(surface: Surface, low: float, high: float) -> Centreline:
+    """The centreline of a wall closed around between two values of u."""
+    if surface.period is None:
+        raise ValueError("a wall that is open in v has no centreline")
+    u = np.linspace(low, high, SECTIONS)
+    v = surface.period * np.arange(AROUND) / AROUND
+    points, _, around = surface.derivatives(*np.meshgrid(u, v, indexing="ij"))
+    share = np.linalg.norm(around, axis=-1, keepdims=True)  # each point counts by the length of curve it stands for
+    middle = CubicSpline(u, (points * share).sum(axis=1) / share.sum(axis=1))
+    x, weight = np.polynomial.legendre.leggauss(5)
+    step = np.diff(u)[:, None]
+    pace = np.linalg.norm(middle(u[:-1, None] + 0.5 * step * (x + 1.0), 1), axis=-1)
+    length = np.r_[0.0, np.cumsum((pace * 0.5 * weight * step).sum(axis=1))]
+    return Centreline(middle, CubicSpline(length, u))
+
+
+def layers(
+    surface: Surface, first: WallLayer, height: float, u_end: float, points: int = 360, label: str = "wall"
+) -> list[WallLayer]:
+    """The curves in planes `height` mm apart along the centreline, from the lowest point of `first` to the first curve
+    wholly past u_end.
+
+    Where they lie below `first` there is nothing to deposit. InputError NOT_NORMAL where a plane does not cut every line
+    v = const of the wall once, near its own section.
+    """
+    low = float(first.u.min())
+    # past its end a wall goes on, straight at least, so that the last planes cut it all around
+    middle, place = centreline(surface, low, u_end + BEYOND * (u_end - low))
+    v = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
+    done: list[WallLayer] = []
+    while not done or done[-1].u.min() < u_end:
+        refuse_endless(len(done), height, label)
+        along = len(done) * height
+        if along > place.x[-1]:
+            break
+        u = float(place(along))
+        tangent = middle(u, 1)
+        done.append(_in_plane(surface, v, u, middle(u), tangent / np.linalg.norm(tangent), label))
+    return done
+
+
+def _in_plane(surface: Surface, v: Array, start: float, origin: Array, normal: Array, label: str) -> WallLayer:
+    """The curve in which a plane cuts the wall, by Newton along each line v = const."""
+    u = np.full(len(v), start)
+    for _ in range(STEPS):
+        point, along, around = surface.derivatives(u, v)
+        rise = along @ normal
+        step = (point - origin) @ normal / np.where(rise > 0.0, rise, np.nan)
+        u = u - step
+        if not np.isfinite(u).all() or np.abs(step * np.sqrt(dot(along, along))).max() < 1e-11:
+            break
+    if not np.isfinite(u).all() or np.abs((surface.point(u, v) - origin) @ normal).max() > 1e-6:
+        raise InputError(
+            "NOT_NORMAL", label, "the planes normal to its centreline do not cut it in one curve each; such layers are not "
+            "for this wall",
+        )
+    u[-1] = u[0]
+    _, along, around = surface.derivatives(u, v)
+    slope = -(around @ normal) / (along @ normal)
+    return WallLayer.of(surface, v, u, slope, slope)

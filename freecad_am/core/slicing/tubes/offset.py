@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The curve on a wall at a constant distance in space from another: its smooth branches, before they are trimmed.
+
+Where the curve below is followed by w, a point of the wall at the distance h in the plane normal to the curve at C(w) is
+P(w) with |P - C|^2 = h^2 and (P - C).C' = 0. P has the v that it has: where the front gathers, v falls back as w rises
+(the focusing number 1 - (P - C).C''/|C'|^2 is negative there) and those points lie nearer to other places of the
+curve. Of all places C(w) the one whose sphere reaches highest up the line v = const carries the new layer: the
+layer is the upper envelope over the *runs*, the stretches with a positive focusing number, and over the *fans*, spheres
+about corners that stick out.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.walls.surface import Surface, dot
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+STEPS = 25
+CONVERGED = 1e-11  # of the layer height
+GATHERING = 0.6  # focusing numbers below this call for a closer look between the nodes
+TIE = 1e-9  # mm; branches whose heights differ less meet there: the one that comes first in v counts
+
+
+class Run(NamedTuple):
+    """One stretch of a branch, v rising. fan: all from one corner. low, high: bounds of w. first, last: arcs of
+    the curve between its corners (last = -1 where it has none). shift: what w and v were moved by, a period or none."""
+
+    v: Array
+    u: Array
+    w: Array
+    fan: bool
+    low: float
+    high: float
+    first: int
+    last: int
+    shift: float
+
+
+class Places(NamedTuple):
+    """Points of the new curve: u, du/dv and the place w on the curve below, (n,), and the run of each, -1 none."""
+
+    u: Array
+    slope: Array
+    w: Array
+    run: Index
+
+
+class Offset:
+    """The curve on `surface` at `height` mm above `curve`, asked for at values of v."""
+
+    def __init__(self, surface: Surface, curve: SpaceCurve, u: Array, height: float) -> None:
+        """curve: closed, its parameter v; u: (m,) at its nodes."""
+        corners = curve.corners
+        if len(corners):
+            u = np.r_[u[corners[0] : -1], u[: corners[0] + 1]]
+            curve = curve.started_at(int(corners[0]))
+        self.surface, self.curve, self.height = surface, curve, height
+        self.breaks: Index = np.r_[curve.corners, len(curve.span)].astype(np.intp) if len(corners) else corners
+        self.fan_ends: list[float] = []
+        self.runs = self._runs(u)
+
+    def at(self, v: Array) -> Places:
+        """The uppermost branch at each v (n,), rising or not."""
+        target, run, u, w = self._candidates(v)
+        u, w, sound = self._solved(v[target], u, w, run)
+        result = Places(np.full(len(v), -np.inf), np.zeros(len(v)), np.zeros(len(v)), np.full(len(v), -1, dtype=np.intp))
+        target, run, u, w = target[sound], run[sound], u[sound], w[sound]
+        scale = TIE / self.height
+        order = np.lexsort((run, target))
+        for k in np.unique(run):  # runs come in the order of v
+            one = order[run[order] == k]
+            better = one[u[one] > result.u[target[one]] + scale]
+            for have, value in zip(result, (u, None, w, run)):
+                if value is not None:
+                    have[target[better]] = value[better]
+        found = result.run >= 0
+        result.slope[found] = self.slopes(v[found], result.u[found], result.w[found], result.run[found])
+        return result
+
+    def slopes(self, v: Array, u: Array, w: Array, run: Index) -> Array:
+        """du/dv (n,) of branches: a front moves at right angles to itself."""
+        point, along, around = self.surface.derivatives(u, v)
+        reach = point - self._below(w, run)[0]
+        slope: Array = -dot(reach, around) / dot(reach, along)
+        return slope
+
+    def crossings(self, low: Array, high: Array, u: Array, w: Array, run: Index) -> tuple[Array, Array, Array]:
+        """Where two branches meet: v, u (k,) and w (k, 2), NaN where they do not between low and high (k,).
+
+        u (k,), w, run (k, 2): starting heights and the places of the left and the right branch.
+        """
+        v, w = 0.5 * (low + high), w.copy()
+        width = high - low
+        fan = np.array([[self.runs[i].fan for i in row] for row in run])
+        for _ in range(STEPS):
+            point, along, around = self.surface.derivatives(u, v)
+            matrix, rest = np.zeros((len(v), 4, 4)), np.empty((len(v), 4))
+            for k in range(2):
+                base, slope, bend = self._below(w[:, k], run[:, k])
+                reach = point - base
+                on = 1.0 - fan[:, k]
+                rest[:, 2 * k] = dot(reach, reach) - self.height**2
+                rest[:, 2 * k + 1] = dot(reach, slope) * on
+                matrix[:, 2 * k, 0], matrix[:, 2 * k, 1] = 2.0 * dot(reach, along), 2.0 * dot(reach, around)
+                matrix[:, 2 * k, 2 + k] = -2.0 * dot(reach, slope) * on
+                matrix[:, 2 * k + 1, 0], matrix[:, 2 * k + 1, 1] = dot(along, slope) * on, dot(around, slope) * on
+                matrix[:, 2 * k + 1, 2 + k] = np.where(fan[:, k], 1.0, dot(reach, bend) - dot(slope, slope))
+            try:
+                step = np.linalg.solve(matrix, rest[..., None])[..., 0]
+            except np.linalg.LinAlgError:
+                return np.full(len(v), np.nan), u, w
+            over = np.maximum(1.0, np.abs(step[:, 1]) / width)[:, None]
+            step = step / over
+            u, v, w = u - step[:, 0], v - step[:, 1], w - step[:, 2:]
+            if np.abs(step).max(initial=0.0) < 1e-14 * max(1.0, self.curve.period):
+                break
+        sound = (np.abs(step).max(axis=1) < 1e-9) & (v > low - 1e-9) & (v < high + 1e-9)
+        for k in range(2):
+            bounds = np.array([(self.runs[i].low, self.runs[i].high) for i in run[:, k]])
+            sound &= (w[:, k] >= bounds[:, 0] - 1e-9) & (w[:, k] <= bounds[:, 1] + 1e-9)
+        return np.where(sound, v, np.nan), u, w
+
+    def _below(self, w: Array, run: Index) -> tuple[Array, Array, Array]:
+        """The curve below and its derivatives at w, each branch on its own side of a corner."""
+        runs = self.runs
+        shift = np.array([r.shift for r in runs])[run]
+        last = np.array([r.last for r in runs])[run]
+        base = w - shift
+        if len(self.breaks):
+            found = np.searchsorted(self.curve.w, base, side="right") - 1
+            arc = np.clip(found, np.array([r.first for r in runs])[run], last)
+        else:
+            base = self.curve.wrapped(base)
+            arc = self.curve.arcs(base)
+        return self.curve.on_arcs(arc, (base - self.curve.w[arc]) / self.curve.span[arc])
+
+    def _candidates(self, v: Array) -> tuple[Index, Index, Array, Array]:
+        """Which branches may carry each v: targets, runs and starting values of u and w, all (k,)."""
+        order = np.argsort(v, kind="stable")
+        ordered = v[order]
+        parts: list[tuple[Index, Index, Array, Array]] = []
+        for i, run in enumerate(self.runs):
+            # between its last sample and the place where it folds a run goes on
+            before = 1e-12 + (run.v[1] - run.v[0] if run.low < run.w[0] else 0.0)
+            after = 1e-12 + (run.v[-1] - run.v[-2] if run.high > run.w[-1] else 0.0)
+            one, other = np.searchsorted(ordered, (run.v[0] - before, run.v[-1] + after))
+            target = order[one:other]
+            if not len(target):
+                continue
+            u = np.interp(v[target], run.v, run.u)
+            w = np.interp(v[target], run.v, run.w)
+            if run.fan:  # from above, where the sphere is sure to be met
+                u = np.full(len(target), run.u.max()) + self._rise
+            parts.append((target, np.full(len(target), i, dtype=np.intp), u, w))
+        if not parts:
+            return np.empty(0, np.intp), np.empty(0, np.intp), np.empty(0), np.empty(0)
+        target, run_of, u, w = (np.concatenate(column) for column in zip(*parts))
+        return target, run_of, u, w
+
+    def _solved(self, v: Array, u: Array, w: Array, run: Index) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Newton in u and w at fixed v; which of the candidates came to a place of their own branch."""
+        fan = np.array([r.fan for r in self.runs], dtype=bool)[run]
+        low, high = (np.array([r[k] for r in self.runs])[run] for k in (4, 5))
+        for _ in range(STEPS):
+            point, along, _ = self.surface.derivatives(u, v)
+            base, slope, bend = self._below(w, run)
+            reach = point - base
+            rest = 0.5 * (dot(reach, reach) - self.height**2)
+            skew = np.where(fan, 0.0, dot(reach, slope))
+            rise, lean = dot(reach, along), np.where(fan, 0.0, dot(along, slope))
+            focus = np.where(fan, 1.0, dot(slope, slope) - dot(reach, bend))
+            determinant = -rise * focus + skew * lean
+            determinant = np.where(np.abs(determinant) > 1e-300, determinant, np.inf)
+            du = (-focus * rest + skew * skew) / determinant
+            dw = np.clip((rise * skew - lean * rest) / determinant, -0.2, 0.2)
+            u, w = u - du, np.where(fan, w, np.clip(w - dw, low, high))
+            if np.abs(rest).max(initial=0.0) < CONVERGED * self.height**2 and np.abs(dw).max(initial=0.0) < 1e-11:
+                break
+        sound = (np.abs(rest) < 1e-8 * self.height**2) & (focus > 0.0) & (rise > 0.0)
+        return u, w, sound & (np.abs(skew) < 1e-7 * self.height * np.sqrt(dot(slope, slope)))
+
+    def _forward(self, u: Array, arc: Index, t: Array) -> tuple[Array, Array, Array]:
+        """u, v and the focusing number (k,) of the points in the normal planes at t on arcs; NaN where there is none."""
+        curve, h = self.curve, self.height
+        base, slope, bend = curve.on_arcs(arc, t)
+        v = curve.w[arc] + t * curve.span[arc]
+        u = u[arc] + t * (u[arc + 1] - u[arc])
+        _, along, around = self.surface.derivatives(u, v)
+        pace = dot(slope, slope)
+        up = along - (dot(along, slope) / pace)[:, None] * slope
+        up *= (h / np.linalg.norm(up, axis=1))[:, None]
+        a, b, c = dot(along, along), dot(along, around), dot(around, around)
+        p, q = dot(up, along), dot(up, around)
+        u, v = u + (c * p - b * q) / (a * c - b * b), v + (a * q - b * p) / (a * c - b * b)
+        for _ in range(STEPS):
+            point, along, around = self.surface.derivatives(u, v)
+            reach = point - base
+            rest, skew = 0.5 * (dot(reach, reach) - h * h), dot(reach, slope)
+            a, b, c, d = dot(reach, along), dot(reach, around), dot(along, slope), dot(around, slope)
+            determinant = a * d - b * c
+            du, dv = (d * rest - b * skew) / determinant, (a * skew - c * rest) / determinant
+            u, v = u - du, v - dv
+            if np.abs(rest).max() < CONVERGED * h * h and np.abs(dv).max() < 1e-11:
+                break
+        sound = (np.abs(rest) < 1e-8 * h * h) & (np.abs(skew) < 1e-7 * h * np.sqrt(pace))
+        return np.where(sound, u, np.nan), np.where(sound, v, np.nan), 1.0 - dot(reach, bend) / pace
+
+    def _samples(self, u: Array) -> tuple[Index, Array, Array, Array, Array]:
+        """Arc, t, u, v, focusing number of samples along the curve below: nodes, and more where the front gathers."""
+        ends = self.breaks[1:] - 1
+        arc = np.r_[np.arange(len(self.curve.span)), ends]
+        t = np.r_[np.zeros(len(self.curve.span)), np.ones(len(ends))]
+        found = self._forward(u, arc, t)
+        number = found[2][: len(self.curve.span)]
+        least = np.fmin(number, np.roll(number, -1))
+        least[ends] = np.fmin(number[ends], found[2][len(number) :])
+        close = np.flatnonzero(least < GATHERING)
+        if len(close):
+            more, places = np.repeat(close, 3), np.tile([0.25, 0.5, 0.75], len(close))
+            extra = self._forward(u, more, places)
+            arc, t = np.r_[arc, more], np.r_[t, places]
+            found = tuple(np.r_[one, other] for one, other in zip(found, extra))  # type: ignore[assignment]
+        order = np.lexsort((t, arc))
+        return arc[order], t[order], found[0][order], found[1][order], found[2][order]
+
+    def _runs(self, u: Array) -> list[Run]:
+        arc, t, new, v, number = self._samples(u)
+        self._rise = float(np.nanmax(new) - u.min()) if np.isfinite(new).any() else 0.0
+        w = self.curve.w[arc] + t * self.curve.span[arc]
+        period, pieces = self.curve.period, max(1, len(self.breaks) - 1)
+        piece = np.searchsorted(self.breaks, arc, side="right") - 1 if len(self.breaks) else np.zeros(len(arc), np.intp)
+        copies = np.array([-2, -1, 0, 1])  # started at a corner the curve begins up to a period late
+        turns = np.repeat(copies, len(arc))
+        shift = turns * period
+        piece = np.tile(piece, len(copies)) + (turns * pieces if len(self.breaks) else 0)
+        v, w, new, number = (np.tile(x, len(copies)) for x in (v, w, new, number))
+        v, w = v + shift, w + shift
+        good = (number > 0.0) & np.isfinite(v)
+        joined = good[1:] & good[:-1] & (piece[1:] == piece[:-1]) & (np.diff(v) > 0.0)
+        start = np.flatnonzero(good & np.r_[True, ~joined])
+        stop = np.flatnonzero(good & np.r_[~joined, True])
+        runs: list[Run] = []
+        for a, b in zip(start.tolist(), stop.tolist()):
+            if b == a:
+                continue
+            low = w[max(a - 1, 0)] if a and piece[a - 1] == piece[a] else w[a]
+            high = w[b + 1] if b + 1 < len(w) and piece[b + 1] == piece[b] else w[b]
+            first, last = self._arcs_of(int(piece[a]) % pieces)
+            runs.append(Run(v[a : b + 1], new[a : b + 1], w[a : b + 1], False, float(low), float(high), first, last,
+                            float(shift[a]) if len(self.breaks) else 0.0))
+        for k in np.flatnonzero((piece[1:] != piece[:-1]) & (v[1:] > v[:-1] + 1e-9)):  # corners that stick out
+            first, last = self._arcs_of(int(piece[k]) % pieces)
+            runs.append(Run(v[k : k + 2], new[k : k + 2], w[[k, k]], True, float(w[k]), float(w[k]), first, last,
+                            float(shift[k])))
+            self.fan_ends += [float(v[k]), float(v[k + 1])]
+        return [runs[i] for i in np.lexsort(([run.v[-1] for run in runs], [run.v[0] for run in runs]))]
+
+    def _arcs_of(self, piece: int) -> tuple[int, int]:
+        return (int(self.breaks[piece]), int(self.breaks[piece + 1]) - 1) if len(self.breaks) else (0, -1)

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Long beads are tilted clear at some of their points, the knots; between these their tilts run evenly, and are looked at.
+
+A tilt comes and goes over millimetres, points may lie hundredths apart: a search at every one of them costs time, and steps
+between its candidates, which are so many degrees, would turn the tool too fast from one point to the next.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .places import Room
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+MOST = 2500  # points of a bead at which tilts are searched
+
+
+def of_bead(row: Index) -> Index:
+    """The points of a bead, of its points `row` in order, at which tilts are searched: evenly many, both ends among them."""
+    if len(row) <= MOST:
+        return row
+    knots: Index = row[np.unique(np.round(np.linspace(0, len(row) - 1, MOST)).astype(np.intp))]
+    return knots
+
+
+def free_about(row: Index, knots: Index, free: Mask) -> Mask:
+    """(k,) whether all of the points nearest to each of the knots are free; free: (n,) of all points of the toolpath."""
+    place = np.searchsorted(row, knots)
+    middles = np.r_[0, (place[:-1] + place[1:] + 1) // 2]
+    about: Mask = np.logical_and.reduceat(free[row], middles)
+    return about
+
+
+def spread_out(room: Room, row: Index, knots: Index, asked: Array, axes: Array) -> tuple[Array, Index]:
+    """Axes (m, 3) at all points of a bead, those (k, 3) at its knots and even between; and the points that touch there."""
+    points = room.points[row]
+    along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    at = along[np.searchsorted(row, knots)]
+    lean = axes - asked[knots]
+    found = asked[row] + np.stack([np.interp(along, at, column) for column in lean.T], axis=1)
+    found /= np.linalg.norm(found, axis=1, keepdims=True)
+    between = dataclasses.replace(room, nozzle=room.nozzle.halfway())
+    others = np.setdiff1d(row, knots, assume_unique=True)
+    touching: Index = others[~between.clear(others, found[np.searchsorted(row, others)])]
+    return found, touching

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is said of tools that are tilted to keep the nozzle clear."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...issues import ERROR, NOTE, WARNING, Issue
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+
+def place(places: list[tuple[int, int]], begin: Index, row: int) -> tuple[tuple[int, int], int]:
+    """Layer and bead of a row of all points, and the point's number in its bead. places: (layer, bead);
+    begin: first rows."""
+    bead = int(np.searchsorted(begin, row, side="right")) - 1
+    return places[bead], row - int(begin[bead])
+
+
+def tilt_issues(places: list[tuple[int, int]], begin: Index, tilt: Array, lost: Mask) -> list[Issue]:
+    """Where tools are tilted, by tilt (n,) rad, and at which points (n,) that does not help."""
+    bead = np.repeat(np.arange(len(places)), np.diff(begin))
+    layer = np.array([place[0] for place in places])[bead]
+    issues = []
+    if lost.any():
+        at, point = place(places, begin, int(np.argmax(lost)))
+        issues.append(Issue(
+            ERROR, "CLEARANCE", f"however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at "
+            f"{int(lost.sum())} point(s) of layers {layer[lost].min()} to {layer[lost].max()}; use a slimmer nozzle, a "
+            "larger build_direction.max_tilt or another place for what is in the way", *at, point,
+        ))
+    moved = ~lost & (tilt > 1e-9)
+    if moved.any():
+        worst = int(np.argmax(np.where(moved, tilt, 0.0)))
+        at, point = place(places, begin, worst)
+        first, last = int(layer[moved].min()), int(layer[moved].max())
+        where = f"in layer {first}" if first == last else f"in layers {first} to {last}"
+        issues.append(Issue(
+            NOTE, "TILT_BACK", f"{where}, tool axes are tilted back to keep the nozzle clear, by up to "
+            f"{np.degrees(tilt[worst]):.2f} deg", *at, point,
+        ))
+    return issues
+
+
+def turn_issues(fastest: float, most: float) -> list[Issue]:
+    """That tilted tools turn by `fastest` rad/mm, where that is not 0; most: what they should."""
+    if not fastest:
+        return []
+    return [Issue(
+        WARNING, "TURN_PASSED", f"to keep the nozzle clear, tool axes turn by up to {np.degrees(fastest):.3g} deg/mm, "
+        f"faster than build_direction.max_turn ({np.degrees(most):.3g} deg/mm); use a slimmer nozzle or allow a faster turn",
+    )]

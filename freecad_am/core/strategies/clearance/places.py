@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether the nozzle is clear of bodies and deposit at the points of beads, and halfway between them.
+
+The deposit has its width and height. Its beads that are of the layer being laid, and next to the tip, count as lines, and
+the lowest part of the nozzle is left out (`collision.nozzle`): there it touches what it rightly does.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision import deposit
+from ...collision.nozzle import Nozzle, depositing
+from ...collision.scene import Scene, scene
+from ...geometry.columns import columns
+from ...geometry.surroundings import Body
+from ...geometry.walls.surface import dot
+from ...parameters.cell import NozzleParameters
+from ...toolpath import Bead, Toolpath
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+CAP = 1e-9  # rad
+SEAM = 1e-6  # rad that a closed bead's end may be past a turn
+
+
+@dataclass(frozen=True)
+class Room:
+    """Everything that decides whether an axis at a point is clear: points (n, 3) in the order of deposit, own (n,) the first
+    point of those beads that each overlaps by intention where it is next to them."""
+
+    points: Array
+    own: Index
+    scene: Scene
+    nozzle: Nozzle
+    max_tilt: float
+
+    def clear(self, at: Index, axis: Array) -> Mask:
+        """Whether the axes (k, 3) at the points numbered `at` (k,) are clear and within the cap."""
+        x, y, z = columns(axis)
+        clear: Mask = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
+        rows = np.flatnonzero(clear)
+        here = at[rows]
+        clear[rows] = ~self.scene.touched(self.nozzle, self.points[here], axis[rows], here + 1, self.own[here])
+        return clear
+
+
+def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0, lean: float = 0.0) -> Nozzle:
+    """The nozzle as it is looked at while it deposits beads of up to that height, mm, leaning by intention, rad."""
+    return depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height, lean)
+
+
+def room_of(
+    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float, often: bool = True,
+    feature: int = 0,
+) -> Room:
+    """The room of all points of a toolpath, in order, among bodies; max_tilt: rad. Where it is asked but once it takes less
+    memory. feature: of several features, the one whose points are asked about."""
+    beads = [bead for _, _, bead in toolpath]
+    points, build = (np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build"))
+    counts = np.array([len(bead) for bead in beads])
+    starts = np.cumsum(counts) - counts
+    layer = np.repeat([i for i, _, _ in toolpath], counts)
+    heights = toolpath.heights
+    lean, own = 0.0, np.searchsorted(layer, layer)
+    if (toolpath.features[feature] if toolpath.features else toolpath).family == "revolution":
+        # directions and tools are turned as one there; a spiral is of the layer being laid for its last turn
+        mine = np.repeat(beads_of(toolpath, feature), counts)
+        turned = np.arccos(np.clip(dot(build, np.concatenate([bead.tool for bead in beads])), -1.0, 1.0))
+        lean = float(turned[mine].max())
+        own = np.concatenate([first + _turn_before(bead.parameter) for first, bead in zip(own[starts], beads, strict=True)])
+    looked = nozzle_of(nozzle, float(heights.max()), lean)
+    made = deposit.of_beads if often else deposit.in_parts
+    laid = made(points, build, toolpath.widths, heights, starts, beside=looked.foot)
+    # a bead that closes a gap overlaps those about the gap, of layers below too
+    own = np.where(np.repeat([bead.closing for bead in beads], counts), 0, own)
+    return Room(points, own, scene(bodies, points, looked.reach, laid), looked, max_tilt)
+
+
+def beads_of(toolpath: Toolpath, feature: int | None) -> Mask:
+    """(beads,) which beads are of a feature, where a toolpath has several; all where None is asked about."""
+    chosen: Mask = np.array([
+        feature is None or not toolpath.features or toolpath.layers[i].feature == feature for i, _, _ in toolpath
+    ])
+    return chosen
+
+
+def _turn_before(angle: Array) -> Index:
+    """(n,) the first point of a bead that is a turn or less before each of its points, of angles rising or falling."""
+    turned = np.abs(angle - angle[0])
+    return np.asarray(np.searchsorted(turned, turned - 2.0 * np.pi - SEAM))
+
+
+def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:
+    """Points and axes (n, 3) halfway from each point to the next of its bead; at the last of a bead its own."""
+    points, axes, first = [], [], 0
+    for bead in beads:
+        mine = tool[first : first + len(bead)]
+        first += len(bead)
+        mean = mine[:-1] + mine[1:]
+        points += [bead.outline.at(np.arange(len(bead) - 1), 0.5)[0], bead.points[-1:]]
+        axes += [mean / np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), CAP), mine[-1:]]
+    return np.concatenate(points), np.concatenate(axes)
+
+
+def touched_between(room: Room, beads: Sequence[Bead], tool: Array, free: Mask) -> Mask:
+    """The points (n,) that are free as the next of their bead is, and the nozzle touches halfway to it."""
+    points, axes = halfway(beads, tool)
+    both = free & np.r_[free[1:], False]
+    both[np.cumsum([len(bead) for bead in beads]) - 1] = False
+    midway = dataclasses.replace(room, points=points, nozzle=room.nozzle.halfway(), max_tilt=float(np.pi))
+    touched = np.zeros(len(points), dtype=bool)
+    rows = np.flatnonzero(both)
+    touched[rows] = ~midway.clear(rows, axes[rows])
+    return touched
+
+
+def halved(toolpath: Toolpath, between: Mask) -> Toolpath:
+    """The toolpath with a point halfway after each of those marked (n,)."""
+    marks = iter(np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1]))
+    return dataclasses.replace(toolpath, layers=tuple(
+        dataclasses.replace(layer, beads=tuple(
+            bead.halved(np.flatnonzero(mark)) if mark.any() else bead for bead, mark in zip(layer.beads, marks)
+        ))
+        for layer in toolpath.layers
+    ))

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tilts of the tool axis along beads that keep the nozzle clear at every point, and are small and even along the bead.
+
+Each point has candidate axes on cones about the asked one, in growing angle
+until every point has a clear one, or a few of those without have none on any cone; of all ways through clear candidates
+that is taken for which the integral of tilt^2 + (SPREAD d tilt / ds)^2 along the bead is least. Finer candidates about the
+way found follow, level by level.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry import frames
+from ...geometry.ties import first_least
+from .least_turn import least
+from .places import CAP, Room
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and candidates on each
+LARGEST = np.radians(90.0)  # tilt that is tried
+PROBED, PROBES = 7, 16  # before which cone, and at how many points of a bead, all larger ones are tried
+LEVELS = 4  # of finer candidates, each of half the distance
+SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
+FAR = 4.0  # times SPREAD, beyond which nothing is left of a tilt
+
+
+class TiltSearch:
+    """The blocked beads side by side: their points one after the other (m,), and padded to chains (b, n).
+
+    A tilt is a turn from the asked axis, given by two components (rad) along directions that are carried along the bead
+    without twist; one of them is 0 where the tool must stay in a plane.
+    """
+
+    def __init__(self, room: Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask,
+                 spread: float) -> None:
+        self.room, self.closed, self.plane, self.spread = room, closed, plane, spread
+        self.flat = np.concatenate(rows)
+        self.asked = asked
+        self.counts = np.array([len(row) for row in rows])
+        self.begin = np.r_[0, np.cumsum(self.counts)][:-1]
+        self.lost = np.zeros(len(rows), dtype=bool)  # beads that no tilt clears
+        self.sides = np.concatenate([_sides(asked[row], plane) for row in rows])
+        points = room.points[self.flat]
+        self.step = np.r_[np.linalg.norm(np.diff(points, axis=0), axis=1), 0.0]
+        self.step[self.begin + self.counts - 1] = 0.0
+        self.near = np.concatenate([
+            _near(points[b : b + n], ~free[row], loop, FAR * spread)
+            for b, n, row, loop in zip(self.begin, self.counts, rows, closed, strict=True)
+        ])
+
+    def axes(self, at: Index, offset: Array) -> Array:
+        """Tool axes (k, 3) of tilts (k, 2) at points numbered `at`, all of them among those of the blocked beads."""
+        return self._tilted(np.searchsorted(self.flat, at), offset)
+
+    def _tilted(self, place: Index, offset: Array) -> Array:
+        angle = np.linalg.norm(offset, axis=1)
+        towards = offset / np.where(angle > 0.0, angle, 1.0)[:, None]
+        lean = np.einsum("ki,kij->kj", towards, self.sides[place])
+        axis = np.cos(angle)[:, None] * self.asked[self.flat[place]] + np.sin(angle)[:, None] * lean
+        unit: Array = axis / np.linalg.norm(axis, axis=1, keepdims=True)
+        return np.where((angle > 0.0)[:, None], unit, self.asked[self.flat[place]])
+
+    def _clear(self, place: Index, offsets: Array) -> Mask:
+        """(k, s) whether the tilts (s, 2) or (k, s, 2) are clear at the places (k,)."""
+        offsets = np.broadcast_to(offsets, (len(place), *offsets.shape[-2:]))
+        s = offsets.shape[1]
+        spread = np.repeat(place, s)
+        return self.room.clear(self.flat[spread], self._tilted(spread, offsets.reshape(-1, 2))).reshape(-1, s)
+
+    def found(self) -> tuple[Array, Mask]:
+        """Tilts (m, 2) of all points, and the points (m,) that have none that is clear."""
+        offset, stuck = self.coarse()
+        for level in range(1, LEVELS + 1):
+            offset = self.finer(offset, RING / 2.0**level, level)
+        return offset, stuck
+
+    def coarse(self) -> tuple[Array, Mask]:
+        """Tilts (m, 2) on the cones, and the points (m,) that have none that is clear; those hinder no one."""
+        states = np.zeros((1, 2))
+        allowed = self._clear(np.arange(len(self.flat)), states) | ~self.near[:, None]
+        bead = np.repeat(np.arange(len(self.counts)), self.counts)
+        pending = np.ones(len(self.counts), dtype=bool)
+        last = round(LARGEST / RING)
+        for number in range(1, last + 1):
+            if number == PROBED:
+                # where nothing frees some of a bead's points there is no way, however many candidates the others have
+                self.lost[self._hopeless(allowed, pending, range(number, last + 1))] = True
+                pending &= ~self.lost
+                if not pending.any():
+                    break
+            ring = self._ring(number)
+            states = np.concatenate([states, ring])
+            more = np.zeros((len(self.flat), len(ring)), dtype=bool)
+            some = np.flatnonzero(pending[bead] & self.near)
+            more[some] = self._clear(some, ring)
+            # one ring more than the first that frees every point, so that there is a way round
+            had = np.logical_and.reduceat(self._both_ends(allowed).any(axis=1), self.begin)
+            allowed = np.hstack([allowed, more])
+            pending &= ~had
+            if not pending.any():
+                break
+        allowed = self._both_ends(allowed)
+        stuck = np.logical_not(allowed.any(axis=1))
+        self.lost |= np.logical_or.reduceat(stuck, self.begin)
+        allowed[stuck] = True
+        # a closed bead starts where least tilt is needed, and with it
+        size = np.where(allowed, np.linalg.norm(states, axis=1), np.inf)
+        anchor = self._anchors(np.where(stuck, np.inf, size.min(axis=1)))
+        return states[self._least(states[None], allowed, anchor, first_least(size))], stuck
+
+    def _hopeless(self, allowed: Mask, pending: Mask, numbers: range) -> Index:
+        """The beads among those pending of which one of the points looked at is not free on any cone, of points (m, s) and
+        further cones."""
+        barred = ~self._both_ends(allowed).any(axis=1) & self.near
+        chosen = [np.zeros(0, dtype=np.intp)]
+        for bead in np.flatnonzero(pending):
+            rows = self.begin[bead] + np.flatnonzero(barred[self.begin[bead] : self.begin[bead] + self.counts[bead]])
+            chosen.append(rows[np.unique(np.linspace(0, len(rows) - 1, PROBES).astype(int))] if len(rows) else rows)
+        places = np.concatenate(chosen)
+        free = self._clear(places, np.concatenate([self._ring(number) for number in numbers])).any(axis=1)
+        beads: Index = np.unique(np.searchsorted(self.begin, places[~free], side="right") - 1)
+        return beads
+
+    def finer(self, offset: Array, step: float, turn: int) -> Array:
+        """Tilts (m, 2) near those given that make a better way, at most two steps of `step` (rad) away in each component."""
+        around = step * np.arange(-2.0, 3.0)
+        grid = np.stack(np.meshgrid(around, around if self.plane is None else [0.0], indexing="ij"), axis=-1).reshape(-1, 2)
+        offsets = offset[:, None] + grid
+        here = len(grid) // 2
+        offsets[:, here] = offset
+        allowed = np.zeros(offsets.shape[:2], dtype=bool)
+        some = np.flatnonzero(self.near & ~np.repeat(self.lost, self.counts))
+        allowed[some] = self._clear(some, offsets[some])
+        allowed = self._both_ends(allowed)
+        allowed[:, here] = True
+        # each time another point of a closed bead stays as it is
+        anchor = (self.counts - 1) * (turn % 3) // 3
+        chosen = self._least(offsets, allowed, anchor, np.full(len(offset), here))
+        better: Array = offsets[np.arange(len(offset)), chosen]
+        return better
+
+    def _ring(self, number: int) -> Array:
+        azimuth = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS if self.plane is None else np.array([0.0, np.pi])
+        ring: Array = number * RING * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
+        if self.plane is not None:
+            ring[:, 1] = 0.0
+        return ring
+
+    def _both_ends(self, allowed: Mask) -> Mask:
+        """The first and last point of a closed bead are one: what is allowed at both."""
+        allowed = allowed.copy()
+        first = self.begin[self.closed]
+        last = first + self.counts[self.closed] - 1
+        allowed[first] &= allowed[last]
+        allowed[last] = allowed[first]
+        return allowed
+
+    def _anchors(self, size: Array) -> Index:
+        """Of each bead the point that needs least tilt, of several the one farthest from those that need more."""
+        anchors = []
+        for start, count in zip(self.begin, self.counts, strict=True):
+            need = size[start : start + count - 1]
+            least_of_all = np.flatnonzero(need <= need.min() + CAP)
+            more = np.flatnonzero(need > need.min() + CAP)
+            away = nearest(more.astype(float), least_of_all.astype(float), float(count - 1))
+            anchors.append(int(least_of_all[np.argmax(away)]))
+        return np.array(anchors)
+
+    def _least(self, states: Array, allowed: Mask, anchor: Index, fixed: Index) -> Index:
+        """(m,) the states of least cost; a closed bead is run from the anchor all around, its state there `fixed`."""
+        chosen = np.zeros(len(self.flat), dtype=np.intp)
+        # chains of like lengths together: as long as the longest, all of them would take memory that one needs
+        length = np.ceil(np.log2(self.counts)).astype(int)
+        for beads in (np.flatnonzero(length == some) for some in np.unique(length)):
+            self._least_of(beads, states, allowed, anchor, fixed, chosen)
+        return chosen
+
+    def _least_of(self, beads: Index, states: Array, allowed: Mask, anchor: Index, fixed: Index, chosen: Index) -> None:
+        """Put the states of least cost of some beads where they belong among those chosen (m,)."""
+        n, s = int(self.counts[beads].max()), allowed.shape[1]
+        place = np.zeros((len(beads), n), dtype=np.intp)  # of the chains' points in the list, the pads at any
+        weight, change = np.zeros(place.shape), np.zeros((len(place), n - 1))
+        free = np.ones((*place.shape, s), dtype=bool)
+        for k, bead in enumerate(beads):
+            start, count = self.begin[bead], self.counts[bead]
+            around = np.arange(count)
+            if self.closed[bead]:
+                around = np.r_[np.arange(anchor[bead], count - 1), np.arange(anchor[bead]), anchor[bead]]
+            place[k, :count] = start + around
+            step = self.step[place[k, : count - 1]]
+            weight[k, :count] = 0.5 * (np.r_[0.0, step] + np.r_[step, 0.0])
+            change[k, : count - 1] = self.spread**2 / np.maximum(step, 1e-6)
+            free[k, :count] = allowed[place[k, :count]]
+            if self.closed[bead]:
+                ends = np.arange(s) == fixed[start + anchor[bead]]
+                free[k, 0], free[k, count - 1] = ends, ends
+        found = least(states[None] if states.shape[0] == 1 else states[place], free, weight, change)
+        for k, bead in enumerate(beads):
+            count = self.counts[bead]
+            chosen[place[k, :count]] = found[k, :count]
+            if self.closed[bead]:
+                chosen[self.begin[bead] + count - 1] = chosen[self.begin[bead]]
+
+
+def _near(points: Array, blocked: Mask, closed: bool, reach: float) -> Mask:
+    """Which points of a bead are within `reach` mm, along it, of the blocked ones."""
+    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    near: Mask = nearest(length[blocked], length, float(length[-1]) if closed else None) <= reach
+    return near
+
+
+def nearest(known: Array, places: Array, length: float | None) -> Array:
+    """(n,) how far places (n,) on a line are from the nearest of those known (k,), rising; infinity where there are none.
+    length: of a line that closes, on which they are all."""
+    if not len(known):
+        return np.full(len(places), np.inf)
+    after = np.searchsorted(known, places)
+    apart: Array = np.minimum(
+        np.abs(places - known[np.maximum(after - 1, 0)]), np.abs(known[np.minimum(after, len(known) - 1)] - places)
+    )
+    if length is None:
+        return apart
+    # the other way round the one that is farthest this way is nearest
+    around: Array = np.minimum(apart, length - np.maximum(np.abs(places - known[0]), np.abs(places - known[-1])))
+    return around
+
+
+def _sides(asked: Array, plane: Array | None) -> Array:
+    """(n, 2, 3) unit vectors normal to the asked axes and to each other, carried along a bead; the first in the plane."""
+    if plane is not None:
+        side = np.cross(plane, asked)
+        side /= np.linalg.norm(side, axis=1, keepdims=True)
+        return np.stack([side, np.broadcast_to(plane, side.shape)], axis=1)
+    middle = asked.mean(axis=0)
+    size = np.linalg.norm(middle)
+    middle = middle / size if size > 1e-6 else asked[0]
+    level = frames.smallest_rotation(middle, np.array([0.0, 0.0, 1.0]))[:2]
+    sides: Array = np.einsum("nij,kj->nki", frames.smallest_rotation(middle, asked), level)
+    return sides

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parts of revolution: a wall in, layers of beads with build directions out (Chalvin 2020, sections 2.1 and 6.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.curves.polyline import turn_segments
+from ...geometry.curves.profile import Array, RevolvedWall
+from ...issues import NOTE, WARNING, InputError, Issue
+from ...parameters.bead_classes import FIRST_LAYER, WALL
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.cell import NozzleParameters
+from ...parameters.process import ProcessParameters
+from ...parameters.strategy import RevolutionParameters
+from ...process import classes, seam
+from ...slicing import arc_length, iso_height
+from ...toolpath import Bead, Layer, Toolpath
+from .. import size
+from ..progress import Progress, silent
+from . import platform, spiral
+from .tilt import Tilting
+
+SPACING_BAND = 0.2  # of the layer height (Chalvin 2020, section 2.1)
+
+
+@dataclass(frozen=True)
+class Slices:
+    """The beads of all layers in the order of deposit: layer index (m,), radius and height (m,) mm, tangent (m, 2)."""
+
+    layer: NDArray[np.intp]
+    radius: Array
+    height: Array
+    tangent: Array
+
+
+def plan(
+    wall: RevolvedWall, strategy: RevolutionParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    nozzle: NozzleParameters, platform_diameter: float, platform_frame: Array | None = None, progress: Progress = silent,
+) -> Toolpath:
+    """The toolpath of a wall of revolution, in part coordinates.
+
+    Layers by arc length or height; points per bead from the chord error; build directions from the mode, capped and
+    tilted back until the nozzle is clear. platform_diameter: mm, 0 without a platform. platform_frame: (4, 4) pose
+    of the platform in part coordinates, None when the feature frame sits on it. A spiral is one layer with one open
+    bead. Raises InputError 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN', 'TOO_MANY'.
+    """
+    if build.mode == "symmetry-plane":
+        raise InputError(
+            "NOT_FOR_FAMILY", "build_direction.mode",
+            "symmetry-plane is not for parts of revolution; use local, layer or fixed",
+        )
+    size.refuse_absurd(size.of_revolution(wall, strategy), strategy)
+    progress(0.0, "cutting layers")
+    under = platform.under(wall, platform_diameter, platform_frame)
+    own = classes.leaning(build, process, WALL)
+    tilting = Tilting(wall, strategy, own, nozzle, under, process.bead_width)
+    issues: list[Issue] = []
+    if strategy.path == "spiral":
+        layers, found = spiral.layers(wall, strategy, process, tilting)
+    else:
+        slices, issues = sliced(wall, strategy)
+        progress(0.2, f"build directions of {slices.layer[-1] + 1} layers, keeping the nozzle clear")
+        first = replace(tilting, parameters=classes.leaning(build, process, FIRST_LAYER))
+        layers, found = _layers(wall, slices, strategy, process, tilting, first)
+    progress(0.9, "checking")
+    issues = [*wall.issues, *platform.overhanging(wall, under), *issues, *found]
+    return Toolpath(
+        layers, wall.frame, strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap,
+        bead_width=process.bead_width,
+    )
+
+
+def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, list[Issue]]:
+    """All beads of all layers, and notes on what is left at the top, what is skipped and uneven spacing.
+
+    A bead whose radius is no more than the chord error cannot be told from a point, and is skipped.
+    """
+    meridian = wall.meridian
+    rule = arc_length if strategy.spacing == "arc-length" else iso_height
+    layers, left = rule.layers(meridian, strategy.layer_height)
+    issues = []
+    if left > 1e-6 * strategy.layer_height:
+        measure = "of the wall" if rule is arc_length else "of the height"
+        issues.append(Issue(NOTE, "REMAINDER", f"{left:.3g} mm {measure} are left at the top, less than a layer"))
+    if rule is iso_height:
+        issues += _spacing_issues(wall, layers, strategy.layer_height)
+    flat = np.concatenate(layers)
+    number = np.repeat(np.arange(len(layers)), [len(layer) for layer in layers])
+    radius, height, tangent = meridian.at(flat)
+    kept = radius > strategy.chord_error
+    if not kept.all():
+        issues.append(Issue(
+            NOTE, "POINT_BEADS",
+            f"{int((~kept).sum())} bead(s) of a radius of no more than the chord error ({strategy.chord_error:g} mm) "
+            "are left out", int(number[~kept][0]),
+        ))
+    renumbered = np.unique(number[kept], return_inverse=True)[1]
+    return Slices(renumbered, radius[kept], height[kept], tangent[kept]), issues
+
+
+def _spacing_issues(wall: RevolvedWall, layers: list[Array], layer_height: float) -> list[Issue]:
+    gaps = [iso_height.spacing(wall.meridian, a, b) for a, b in pairwise(layers)]
+    widest = np.array([gap.max() for gap in gaps])
+    narrowest = np.array([gap.min() for gap in gaps])
+    over, under = (1.0 + SPACING_BAND + 1e-9) * layer_height, (1.0 - SPACING_BAND - 1e-9) * layer_height
+    uneven = np.flatnonzero((widest > over) | (narrowest < under))
+    if len(uneven) == 0:
+        return []
+    worst = int(uneven[np.argmax(np.maximum(widest[uneven] - layer_height, layer_height - narrowest[uneven]))])
+    return [Issue(
+        WARNING, "SPACING",
+        f"{len(uneven)} of {len(layers)} layers are more than 20 % off the layer height of {layer_height:g} mm, first "
+        f"layer {int(uneven[0]) + 1}; layer {worst + 1} is {widest[worst]:.4g} mm from the one below; "
+        "layers along the wall (spacing: arc-length) are even",
+        worst + 1,
+    )]
+
+
+def _layers(
+    wall: RevolvedWall, slices: Slices, strategy: RevolutionParameters, process: ProcessParameters, tilting: Tilting,
+    first: Tilting,
+) -> tuple[tuple[Layer, ...], list[Issue]]:
+    """One layer per index, its beads turned about the axis. first: how the tool leans on the first layer."""
+    azimuths, rising = [], []
+    for index, (layer, radius) in enumerate(zip(slices.layer, slices.radius, strict=True)):
+        segments = turn_segments(radius, strategy.chord_error, wall.end - wall.start, strategy.min_points)
+        up = seam.rising(process, int(layer) if wall.full else index, wall.full)
+        rising.append(up)
+        azimuths.append(
+            seam.closed_azimuths(process, int(layer), segments, up) if wall.full
+            else seam.open_azimuths(wall.start, wall.end, segments, up)
+        )
+    builds, tools, issues = tilting.settle(slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer)
+    if first.parameters != tilting.parameters:  # below it is nothing that leans another way
+        count = int((slices.layer == 0).sum())
+        below, held, found = first.settle(
+            slices.radius[:count], slices.height[:count], slices.tangent[:count], azimuths[:count], rising[:count],
+            slices.layer[:count],
+        )
+        builds, tools = [*below, *builds[count:]], [*held, *tools[count:]]
+        issues = [*found, *(issue for issue in issues if issue.layer != 0)]
+    beads: list[list[Bead]] = [[] for _ in range(int(slices.layer[-1]) + 1)]
+    for index, azimuth in enumerate(azimuths):
+        name = classes.of_wall(int(slices.layer[index]))
+        speed = process.for_class(name).travel_speed
+        bead = _bead(wall, slices, index, azimuth, builds[index], tools[index], speed, name)
+        beads[int(slices.layer[index])].append(bead)
+    return tuple(Layer(tuple(layer)) for layer in beads), issues
+
+
+def _bead(
+    wall: RevolvedWall, slices: Slices, index: int, azimuth: Array, build: Array, tool: Array, speed: float, name: str
+) -> Bead:
+    at = azimuth.copy()
+    if wall.full:
+        at[-1] = at[0]  # the last point is the first, to the bit
+    n = len(azimuth)
+    points = wall.points(np.full(n, slices.radius[index]), np.full(n, slices.height[index]), at)
+    return Bead(
+        points, wall.directions(build, at), wall.directions(tool, at), azimuth,
+        np.full(n, speed), wall.full, bead_class=name,
+    )

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where the platform is under a wall of revolution, and whether what is deposited stands on it or reaches below it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.curves.profile import Array, RevolvedWall
+from ...geometry.mesh.solid import spread
+from ...geometry.on_hub import SolidsOnHub
+from ...geometry.told import place
+from ...issues import WARNING, InputError, Issue
+
+UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
+TOUCH = 1e-6  # mm
+DEEP = 0.05  # mm; what reaches no farther below the platform stands on it, but for its chords
+MOVE = "move the part up in its file, or set cell.platform_diameter to what there is (0 for none)"
+MOUNT = (
+    "use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set "
+    "cell.platform_diameter to what there is (0 for none)"
+)
+GRAIN = 0.05  # of the radius of the platform, between the places of solids that are looked at
+
+
+@dataclass(frozen=True)
+class Platform:
+    """A disc about the axis of the wall: radius mm, 0 without a platform, and height mm in the feature frame.
+
+    off: mm from the axis to the middle of the true disc, which `radius` includes.
+    """
+
+    radius: float
+    height: float = 0.0
+    off: float = 0.0
+
+
+def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
+    """The platform as seen from the wall.
+
+    diameter: mm, 0 for none. frame: (4, 4) pose of the platform in part coordinates; None when the feature frame sits on
+    it. A disc whose middle is off the axis counts as a larger one about the axis, which is on the safe side. Raises
+    InputError 'OFF_PLATFORM' when the axis of the wall misses the platform, or the wall starts below it.
+    """
+    centre, normal = np.zeros(3), np.array([0.0, 0.0, 1.0])
+    if frame is not None:
+        centre = wall.frame[:3, :3].T @ (frame[:3, 3] - wall.frame[:3, 3])
+        normal = wall.frame[:3, :3].T @ frame[:3, 2]
+    if diameter <= 0.0:
+        return Platform(0.0)
+    off, height, radius = float(np.hypot(centre[0], centre[1])), float(centre[2]), 0.5 * diameter
+    if normal[2] < 0.0 or np.hypot(normal[0], normal[1]) > UPRIGHT:
+        angle = np.degrees(np.arctan2(np.hypot(normal[0], normal[1]), normal[2]))
+        raise _off(f"the axis of {wall.label} is {angle:.4g} deg off the normal of the platform", "use mount: feature")
+    if off > radius:
+        raise _off(
+            f"the axis of {wall.label} is {off:.4g} mm off the middle of the platform and misses it",
+            "use mount: feature, or move the part",
+        )
+    if height > TOUCH:
+        raise _off(f"the base of {wall.label} is {height:.4g} mm below the platform", "use mount: feature, or move the part")
+    return Platform(radius + off, height, off)
+
+
+def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
+    """A warning when the base of the wall reaches over the edge of the platform."""
+    base, edge = float(wall.meridian.points[0, 0]), platform.radius - 2.0 * platform.off
+    if platform.radius == 0.0 or base <= edge + TOUCH:
+        return []
+    return [Issue(
+        WARNING, "OVER_PLATFORM",
+        f"the base of {wall.label} has a diameter of {2.0 * base:.4g} mm and reaches over the platform; check "
+        "cell.platform_diameter (0 for none)", 0,
+    )]
+
+
+def refuse_below(label: str, points: Array, frame: Array, diameter: float, remedy: str = MOVE) -> None:
+    """InputError OFF_PLATFORM where points (n, 3) of what is deposited are below the platform, a disc about the origin of a
+    frame (4, 4) in part coordinates; diameter: mm, 0 for none. Beside the disc there is room below its plane."""
+    local = (points - frame[:3, 3]) @ frame[:3, :3]
+    depth = np.where(np.hypot(local[:, 0], local[:, 1]) < 0.5 * diameter, -local[:, 2], 0.0)
+    if depth.max(initial=0.0) > DEEP:
+        worst = int(depth.argmax())
+        raise _off(
+            f"{label} reaches {depth[worst]:.4g} mm below the platform, at {place(points[worst])}", remedy,
+        )
+
+
+def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> None:
+    """The same of solids on a hub, of what is outside of the surfaces that they stand on."""
+    def over(corners: Array) -> NDArray[np.bool_]:
+        """Which triangles (n, 3, 3) may come over the disc, or below it."""
+        flat = (corners - frame[:3, 3]) @ frame[:3, :2]
+        middle = flat.mean(axis=1)
+        reach = np.linalg.norm(flat - middle[:, None], axis=2).max(axis=1)
+        return np.asarray(np.linalg.norm(middle, axis=1) - reach < 0.5 * diameter)
+
+    for group in solids.groups:
+        for body in group.bodies:
+            corners = body.corners()
+            low = ((corners - frame[:3, 3]) @ frame[:3, 2]).min(axis=1) < -DEEP
+            middles, _ = spread(corners[low], max(GRAIN * 0.5 * diameter, 1.0), over)  # of a large part most is beside it
+            points = np.vstack([corners[low].reshape(-1, 3), middles])
+            outside = group.base.surface.distance(group.base.inside(points)) > DEEP
+            refuse_below(body.name, points[outside], frame, diameter, MOUNT)
+
+
+def _off(what: str, remedy: str) -> InputError:
+    mended_by = {"mount": "feature"} if remedy == MOUNT else None
+    return InputError("OFF_PLATFORM", "cell.platform_diameter", f"{what}; {remedy}", mended_by)

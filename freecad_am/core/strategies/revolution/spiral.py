@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The wall as one continuous open bead that rises along the wall by a layer height per turn."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.curves.polyline import largest_step
+from ...geometry.curves.profile import Array, Meridian, RevolvedWall
+from ...issues import InputError, Issue
+from ...parameters.bead_classes import WALL
+from ...parameters.process import ProcessParameters
+from ...parameters.strategy import RevolutionParameters
+from ...process import seam
+from ...slicing import arc_length
+from ...toolpath import Bead, Layer
+from ..clearance.places import SEAM
+from .clearance import Deposit, Tips
+from .tilt import Tilting
+
+PER_TURN = 8  # places to a turn at which the tilt-back is settled
+
+
+def layers(
+    wall: RevolvedWall, strategy: RevolutionParameters, process: ProcessParameters, tilting: Tilting
+) -> tuple[tuple[Layer, ...], list[Issue]]:
+    """The whole spiral as one layer with one open bead; its parameter is the angle unwrapped over all turns.
+
+    It starts with the full turn of the base circle, rises by a layer height per turn along the wall, and ends with
+    a full turn at an open top. On a top closed on the axis it ends where the radius is half a layer height.
+    Raises InputError 'PARTIAL_TURN', and 'LAYER_HEIGHT' as layers do.
+    """
+    if not wall.full:
+        raise InputError("PARTIAL_TURN", "strategy.path", f"{wall.label} is not a full turn; use path: layers")
+    pitch = strategy.layer_height
+    arc_length.layers(wall.meridian, pitch)
+    end = _end(wall.meridian, pitch)
+    turns = _turned(wall.meridian, end, pitch, strategy)
+    s = np.clip(pitch * (turns / (2.0 * math.pi) - 1.0), 0.0, end)
+    radius, height, _ = wall.meridian.at(s)
+    rising = seam.rising(process, 0, True)
+    parameter = process.seam.angle + (turns if rising else -turns)
+    build, tool, issues = _directions(wall.meridian, turns, s, rising, tilting)
+    bead = Bead(
+        wall.points(radius, height, parameter), wall.directions(build, parameter), wall.directions(tool, parameter),
+        parameter, np.full(len(s), process.for_class(WALL).travel_speed), False, bead_class=WALL,
+    )
+    return (Layer((bead,)),), issues
+
+
+def _end(meridian: Meridian, pitch: float) -> float:
+    """Arc length at which the spiral ends."""
+    if not meridian.closed_top:
+        return meridian.length
+    low, high = 0.0, meridian.length
+    inside = meridian.points[:, 0] > 0.5 * pitch
+    if inside.any():
+        last = int(np.flatnonzero(inside)[-1])
+        low, high = float(meridian.s[last]), float(meridian.s[last + 1])
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if meridian.at([middle])[0][0] > 0.5 * pitch else (low, middle)
+    return low
+
+
+def _turned(meridian: Meridian, end: float, pitch: float, strategy: RevolutionParameters) -> Array:
+    """Angles turned (n,) rad, from 0; each turn evenly divided within the chord error, with a point on each kink."""
+    flat_from = 2.0 * math.pi * (1.0 + end / pitch)
+    total = flat_from + (0.0 if meridian.closed_top else 2.0 * math.pi)
+    kinks = 2.0 * math.pi * (1.0 + meridian.kinks / pitch)
+    stops = np.unique(np.r_[np.arange(0.0, total, 2.0 * math.pi), total, flat_from, kinks[kinks < flat_from]])
+    stops = stops[np.r_[True, np.diff(stops) > 1e-6]]
+    stops[-1] = total
+    parts = [
+        np.linspace(a, b, _segments(meridian, a, b, pitch, end, strategy) + 1)[:-1] for a, b in pairwise(stops)
+    ]
+    turns: Array = np.concatenate([*parts, [total]])
+    return turns
+
+
+def _segments(meridian: Meridian, a: float, b: float, pitch: float, end: float, strategy: RevolutionParameters) -> int:
+    """Segments between two angles turned: the second derivative of the curve in the angle bounds the chord error."""
+    rate = pitch / (2.0 * math.pi)
+    s = np.clip(rate * (np.linspace(a, b, 17) - 2.0 * math.pi), 0.0, end)
+    radius, _, tangent = meridian.at(s)
+    bend = np.linalg.norm(np.diff(tangent, axis=0), axis=1)[1:-1] / np.maximum(np.diff(s)[1:-1], 1e-12)
+    # 1.05: the meridian's bend is sampled, not bounded
+    acceleration = math.hypot(radius.max() + 1.05 * bend.max() * rate**2, 2.0 * rate)
+    step = min(largest_step(acceleration, strategy.chord_error), 2.0 * math.pi / strategy.min_points)
+    return math.ceil((b - a) / step - 1e-9)
+
+
+def _directions(
+    meridian: Meridian, turns: Array, s: Array, rising: bool, tilting: Tilting
+) -> tuple[Array, Array, list[Issue]]:
+    """Build directions and tool axes (n, 3) at angles turned and arc lengths (n,). The tilt-back is settled at PER_TURN
+    places to a turn; between them it is interpolated from the larger of neighbours, so that it is never too small."""
+    knots = np.linspace(0.0, turns[-1], max(2, math.ceil(turns[-1] / (2.0 * math.pi) * PER_TURN) + 1))
+    at = np.interp(knots, turns, s)
+    radius, height, tangent = meridian.at(at)
+    sense = 1.0 if rising else -1.0
+    points = meridian.at(s)
+    number = np.arange(len(s))
+
+    def tips(where: tuple[Array, Array, Array], turned: Array, moment: NDArray[np.intp]) -> Tips:
+        # what was laid in the last turn is of the layer being laid
+        own = np.searchsorted(turns, turned - 2.0 * math.pi - SEAM)
+        return Tips(where[0], where[1], sense * turned, moment, own)
+
+    laid = Deposit(
+        points[0], points[1], sense * turns, tilting.build(points[2]), number, number == 0,
+        np.interp(turns, knots, np.arange(len(knots))), tilting.size,
+    )
+    looked = tips((radius, height, tangent), knots, np.searchsorted(turns, knots, side="right"))
+    back, issues = tilting.tilt_back(tangent, rising, looked, laid, tips(points, turns, number + 1))
+    build, tool = tilting.axes(points[2], np.interp(turns, knots, back), rising)
+    return build, tool, issues

@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Build directions and tool axes of circles about the axis: mode, lead and tilt, cap, clearance of the nozzle.
+
+All beads of a layer turn as one: a bead is tilted back as a whole, by what its worst point needs. Only the bead of
+a part of a turn with one direction per layer differs from point to point.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.scene import Scene
+from ...geometry.curves.profile import Array, RevolvedWall
+from ...issues import ERROR, NOTE, Issue
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.cell import NozzleParameters
+from ...parameters.strategy import RevolutionParameters
+from ...slicing.directions import revolution as directions
+from .clearance import CHORD, SETTLED, Clearance, Deposit, Index, Tips, around, of_nozzle
+from .platform import Platform
+
+LOOKS = 12  # places of an arc at which the nozzle is looked at, before it is at all
+COARSE = 0.01  # rad, to which directions are found while they still change much
+SWEEPS = 40  # over all beads, at most
+FREE_SWEEPS = 6  # after which no direction goes back
+FURTHER = 8  # times that directions are tilted back further where others, or points between, need it
+STEEP, SLIGHT = np.radians(10.0), np.radians(1.0)  # by how much
+
+
+@dataclass(frozen=True)
+class Cases:
+    """One row per case to be judged: bead (k,), build direction (k, 3), running sense (k,). chained: all are along one bead,
+    on which directions run evenly from one to the next."""
+
+    bead: Index
+    build: Array
+    rising: NDArray[np.bool_]
+    chained: bool = False
+
+    def together(self, angle: Array) -> Array:
+        """The largest tilt-back (k,) of each bead's cases, or of each and its neighbours, so that those between are never
+        too small; NaN where one of them has none."""
+        if self.chained:
+            larger: Array = np.maximum(angle, np.maximum(np.r_[angle[1:], 0.0], np.r_[0.0, angle[:-1]]))
+            return larger
+        first = np.diff(self.bead, prepend=-1) > 0
+        worst: Array = np.maximum.reduceat(angle, np.flatnonzero(first))[np.cumsum(first) - 1]
+        return worst
+
+
+@dataclass(frozen=True)
+class Tilting:
+    """Everything that decides the tool axes of a wall. bead_width: mm."""
+
+    wall: RevolvedWall
+    strategy: RevolutionParameters
+    parameters: BuildDirectionParameters
+    nozzle: NozzleParameters
+    platform: Platform
+    bead_width: float
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height of the beads, mm."""
+        return self.bead_width, self.strategy.layer_height
+
+    @property
+    def chord(self) -> float:
+        """mm, to which beads are looked at."""
+        return max(CHORD, self.strategy.chord_error)
+
+    def settle(
+        self, radius: Array, height: Array, tangent: Array, azimuths: Sequence[Array], rising: Sequence[bool], layer: Index,
+    ) -> tuple[list[Array], list[Array], list[Issue]]:
+        """Build directions and tool axes per bead, (n, 3) or (1, 3) for all points alike, and what was found.
+
+        radius, height (m,), tangent (m, 2): the beads in the order of deposit. azimuths, rising: of each bead.
+        layer: (m,) the layer that issues name.
+        """
+        sense = np.asarray(rising, dtype=bool)
+        if self.parameters.mode == "layer" and not self.wall.full:
+            return self._settled_arcs(radius, height, self._means(tangent, azimuths), azimuths, sense, layer)
+        cases = self._circles(tangent, sense)
+        # a tool in the plane of the axis meets the same on both sides
+        turn = 2.0 * np.pi if self.wall.full else self.wall.end - self.wall.start
+        bead, azimuth = around(radius, turn, self.chord, self.strategy.min_points, self._upright)
+        tips = Tips(radius, height, np.zeros(len(radius)), cases.bead + 1, np.searchsorted(layer, layer))
+        starts = np.diff(bead, prepend=-1) > 0
+        laid = Deposit(
+            radius[bead], height[bead], azimuth, cases.build[bead], bead, starts, bead.astype(float), self.size
+        )
+        clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, laid, self.chord)
+        angle, issues = self._settled(cases, clearance, layer)
+        build = directions.tilted_back(cases.build, angle)
+        every = range(1, len(radius))
+        return np.split(build, every), np.split(self._tool(build, cases.rising), every), issues
+
+    def _settled_arcs(
+        self, radius: Array, height: Array, build: Array, azimuths: Sequence[Array], rising: NDArray[np.bool_], layer: Index,
+    ) -> tuple[list[Array], list[Array], list[Issue]]:
+        """The same where directions (k, 3) differ from point to point along the beads: the nozzle is looked at in LOOKS
+        places of each, and then at all points."""
+        counts = np.array([len(azimuth) for azimuth in azimuths])
+        bead, azimuth = np.repeat(np.arange(len(counts)), counts), np.concatenate(azimuths)
+        begin = np.cumsum(counts) - counts
+        looks = [np.unique(np.linspace(0, count - 1, min(count, LOOKS)).astype(np.intp)) for count in counts]
+        rows = np.concatenate([first + some for first, some in zip(begin, looks, strict=True)])
+        number = np.searchsorted(rows, np.arange(len(bead)), side="right") - 1  # the last place before each point
+        cases = Cases(bead[rows], build[rows], rising[bead[rows]])
+        tips = Tips(radius[bead], height[bead], azimuth, bead + 1, np.searchsorted(layer, layer)[bead])
+        laid = Deposit(
+            radius[bead], height[bead], azimuth, build, bead, np.diff(bead, prepend=-1) > 0, number.astype(float), self.size
+        )
+        clearance = of_nozzle(
+            self.nozzle, self._lean, self.platform, tips.rows(rows), laid, self.chord, tips
+        )
+        angle, issues = self._settled(cases, clearance, layer)
+        build = directions.tilted_back(build, angle[number])
+        return np.split(build, begin[1:]), np.split(self._tool(build, rising[bead]), begin[1:]), issues
+
+    def tilt_back(
+        self, tangent: Array, rising: bool, tips: Tips, laid: Deposit, between: Tips
+    ) -> tuple[Array, list[Issue]]:
+        """Tilt-back (c,) rad of tips along one bead with the meridian tangents (c, 2), never less than a neighbour's, and
+        what was found. between: all of its points."""
+        cases = dataclasses.replace(self._circles(tangent, np.full(len(tangent), rising)), chained=True)
+        clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, laid, self.chord, between)
+        return self._settled(cases, clearance, np.zeros(len(tangent), dtype=np.intp))
+
+    def build(self, tangent: Array) -> Array:
+        """Build directions (n, 3) that are asked for on full circles with the meridian tangents (n, 2)."""
+        return directions.local(tangent) if self.parameters.mode == "local" else directions.fixed(len(tangent))
+
+    def axes(self, tangent: Array, angle: Array, rising: bool) -> tuple[Array, Array]:
+        """Build directions and tool axes (n, 3) on full circles from meridian tangents (n, 2) and tilt-backs (n,)."""
+        build = directions.tilted_back(self.build(tangent), angle)
+        return build, self._tool(build, np.full(len(tangent), rising))
+
+    def _settled(self, cases: Cases, clearance: Clearance, layer: Index) -> tuple[Array, list[Issue]]:
+        """Tilt-back (k,) rad of all cases, and what was found; layer: (m,) of the beads, that issues name."""
+        capped = self._capped(cases)
+        if self.parameters.clearance == "nozzle":
+            angle = self._cleared(cases, capped, clearance)
+        else:
+            angle = cases.together(capped)
+        stuck = np.isnan(angle)
+        angle = np.where(stuck, directions.from_vertical(cases.build), angle)
+        return angle, self._issues(cases, angle, capped, stuck, layer)
+
+    def _circles(self, tangent: Array, rising: NDArray[np.bool_]) -> Cases:
+        return Cases(np.arange(len(tangent)), self.build(tangent), rising)
+
+    def _means(self, tangent: Array, azimuths: Sequence[Array]) -> Array:
+        return np.vstack([
+            directions.layer_mean(t, azimuth, self.wall.start, self.wall.end)
+            for t, azimuth in zip(tangent, azimuths, strict=True)
+        ])
+
+    @property
+    def _lean(self) -> float:
+        """Between tool axis and build direction, rad."""
+        return float(np.arccos(np.cos(self.parameters.lead) * np.cos(self.parameters.tilt)))
+
+    @property
+    def _upright(self) -> bool:
+        return self.parameters.lead == 0.0 and self.parameters.tilt == 0.0
+
+    def _tool(self, build: Array, rising: NDArray[np.bool_]) -> Array:
+        tool = np.empty_like(build)
+        for sense in (True, False):
+            rows = rising == sense
+            tool[rows] = directions.held(build[rows], self.parameters.lead, self.parameters.tilt, sense)
+        return tool
+
+    def _capped(self, cases: Cases) -> Array:
+        """Tilt-back (k,) that brings the tool within the cap; the whole way where even that is not enough."""
+        cap = self.parameters.max_tilt
+        if self._upright:
+            return np.maximum(directions.from_vertical(cases.build) - cap, 0.0)
+
+        def good(some: Index, angle: Array) -> NDArray[np.bool_]:
+            tool = self._tool(directions.tilted_back(cases.build[some], angle), cases.rising[some])
+            return np.asarray(directions.from_vertical(tool) <= cap + 1e-12)
+
+        angle = directions.least_tilt_back(cases.build, np.zeros(len(cases.bead)), good)
+        return np.where(np.isnan(angle), directions.from_vertical(cases.build), angle)
+
+    def _cleared(self, cases: Cases, low: Array, clearance: Clearance) -> Array:
+        """Tilt-back (k,) that clears the nozzle, `low` or more; NaN where none does.
+
+        What stands up in the way of a bead that finds none is tilted back further, where that helps.
+        """
+        most = directions.from_vertical(cases.build)
+        first = found = self._settled_over(cases, low, clearance, low)
+        for _ in range(FURTHER):
+            further = self._further(cases, found, clearance)
+            if not (further > np.maximum(low, np.where(np.isnan(found), most, found))).any():
+                break
+            low = np.maximum(low, further)
+            found = self._settled_over(cases, low, clearance, found)
+        return found if not np.isnan(found).any() else first
+
+    def _further(self, cases: Cases, angle: Array, clearance: Clearance) -> Array:
+        """Tilt-back (k,) rad that cases are to have at least, 0 where what they have will do: those that stand up before
+        one that finds none, and those next to points of the deposit on which the nozzle touches even so."""
+        most, tips, laid = directions.from_vertical(cases.build), clearance.tips, clearance.deposit
+        stuck = np.flatnonzero(np.isnan(angle))
+        known = np.where(np.isnan(angle), most, angle)
+        if len(stuck):
+            apart = np.hypot(*(column[:, None] - column[stuck] for column in (tips.radius, tips.height)))
+            # the nearest most, so that directions turn from bead to bead
+            share = np.where(np.arange(len(angle))[:, None] < stuck, 1.0 - apart / laid.size[0], 0.0).max(axis=1)
+            return np.where(share > 0.0, np.minimum(known + STEEP * share, most), 0.0)
+        if clearance.between is None:
+            return np.zeros(len(angle))
+        build = directions.tilted_back(laid.build, np.interp(laid.case, np.arange(len(angle), dtype=float), angle))
+        tool = self._tool(build, np.full(len(build), cases.rising[0]))
+        hit = laid.case[~clearance.clear_between(clearance.standing(build), tool)]
+        further = np.zeros(len(angle))
+        for near in (np.floor(hit).astype(np.intp), np.ceil(hit).astype(np.intp)):
+            further[near] = np.minimum(known + SLIGHT, most)[near]
+        return further
+
+    def _settled_over(self, cases: Cases, low: Array, clearance: Clearance, start: Array) -> Array:
+        """Tilt-back (k,) that clears the nozzle over beads tilted as they are, `low` or more, looked for from `start` on;
+        NaN where none does.
+
+        Beads stand along their directions: what one needs depends on those before it, and on itself on the far side. So all
+        are settled again over what the others have become, until none changes. Where that goes to and fro, none goes back.
+        """
+        most, laid = directions.from_vertical(cases.build), clearance.deposit
+        number = np.arange(len(low), dtype=float)
+        still = SETTLED / clearance.nozzle.reach
+        angle = np.maximum(low, np.where(np.isnan(start), most, start))
+        about, change = np.full((len(low), 2), np.nan), np.full(len(low), np.inf)
+        among: Scene | None = None
+        for sweep in range(SWEEPS):
+            back = np.interp(laid.case, number, angle)
+            among = clearance.standing(directions.tilted_back(laid.build, back), among)
+
+            def good(some: Index, tried: Array, among: Scene = among) -> NDArray[np.bool_]:
+                tool = self._tool(directions.tilted_back(cases.build[some], tried), cases.rising[some])
+                return clearance.clear(among, some, tool)
+
+            within = float(np.clip(0.1 * change.max(), 0.1 * still, COARSE))
+            found = directions.least_tilt_back(cases.build, low, good, within, about)
+            needed = cases.together(found)
+            stuck = np.isnan(needed)
+            now = np.where(stuck, most, needed)
+            if sweep >= FREE_SWEEPS:
+                now = np.maximum(now, angle)
+            change = np.abs(now - angle)
+            if change.max() <= still:
+                break
+            angle = now
+            about = found[:, None] + np.outer(2.0 * change + within, [-1.0, 1.0])
+        return np.where(stuck, np.nan, now)
+
+    def _issues(
+        self, cases: Cases, angle: Array, capped: Array, stuck: NDArray[np.bool_], layer: Index
+    ) -> list[Issue]:
+        at = layer[cases.bead]
+        cap = f"{np.degrees(self.parameters.max_tilt):.6g} deg"
+        issues = []
+        tool = self._tool(directions.tilted_back(cases.build, angle), cases.rising)
+        over = directions.from_vertical(tool) > self.parameters.max_tilt + 1e-9
+        if over.any():
+            issues.append(Issue(
+                ERROR, "MAX_TILT", f"lead and tilt alone lean the tool by more than max_tilt ({cap}); "
+                "make them smaller or the cap larger", int(at[over][0]),
+            ))
+        elif (capped > 1e-9).any():
+            first = int(at[np.argmax(capped > 1e-9)])
+            text = f"from layer {first} on, max_tilt holds directions within {cap}"
+            issues.append(Issue(NOTE, "MAX_TILT", text, first))
+        back = angle - capped
+        if stuck.any():
+            hit = np.unique(at[stuck])
+            bead = 0 if cases.chained else int(cases.bead[np.argmax(stuck)] - np.searchsorted(layer, hit[0]))
+            issues.append(Issue(
+                ERROR, "CLEARANCE",
+                f"however far it is tilted back, the nozzle touches platform or deposit, beads of {self.bead_width:g} mm, "
+                f"in {len(hit)} layer(s), from layer {hit[0]} on; use a slimmer nozzle, another wall, or a smaller "
+                "process.bead_width where beads are not that wide", int(hit[0]), bead,
+            ))
+        elif (back > 1e-9).any():
+            worst, first = int(at[np.argmax(back)]), int(at[np.argmax(back > 1e-9)])
+            issues.append(Issue(
+                NOTE, "TILT_BACK", f"from layer {first} on, directions are tilted back to keep the nozzle "
+                f"clear, by up to {np.degrees(back.max()):.2f} deg in layer {worst}", worst,
+            ))
+        return issues
+

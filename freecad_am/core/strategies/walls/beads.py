@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Beads of curves on a wall: points, tangents and directions; and what is said of the layers that they form."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.curves.space_curve import SpaceCurve
+from ...issues import NOTE, WARNING, Issue
+from ...parameters.strategy import SurfaceParameters
+from ...slicing.directions.wall import local
+from ...toolpath import Bead
+from .directions import Along, Directions
+
+Array = NDArray[np.float64]
+
+TURN = 2.0 * np.pi
+NEAREST = 1e-3  # mm; nearer points of a bead are one: no controller tells the time between them
+
+
+class Traced(NamedTuple):
+    """Points (n, 3) of a bead and its unit tangents (n, 2, 3), arriving at and leaving each."""
+
+    points: Array
+    tangents: Array
+
+    def reversed(self) -> Traced:
+        """Run the other way."""
+        return Traced(self.points[::-1], -self.tangents[::-1, ::-1])
+
+
+def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
+    """The bead through the places w (n,) of a curve, points nearer than NEAREST made one; a closed one ends where it starts,
+    to the bit."""
+    points, leaving, _ = curve.at(w)
+    if closed:
+        points[-1] = points[0]
+    arriving = leaving.copy()
+    corners = curve.corners
+    if len(corners):
+        node = np.clip(np.searchsorted(curve.w[corners], curve.wrapped(w) - 1e-12), 0, len(corners) - 1)
+        at = np.abs(curve.w[corners][node] - curve.wrapped(w)) < 1e-9 * curve.period
+        arriving[at], leaving[at] = curve.into[corners[node[at]]], curve.out[corners[node[at]]]
+    points, arriving, leaving = _apart(points, arriving, leaving)
+    if not closed:
+        arriving[0], leaving[-1] = leaving[0], arriving[-1]
+    return Traced(points, _unit(np.stack([arriving, leaving], axis=1)))
+
+
+def _apart(points: Array, arriving: Array, leaving: Array) -> tuple[Array, Array, Array]:
+    """The columns (n, 3) with points nearer than NEAREST to the one before left out; the first and the last stay. A point
+    that stands for others, such as an end next to a corner, is left as the last of them and arrived at as the first."""
+    if np.linalg.norm(np.diff(points, axis=0), axis=1).min() >= NEAREST:
+        return points, arriving, leaving
+    starts, end = [0], len(points) - 1
+    for k in range(1, end):
+        if np.linalg.norm(points[k] - points[starts[-1]]) >= NEAREST:
+            starts.append(k)
+    merged = end
+    while len(starts) > 1 and np.linalg.norm(points[end] - points[starts[-1]]) < NEAREST:
+        merged = starts.pop()
+    starts.append(merged)
+    ends = [*(k - 1 for k in starts[1:]), end]
+    return points[[*starts[:-1], end]], arriving[starts], leaving[ends]
+
+
+def along(bead: Traced, normal: Array, up: Array) -> Along:
+    """Directions at the points of a bead, at a corner those halfway between its two sides.
+
+    normal: (n, 3) out of the wall. up: (n, 3) any vectors away from the layer below that are not along the bead.
+    """
+    arriving, leaving = bead.tangents[:, 0], bead.tangents[:, 1]
+    return Along(_unit(arriving + leaving), local(normal, arriving, leaving, up), normal)
+
+
+def bead(line: Traced, found: Directions, closed: bool, speed: float, name: str, closing: bool = False) -> Bead:
+    """The bead of the class `name`; its polynomial's variable is the arc length, one turn (2 pi) from end to end."""
+    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line.points, axis=0), axis=1))]
+    return Bead(
+        line.points, found.build, found.tool, TURN * length / length[-1], np.full(len(line.points), speed), closed, None,
+        line.tangents, closing, bead_class=name,
+    )
+
+
+def spacing_issues(found: list[Array], strategy: SurfaceParameters) -> list[Issue]:
+    """What the local distances (n,) of each layer but the first are, and a warning where that is not what was asked for."""
+    if not found:
+        return []
+    least, most = min(d.min() for d in found), max(d.max() for d in found)
+    height = strategy.layer_height
+    exact = strategy.spacing == "constant-distance"
+    # between the points, where arcs stand for the front, ten times the tolerance is allowed
+    allowed = 10.0 * strategy.tolerance if exact else strategy.band * height
+    text = f"the local distance between layers is {least:.6g} to {most:.6g} mm"
+    if max(height - least, most - height) <= allowed:
+        return [Issue(NOTE, "SPACING", text)]
+    worst = int(np.argmax([np.abs(d - height).max() for d in found])) + 1
+    advice = "a larger strategy.tolerance says that this will do" if exact else "spacing: constant-distance is even"
+    return [Issue(WARNING, "SPACING", f"{text}, the layer height {height:g} mm; {advice}", worst)]
+
+
+def corner_notes(turns: list[Array]) -> list[Issue]:
+    """Corners that the fronts of each layer have formed, for a robot slows down there; nothing where there are none.
+
+    turns: rad at the corners of each layer."""
+    cornered = [index for index, layer in enumerate(turns) if len(layer)]
+    if not cornered:
+        return []
+    sharpest = [float(layer.max(initial=0.0)) for layer in turns]
+    return [Issue(
+        NOTE, "CORNERS",
+        f"{len(cornered)} of {len(turns)} fronts have corners, first layer {cornered[0]}; the sharpest turns by "
+        f"{np.degrees(max(sharpest)):.3g} deg. The robot slows down there", int(np.argmax(sharpest)),
+    )]
+
+
+def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
+    """The sharpest turn of layers, a warning where that is more than smooth ones were to have.
+
+    rates: rad/mm of each layer within the wall, infinite where it has corners.
+    """
+    # the first layer is the substrate's
+    over = [index for index, rate in enumerate(rates) if index and rate > strategy.bead_turn]
+    corners = sum(np.isinf(rates[index]) for index in over)
+    finite = np.where(np.isinf(rates), 0.0, rates)
+    if strategy.spacing == "smooth" and over:
+        some = f", {corners} of them in corners" if corners else ""
+        return [Issue(
+            WARNING, "TURN",
+            f"a band of {100.0 * strategy.band:g} % does not suffice: within the wall {len(over)} of {len(rates)} "
+            f"layers turn by more than {np.degrees(strategy.bead_turn):.3g} deg/mm{some}, first layer {over[0]}, by up to "
+            f"{np.degrees(finite[1:].max()):.3g} deg/mm{' elsewhere' if corners else ''}. The robot slows down there; a "
+            "wider strategy.band rounds them", int(np.argmax(rates[1:])) + 1,
+        )]
+    text = f"no layer has a corner; within the wall they turn by up to {np.degrees(finite.max()):.3g} deg/mm"
+    return [Issue(NOTE, "TURN", text, int(np.argmax(finite)))] if not np.isinf(rates).any() else []
+
+
+def short_note(dropped: int) -> list[Issue]:
+    """Says that beads too short to be worth a start are left out."""
+    if not dropped:
+        return []
+    return [Issue(NOTE, "SHORT_BEADS", f"{dropped} bead(s) at the end shorter than half a layer height are left out")]
+
+
+def _unit(vectors: Array) -> Array:
+    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return unit

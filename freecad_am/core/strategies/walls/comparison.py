@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What each way of cutting a wall into layers costs in spacing: the figures 6 and 8 to 10 of Chalvin 2019 as numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...geometry.walls.surface_wall import Array, Placed, SurfaceWall
+from ...issues import InputError
+from ...parameters.strategy import SurfaceParameters
+from ...slicing.first_layer import on_polyline
+from ...slicing.tubes import normal_layers
+from ...slicing.tubes.smooth_spacing import turns_in_wall
+from ...slicing.tubes.wall_layer import WallLayer, local_distances
+from .plan import sliced
+
+NORMAL = "centreline-normal"
+METHODS = ("iso-parameter", NORMAL, "constant-distance", "smooth")
+FINER = 4  # places per arc at which the distance is measured
+SLACK = 1e-9  # of u; what lies past an edge by no more is on it
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A wall cut by one method. Lengths mm, angles rad.
+
+    layers: up to the first one wholly past the end. least, mean, most: of the distance of each point to the nearest of
+    the layer below. turn: sharpest turn within the wall per mm, away from corners. corners: layers that have some;
+    corner: the sharpest. length: of all layers below the end. Per layer but the first: around (n,), v as a share of its
+    period from -0.5 to 0.5, distance (n,) and step (n,), how far the layer lies above the one below along the line
+    v = const (Delta_ij); NaN where there is nothing to deposit. curves: points (n, 3) of all layers, NaN likewise.
+    """
+
+    method: str
+    layers: int
+    least: float
+    mean: float
+    most: float
+    turn: float
+    corners: int
+    corner: float
+    length: float
+    around: tuple[Array, ...]
+    distance: tuple[Array, ...]
+    step: tuple[Array, ...]
+    curves: tuple[Array, ...]
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A method that does not apply to the wall, and why."""
+
+    method: str
+    reason: str
+
+
+def compare(wall: SurfaceWall, strategy: SurfaceParameters) -> tuple[Compared | Refused, ...]:
+    """The wall cut by every method of METHODS with the layer height, band and largest turn of the strategy."""
+    surface = wall.surface()
+    first = on_polyline(surface, wall.first, label=wall.label)
+    found: list[Compared | Refused] = []
+    for method in METHODS:
+        try:
+            if method == NORMAL:
+                fronts = normal_layers.layers(surface, first, strategy.layer_height, wall.end, label=wall.label)
+            else:
+                fronts = sliced(wall, surface, replace(strategy, spacing=method))
+        except InputError as error:
+            found.append(Refused(method, error.message))
+        else:
+            found.append(_measured(method, surface, fronts, first, wall.end))
+    return tuple(found)
+
+
+def _measured(method: str, surface: Placed, fronts: Sequence[WallLayer], first: WallLayer, end: float) -> Compared:
+    around, distance, step = [], [], []
+    for below, above in zip(fronts, fronts[1:]):
+        v, apart = local_distances(above, below, FINER)
+        u, base = above.heights(surface, v)[0], below.heights(surface, v)[0]
+        there = u > first.heights(surface, v)[0]
+        rise = np.linalg.norm(surface.point(u, v) - surface.point(base, v), axis=1)
+        share = v[:-1] / above.curve.period
+        share -= np.round(share)
+        order = np.argsort(share, kind="stable")
+        order = np.r_[order, order[0]]
+        around.append(np.r_[share[order[:-1]], share[order[0]] + 1.0])
+        distance.append(np.where(there, apart, np.nan)[order])
+        step.append(np.where(there, rise, np.nan)[order])
+    # nodes gather at corners: each place counts by the stretch it stands for
+    weight, values = np.concatenate([np.gradient(one) for one in around]), np.concatenate(distance)
+    weight, values = weight[np.isfinite(values)], values[np.isfinite(values)]
+    turn = corner = 0.0
+    cornered = 0
+    for front in fronts[1:]:  # the first is the substrate's
+        inside = (front.u <= end) & (front.u >= first.heights(surface, front.v)[0])
+        corners = front.curve.corners
+        sharpest = float(front.curve.turns[corners[inside[corners]]].max(initial=0.0))
+        smooth = inside[:-1] & inside[1:]
+        smooth[corners] = False
+        turn = max(turn, float(turns_in_wall(surface, front)[smooth].max(initial=0.0)))
+        cornered, corner = cornered + (sharpest > 0.0), max(corner, sharpest)
+    curves = tuple(_deposited(surface, front, first, end) for front in fronts)
+    length = sum(float(np.nansum(np.linalg.norm(np.diff(curve, axis=0), axis=1))) for curve in curves)
+    return Compared(
+        method, len(fronts), float(values.min()), float(np.average(values, weights=weight)), float(values.max()),
+        turn, cornered, corner, length, tuple(around), tuple(distance), tuple(step), curves,
+    )
+
+
+def _deposited(surface: Placed, front: WallLayer, first: WallLayer, end: float) -> Array:
+    """Points (n, 3) along a layer, NaN below the first one and past the end."""
+    v = front.curve.refined(2)
+    u = front.heights(surface, v)[0]
+    there = (u <= end + SLACK) & (u >= first.heights(surface, v)[0] - SLACK)
+    points: Array = np.where(there[:, None], surface.point(u, v), np.nan)
+    return points

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Build directions and tool axes of beads on a wall (Chalvin 2019, section II D), as the parameters ask for them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.walls.patch_wall import PatchWall
+from ...geometry.walls.surface_wall import Array, SurfaceWall
+from ...issues import NOTE, InputError, Issue
+from ...parameters.build_direction import BuildDirectionParameters
+from ...slicing.directions.wall import LEAST, capped, held, in_plane, limited
+
+UP = np.array([0.0, 0.0, 1.0])
+SAME = 1e-9  # rad
+
+
+class Along(NamedTuple):
+    """What is known at the points of a bead, each (n, 3) unit vectors: the way the bead runs, up the wall at right
+    angles to it, out of the wall."""
+
+    forward: Array
+    up: Array
+    out: Array
+
+    def reversed(self) -> Along:
+        """Of the bead run the other way."""
+        return Along(-self.forward[::-1], self.up[::-1], self.out[::-1])
+
+
+class Directions(NamedTuple):
+    """Build directions and tool axes (n, 3) of a bead; by how much (rad) max_tilt has turned the farthest of them back, and
+    max_turn has spread them."""
+
+    build: Array
+    tool: Array
+    back: float
+    spread: float
+
+
+def plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Array | None:
+    """Unit normal (3,) of the plane that tool axes stay in, None where they may lean any way.
+
+    InputError NO_SYMMETRY_PLANE where a plane of symmetry is asked for that the wall is not known to have.
+    """
+    if build.mode != "symmetry-plane":
+        return None
+    given = build.plane_normal()
+    if given is not None:
+        return np.asarray(np.array(given) / np.linalg.norm(given))
+    normal = wall.symmetry_normal if isinstance(wall, SurfaceWall) else None
+    if normal is None:
+        raise InputError(
+            "NO_SYMMETRY_PLANE", "build_direction.mode", f"{wall.label} is no bend of a torus, so its plane of symmetry is "
+            "not known; give its normal as build_direction.plane, or use local, layer or fixed",
+        )
+    return normal
+
+
+def directions(
+    points: Array, closed: bool, along: Along, build: BuildDirectionParameters, normal: Array | None, label: str
+) -> Directions:
+    """The directions at the points (n, 3) of a bead. normal: of the `plane` that they are projected onto, if any.
+
+    InputError NO_DIRECTION where one is normal to that plane, TURN_LIMIT where they cannot be made to turn slower.
+    """
+    up = along.up
+    if build.mode == "fixed":
+        up = np.tile(UP, (len(up), 1))
+    elif build.mode == "layer":
+        mean = up.mean(axis=0)
+        size = np.linalg.norm(mean)
+        up = np.tile(mean / size if size > LEAST else UP, (len(up), 1))
+    tool = held(up, along.forward, along.out, build.lead, build.tilt)
+    alike = tool is up
+    if normal is not None:
+        up, tool = in_plane(up, normal, label), in_plane(tool, normal, label)
+    up, lowered = capped(up, build.max_tilt)
+    tool, back = (up, lowered) if alike else capped(tool, build.max_tilt)
+    rate, spread = build.turn(), 0.0
+    if rate < np.inf:  # last, for turned back beyond the level they turn faster
+        up, departure = limited(points, up, closed, rate, most=build.max_tilt)
+        tool, other = (up, departure) if alike else limited(points, tool, closed, rate, most=build.max_tilt)
+        spread = float(max(departure.max(), other.max()))
+    return Directions(up, tool, back, spread)
+
+
+def notes(found: list[tuple[int, Directions]]) -> list[Issue]:
+    """Says how far directions depart from what was asked for: by layer of each bead."""
+    issues = []
+    for code, values, cause in (
+        ("TILT_CAPPED", [one.back for _, one in found], "turned back by up to {0:.3g} deg to stay within "
+         "build_direction.max_tilt"),
+        ("TURN_LIMITED", [one.spread for _, one in found], "spread along the bead, by up to {0:.3g} deg, to turn no faster "
+         "than build_direction.max_turn"),
+    ):
+        worst = int(np.argmax(values))
+        if values[worst] > SAME:
+            text = f"tool axes are {cause.format(np.degrees(values[worst]))}"
+            issues.append(Issue(NOTE, code, text, found[worst][0]))
+    return issues

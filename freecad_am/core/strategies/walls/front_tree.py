@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How the fronts of a wall lie on each other: what splits, what merges, what an end of the wall cuts off."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...geometry.curves.space_curve import SpaceCurve
+from ...issues import NOTE, Issue
+from ...slicing.fronts.curve import feet
+from ...slicing.fronts.rims import Rims
+
+SAMPLES = 100  # places along a front at which it is asked what it lies on
+FEW = 2  # of these; less is a touch at an end
+
+
+@dataclass(eq=False)
+class Piece:
+    """A front. parents: the fronts of the layer below that it lies on, most of it on the first. cut: ends at an upper edge
+    of the wall. closing: no front but a bead that closes a gap between fronts."""
+
+    curve: SpaceCurve
+    parents: list[Piece]
+    cut: bool
+    children: list[Piece] = field(default_factory=list)
+    closing: bool = False
+
+
+def tree(curves: list[list[SpaceCurve]], rims: Rims) -> list[list[Piece]]:
+    """The pieces of each layer."""
+    layers: list[list[Piece]] = []
+    for layer in curves:
+        below = layers[-1] if layers else []
+        pieces = [Piece(curve, _parents(curve, below), rims.ends_of(curve)) for curve in layer]
+        for piece in pieces:
+            for parent in piece.parents:
+                parent.children.append(piece)
+        layers.append(pieces)
+    return layers
+
+
+def _parents(curve: SpaceCurve, below: list[Piece]) -> list[Piece]:
+    if len(below) < 2:
+        return list(below)
+    places = curve.at(np.linspace(curve.w[0], curve.w[-1], SAMPLES + 1)[:-1] + 0.5 * curve.period / SAMPLES)[0]
+    count = np.bincount(feet([piece.curve for piece in below], places).front, minlength=len(below))
+    order = np.argsort(-count, kind="stable")
+    return [below[k] for k in order if count[k] >= FEW]
+
+
+def events(layers: list[list[Piece]]) -> list[Issue]:
+    """Where fronts split and merge, a note for each layer in which they do."""
+    issues = []
+    for index, layer in enumerate(layers[1:], 1):
+        splits = Counter(len(piece.children) for piece in layers[index - 1] if len(piece.children) > 1)
+        merges = Counter(len(piece.parents) for piece in layer if len(piece.parents) > 1)
+        for code, found, one, many in (("SPLIT", splits, "front splits in {0}", "fronts split in {0} each"),
+                                       ("MERGE", merges, "{0} fronts merge", "{0} fronts merge")):
+            for size, count in sorted(found.items()):
+                text = f"a {one.format(size)}" if code == "SPLIT" and count == 1 else (
+                    f"{count} {many.format(size)}" if code == "SPLIT" else one.format(size) + (
+                        f", in {count} places," if count > 1 else ""))
+                issues.append(Issue(NOTE, code, f"{text} at layer {index}", index))
+    return issues
+
+
+def whole(layers: list[list[Piece]]) -> list[list[Piece]]:
+    """The pieces that no end cuts off, on others of their kind."""
+    kept: list[list[Piece]] = []
+    for layer in layers:
+        below = set(kept[-1]) if kept else set()
+        some = [piece for piece in layer if not piece.cut and below.issuperset(piece.parents)]
+        if not some:
+            break
+        kept.append(some)
+    return _pruned(kept)
+
+
+def shorn(layers: list[list[Piece]], shortest: float) -> tuple[list[list[Piece]], int]:
+    """Without the pieces shorter than `shortest` mm that nothing lies on, and how many these are."""
+    gone: set[Piece] = set()
+    for layer in reversed(layers):
+        gone.update(piece for piece in layer if piece.curve.length < shortest and gone.issuperset(piece.children))
+    kept = [[piece for piece in layer if piece not in gone] for layer in layers]
+    return _pruned([layer for layer in kept if layer]), len(gone)
+
+
+def _pruned(layers: list[list[Piece]]) -> list[list[Piece]]:
+    """The same pieces, knowing of each other alone."""
+    every = {piece for layer in layers for piece in layer}
+    for piece in every:
+        piece.children = [child for child in piece.children if child in every]
+    return layers

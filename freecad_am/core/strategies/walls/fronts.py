@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Walls on an existing part that no closed parameter runs around: several faces, open shells, openings, branches.
+
+Layers are fronts of constant local distance (slicing.fronts), which split, merge, close and end at rims by themselves. Every
+bead of a layer lies on beads of the layer below, so layers follow each other; within a layer the bead comes next
+that begins nearest to where the last one ended.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.walls.patch_wall import PatchWall
+from ...issues import NOTE, InputError, Issue
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.process import ProcessParameters
+from ...parameters.strategy import SurfaceParameters
+from ...process import classes
+from ...slicing.curve_points import within_chord
+from ...slicing.fronts import layers as fronts
+from ...slicing.fronts.curve import feet
+from ...slicing.fronts.rims import Rims
+from ...slicing.fronts.smooth import Smoothing, turn
+from ...toolpath import Bead, Layer, Toolpath
+from .. import size
+from ..progress import Progress, silent
+from . import directions as surface_directions
+from .beads import along, bead, corner_notes, short_note, spacing_issues, traced, turn_notes
+from .front_seams import Middle, seam
+from .front_tree import Piece, events, shorn, tree, whole
+
+Array = NDArray[np.float64]
+
+FINER = 4  # places per arc of a front at which its distance from the layer below is measured
+
+
+FINDING = 0.7  # of the time goes into finding the layers
+
+
+def plan(
+    wall: PatchWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    progress: Progress = silent,
+) -> Toolpath:
+    """The toolpath of a wall of any connected smooth pieces, in part coordinates.
+
+    Closed beads start at the seam's angle about the middle line of the wall, which runs through the centres of the closed
+    beads, from the X of the part carried along it without twist. Counter-clockwise is meant as seen against the
+    build direction of a tube; on any wall it keeps the layer below on the right, seen from outside. Raises InputError
+    'NO_PARAMETER', 'LAYER_HEIGHT', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION', 'TURN_LIMIT'.
+    """
+    _refuse(strategy)
+    size.refuse_absurd(size.of_wall(wall, strategy), strategy)
+    normal = surface_directions.plane(wall, build)
+    height = strategy.layer_height
+    smooth = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
+    curves, closing = fronts.layers(wall, height, smooth, lambda done, text: progress(FINDING * done, text))
+    pieces = tree(curves, Rims.of(wall.rims))
+    full = [len(layer) for layer in pieces]
+    pieces, notes = _kept(wall, pieces, strategy)
+    laid = [[piece.curve for piece in layer] for layer in pieces]  # what is not deposited is nobody's concern
+    distances = [
+        np.concatenate([fronts.local_distances(front, below, FINER) for front in layer])
+        for below, layer in zip(curves, laid[1:])
+    ]
+    issues = spacing_issues(distances, strategy) + _turns(wall, laid, strategy) + events(pieces)
+    notes += _close(pieces, closing, full)
+    progress(FINDING, "build directions")
+    layers, found = _layers(wall, pieces, strategy, build, process, normal)
+    return Toolpath(
+        layers, np.eye(4), height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface",
+        bead_width=process.bead_width,
+    )
+
+
+def _refuse(strategy: SurfaceParameters) -> None:
+    if strategy.spacing == "iso-parameter":
+        raise InputError(
+            "NO_PARAMETER", "strategy.spacing", "this wall has no closed parameter whose lines layers could follow (several "
+            "faces, openings, a side or a slanted end); use constant-distance or smooth",
+        )
+
+
+def _turns(wall: PatchWall, curves: list[list[SpaceCurve]], strategy: SurfaceParameters) -> list[Issue]:
+    """Corners that the fronts have formed, and how sharply smooth ones turn."""
+    cornered = corner_notes([np.concatenate([front.turns[front.corners] for front in layer]) for layer in curves])
+    if cornered and strategy.spacing != "smooth":
+        return cornered
+    sharp = [any(len(front.corners) for front in layer) for layer in curves]
+    rates = [np.inf if corner else max(turn(wall, front) for front in layer) for corner, layer in zip(sharp, curves)]
+    return cornered + turn_notes(rates, strategy)
+
+
+def _kept(wall: PatchWall, pieces: list[list[Piece]], strategy: SurfaceParameters) -> tuple[list[list[Piece]], list[Issue]]:
+    """The pieces that are deposited: all, or those below the first that an end of the wall cuts off."""
+    if strategy.end == "whole":
+        kept = whole(pieces)
+        if not kept:
+            raise InputError("TOO_LOW", wall.label, "its end cuts the first layer off; make it longer")
+        left = _left(wall, kept)
+        text = f"up to {left:.4g} mm of the wall are left above the last whole layer"
+        note = Issue(NOTE, "REMAINDER", text, len(kept) - 1)
+        return kept, [note] if left > 1e-4 * strategy.layer_height else []
+    kept, dropped = shorn(pieces, 0.5 * strategy.layer_height)
+    return kept, short_note(dropped)
+
+
+def _close(pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: list[int]) -> list[Issue]:
+    """Put the closing beads behind the pieces of their layers, where all of the layer below is there; and say so."""
+    count, first = 0, 0
+    for index, gaps in enumerate(closing):
+        if not gaps or index > len(pieces) or len(pieces[index - 1]) < full[index - 1]:
+            continue
+        if index == len(pieces):
+            if index < len(full):
+                break
+            pieces.append([])
+        pieces[index] += [Piece(curve, [], False, closing=True) for curve in gaps]
+        first = first or index
+        count += len(gaps)
+    if not count:
+        return []
+    return [Issue(
+        NOTE, "CLOSING", f"{count} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the "
+        f"first in layer {first}", first,
+    )]
+
+
+def _left(wall: PatchWall, kept: list[list[Piece]]) -> float:
+    """Largest distance (mm) of the wall's upper edges from the last layers."""
+    ends = [rim.points for rim in wall.rims if rim.end]
+    last = [piece.curve for layer in kept for piece in layer if not piece.children]
+    return float(feet(last, np.vstack(ends)).distance.max()) if ends and last else 0.0
+
+
+@dataclass(frozen=True)
+class _Way:
+    """One way to run a piece: from where on, and whether against its curve."""
+
+    piece: Piece
+    start: float
+    backwards: bool
+    begin: Array
+
+
+def _layers(
+    wall: PatchWall, pieces: list[list[Piece]], strategy: SurfaceParameters, build: BuildDirectionParameters,
+    process: ProcessParameters, normal: Array | None,
+) -> tuple[tuple[Layer, ...], list[Issue]]:
+    layers, found, here = [], [], None
+    middles: dict[int, Middle] = {}
+    for index, layer in enumerate(pieces):
+        angle = process.seam.angle + index * process.seam.step
+        ways = [_ways(piece, angle, middles, process, index) for piece in layer]
+        beads: list[Bead] = []
+        while ways:
+            way = _nearest(ways, here)
+            ways = [some for some in ways if some[0].piece is not way.piece]
+            curve = way.piece.curve
+            w = within_chord(curve, way.start, way.start + curve.period, strategy.chord_error)
+            line = traced(curve, w, curve.closed)
+            points, out = wall.project(line.points)  # arcs are off it between their nodes, if by next to nothing
+            if curve.closed:
+                points[-1] = points[0]
+            line = line._replace(points=points)
+            over = along(line, out, np.cross(out, line.tangents.sum(axis=1)))  # up is on the left
+            if way.backwards:
+                line, over = line.reversed(), over.reversed()
+            name = classes.of_wall(index, way.piece.closing)
+            own = classes.leaning(build, process, name)
+            one = surface_directions.directions(line.points, curve.closed, over, own, normal, wall.label)
+            found.append((index, one))
+            speed = process.for_class(name).travel_speed
+            beads.append(bead(line, one, curve.closed, speed, name, way.piece.closing))
+            here = line.points[-1]
+        layers.append(Layer(tuple(beads)))
+    return tuple(layers), surface_directions.notes(found)
+
+
+def _ways(
+    piece: Piece, angle: float, middles: dict[int, Middle], process: ProcessParameters, layer: int
+) -> list[_Way]:
+    """The ways in which a piece may be run. Fronts are counter-clockwise, see `fronts.start`."""
+    curve = piece.curve
+    if curve.closed:
+        start = seam(piece, angle, middles)
+        clockwise = process.direction == "clockwise" or (process.direction == "alternate" and layer % 2 == 1)
+        return [_Way(piece, start, clockwise, curve.at(np.array([start]))[0][0])]
+    ways = [_Way(piece, float(curve.w[0]), False, curve.points[0])]
+    if process.direction == "alternate":
+        ways.append(_Way(piece, float(curve.w[0]), True, curve.points[-1]))
+    return ways
+
+
+def _nearest(ways: list[list[_Way]], here: Array | None) -> _Way:
+    """The way that begins nearest to a place, at first simply the first; gaps are closed when the fronts about them are
+    there."""
+    those = [some for some in ways if not some[0].piece.closing] or ways
+    if here is None:
+        return those[0][0]
+    every = [way for some in those for way in some]
+    return every[int(np.argmin([float(np.linalg.norm(way.begin - here)) for way in every]))]

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Walls on an existing part: a wall in, layers of beads with build directions out (Chalvin 2019)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.walls.surface import dot
+from ...geometry.walls.surface_wall import Array, Placed, SurfaceWall
+from ...issues import NOTE, InputError, Issue
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.process import ProcessParameters
+from ...parameters.strategy import SurfaceParameters
+from ...process import classes
+from ...slicing.curve_points import within_chord
+from ...slicing.first_layer import on_polyline
+from ...slicing.tubes import constant_distance, iso_parameter, smooth_spacing
+from ...slicing.tubes.wall_layer import WallLayer, local_distances
+from ...toolpath import Layer, Toolpath
+from .. import size
+from ..progress import Progress, silent
+from . import directions as surface_directions
+from .beads import Traced, along, bead, corner_notes, short_note, spacing_issues, traced, turn_notes
+from .directions import Along
+from .end import Stretch, trimmed
+
+FINER = 4  # places per arc of a layer at which its distance from the one below is measured
+
+
+def plan(
+    wall: SurfaceWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    progress: Progress = silent,
+) -> Toolpath:
+    """The toolpath of a wall around a closed direction, in part coordinates.
+
+    The first layer lies where the wall leaves the substrate; closed beads start at the seam's angle around the wall. The
+    polynomial's variable is the arc length of the bead, one turn (2 pi) from end to end. Raises InputError 'NOT_YET',
+    'LAYER_HEIGHT', 'BAND', 'NOT_AROUND', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION'.
+    """
+    size.refuse_absurd(size.of_wall(wall, strategy), strategy)
+    normal = surface_directions.plane(wall, build)
+    surface = wall.surface()
+    progress(0.0, "finding layers")
+    curves = sliced(wall, surface, strategy)
+    stretches, notes = _stretches(wall, surface, curves, strategy)
+    curves = curves[: len(stretches)]  # what is not deposited is nobody's concern
+    progress(0.5, f"measuring {len(curves)} layers")
+    distances = [local_distances(above, below, FINER)[1] for below, above in zip(curves[:-1], curves[1:], strict=True)]
+    issues = spacing_issues(distances, strategy) + _corner_notes(surface, curves, stretches, strategy)
+    progress(0.7, "build directions")
+    layers, found = _layers(wall, surface, stretches, strategy, build, process, normal)
+    return Toolpath(
+        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *notes, *found), process.overlap,
+        "surface", bead_width=process.bead_width,
+    )
+
+
+def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> list[WallLayer]:
+    """The fronts from the substrate up, the last of them at or past the end of the wall somewhere."""
+    first = on_polyline(surface, wall.first, label=wall.label)
+    if strategy.spacing == "smooth":
+        found = smooth_spacing.layers(
+            surface, first, strategy.layer_height, wall.end, strategy.band, strategy.bead_turn, label=wall.label
+        )
+        return [first, *(smoothed.layer for smoothed in found)]
+    rule = constant_distance.layers if strategy.spacing == "constant-distance" else iso_parameter.layers
+    return rule(surface, first, strategy.layer_height, wall.end, label=wall.label)
+
+
+def _stretches(
+    wall: SurfaceWall, surface: Placed, fronts: list[WallLayer], strategy: SurfaceParameters
+) -> tuple[list[list[Stretch]], list[Issue]]:
+    """What is deposited of each front: all of it, or what lies below the end of the wall."""
+    pieces = [trimmed(surface, front, wall.end) for front in fronts]
+    whole = [len(some) == 1 and some[0].closed for some in pieces]
+    count = whole.index(False) if False in whole else len(whole)
+    if count == 0:
+        raise InputError("TOO_LOW", wall.label, "its end does not lie above the substrate all around; make it longer")
+    if strategy.end == "whole":
+        left = float(((wall.end - fronts[count - 1].u) * _pace(surface, fronts[count - 1])).max())
+        note = Issue(NOTE, "REMAINDER", f"up to {left:.4g} mm of the wall are left above the last whole layer", count - 1)
+        return pieces[:count], [note] if left > 1e-6 * strategy.layer_height else []
+    kept = [[piece for piece in some if piece.length(front.curve) > 0.5 * strategy.layer_height]
+            for front, some in zip(fronts, pieces, strict=True)]
+    dropped = sum(map(len, pieces)) - sum(map(len, kept))
+    while not kept[-1]:
+        kept.pop()
+    return kept, short_note(dropped)
+
+
+def _pace(surface: Placed, front: WallLayer) -> Array:
+    pace: Array = np.linalg.norm(surface.derivatives(front.u, front.v)[1], axis=1)
+    return pace
+
+
+def _layers(
+    wall: SurfaceWall, surface: Placed, stretches: list[list[Stretch]], strategy: SurfaceParameters,
+    build: BuildDirectionParameters, process: ProcessParameters, normal: Array | None,
+) -> tuple[tuple[Layer, ...], list[Issue]]:
+    side = _outside(surface, stretches[0][0])
+    layers, number, found = [], 0, []
+    for index, pieces in enumerate(stretches):
+        beads = []
+        for piece in pieces:
+            start = process.seam.angle + index * process.seam.step
+            w = _places(piece, start, strategy.chord_error)
+            line = traced(piece.front.curve, w, piece.closed)
+            way = _along(surface, line, side)
+            if _backwards(piece.closed, line.points, way, process, index, number):
+                line, way = line.reversed(), way.reversed()
+            name = classes.of_wall(index)
+            own = classes.leaning(build, process, name)
+            one = surface_directions.directions(line.points, piece.closed, way, own, normal, wall.label)
+            found.append((index, one))
+            beads.append(bead(line, one, piece.closed, process.for_class(name).travel_speed, name))
+            number += 1
+        layers.append(Layer(tuple(beads)))
+    return tuple(layers), surface_directions.notes(found)
+
+
+def _places(piece: Stretch, start: float, chord_error: float) -> Array:
+    curve = piece.front.curve
+    if not piece.closed:
+        return within_chord(curve, piece.low, piece.high, chord_error)
+    low = float(curve.wrapped(np.array([start]))[0])
+    return within_chord(curve, low, low + curve.period, chord_error)
+
+
+@dataclass(frozen=True)
+class _Side:
+    """Which way the normal of derivatives points out of the wall: 1 or -1."""
+
+    sign: float
+
+
+def _outside(surface: Placed, piece: Stretch) -> _Side:
+    front = piece.front
+    point, rise, turn = surface.derivatives(front.u, front.v)
+    out = dot(np.cross(rise, turn), point - point[:-1].mean(axis=0))
+    return _Side(float(np.sign(out.sum())))
+
+
+def _along(surface: Placed, line: Traced, side: _Side) -> Along:
+    u, v = surface.inverse(line.points)
+    _, rise, turn = surface.derivatives(u, v)
+    return along(line, _unit(np.cross(rise, turn)) * side.sign, rise)
+
+
+def _backwards(
+    closed: bool, points: Array, way: Along, process: ProcessParameters, layer: int, number: int
+) -> bool:
+    """Whether a bead runs against rising v. Counter-clockwise is meant against the build direction."""
+    if not closed:
+        return process.direction == "alternate" and number % 2 == 1
+    turning = np.cross(points[:-1], points[1:]).sum(axis=0) @ way.up.mean(axis=0)
+    wanted = process.direction != "clockwise" if process.direction != "alternate" else layer % 2 == 0
+    return bool((turning > 0.0) != wanted)
+
+
+def _corner_notes(
+    surface: Placed, fronts: list[WallLayer], stretches: list[list[Stretch]], strategy: SurfaceParameters
+) -> list[Issue]:
+    """Corners that fronts have formed where they are deposited, for a robot slows down there; where there are none, the
+    sharpest turn."""
+    turns = [_corners(front.curve, pieces) for front, pieces in zip(fronts, stretches, strict=True)]
+    if not any(map(len, turns)):
+        return turn_notes([float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts], strategy)
+    return corner_notes(turns)
+
+
+def _corners(curve: SpaceCurve, pieces: list[Stretch]) -> Array:
+    """Turns (k,) rad at the corners of a front on its pieces."""
+    w = curve.w[curve.corners]
+    on = [np.mod(w - piece.low, curve.period) <= piece.high - piece.low for piece in pieces]
+    turns: Array = curve.turns[curve.corners][np.any(on, axis=0)] if pieces else np.empty(0)
+    return turns
+
+
+def _unit(vectors: Array) -> Array:
+    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return unit

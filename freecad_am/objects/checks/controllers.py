@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machines and motions that the controller of a post does not read, refused before anything is planned."""
+
+from __future__ import annotations
+
+from ...core.issues import InputError
+from ...core.kinematics.cell import Cell
+from ...core.kinematics.machines.machine import NOT_TOLD, Machine
+from ...core.parameters.program import ProgramParameters
+from ...core.toolpath import Toolpath
+from ...posts.catalogue import NAMES, controller
+
+APPROACH_POINTS = 50  # of the ways to a bead, which are counted with it, at most
+
+
+def check(cell: Cell, parameters: ProgramParameters) -> None:
+    """InputError for what the controller of the program's post does not take of the cell: WRONG_CONTROLLER,
+    UNSUPPORTED_AXES, NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT."""
+    check_controller(cell.robot, parameters.post)
+    check_external(cell, parameters.post)
+    check_wrist(cell.machine, parameters.motion, parameters.post)
+    check_pulses(cell.machine, parameters.motion, parameters.post)
+
+
+def check_controller(machine: Machine, post: str) -> None:
+    """InputError WRONG_CONTROLLER when the machine file says that its controller does not read that post's programs."""
+    if machine.posts is None or post in machine.posts:
+        return
+    if machine.controller_remark == NOT_TOLD:
+        raise InputError("WRONG_CONTROLLER", "program.post", f"{machine.title} is a URDF, which does not tell what the "
+                         "controller shows; plan without a program, or make a machine file of it with New Machine…")
+    known = f"use one of {', '.join(machine.posts)}" if machine.posts else (
+        "there is no post for it yet: plan without a program; waypoints.csv has its axes")
+    raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
+
+
+def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
+    """InputError BEAD_TOO_LONG when a bead alone has more points than a file of the program may have: programs tell all
+    points of beads."""
+    if not controller(post).whole_beads:
+        return
+    points, layer, index = max(((len(bead), layer, index) for layer, index, bead in toolpath), default=(0, 0, 0))
+    if points > max_points:
+        raise InputError(
+            "BEAD_TOO_LONG", "program.max_points", f"layer {layer} bead {index} has {points} points, and loading another "
+            f"part within a bead would stop the robot while it deposits; use at least {points + APPROACH_POINTS}, or a "
+            "larger strategy.chord_error",
+        )
+
+
+def check_external(cell: Cell, post: str) -> None:
+    """InputError UNSUPPORTED_AXES when a post of the robot does not write the axes beside it."""
+    written = readers(cell)
+    if cell.external is None or written is None or post in written:
+        return
+    external = "a positioner" if cell.external.slides is None else (
+        "a track and a positioner together" if cell.external.turning else "a track")
+    known = f"use one of {', '.join(written)}" if written else "plan without a program; waypoints.csv has all axes"
+    raise InputError("UNSUPPORTED_AXES", "program.post", f"programs of {post} are not written with {external}; {known}")
+
+
+def check_wrist(machine: Machine, motion: str, post: str) -> None:
+    """InputError NOT_FOR_WRIST: Cartesian programs of robots without a spherical wrist by posts that name configurations."""
+    if motion == "cartesian" and machine.redundant and machine.opw is None and controller(post).configurations:
+        raise InputError(
+            "NOT_FOR_WRIST", "program.motion", f"{machine.title} has no spherical wrist, and what its controller calls the "
+            "configurations of cartesian positions is not known; use joint",
+        )
+
+
+def check_pulses(machine: Machine, motion: str, post: str) -> None:
+    """InputError NO_PULSES, NO_SPEED_UNIT where a post needs what only the controller of that very robot tells."""
+    if controller(post).pulses and not machine.pulses_per_degree:
+        raise InputError(
+            "NO_PULSES", "cell.machine", f"how many pulses {machine.title} counts to a degree of each axis is not known, "
+            "and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the "
+            "pendant tells (a position in pulses over the same in degrees), or plan without a program",
+        )
+    if controller(post).pulses and motion == "cartesian" and not machine.speed_unit:
+        raise InputError(
+            "NO_SPEED_UNIT", "cell.machine", f"the unit of V is a setting of the controller of {machine.title}, and another "
+            "one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`",
+        )
+
+
+def written_by(machine: Machine) -> tuple[str, ...] | None:
+    """The posts that programs for a machine can be written by, with what its file tells; None for any."""
+    if machine.posts is None or machine.pulses_per_degree:
+        return machine.posts
+    return tuple(post for post in machine.posts if not controller(post).pulses)
+
+
+def readers(cell: Cell) -> tuple[str, ...] | None:
+    """The posts that the controller of a cell reads, of those with external axes the ones that write these; None for any."""
+    posts = cell.machine.posts
+    if cell.external is None:
+        return posts
+    return tuple(post for post in sorted(NAMES if posts is None else posts) if controller(post).external)

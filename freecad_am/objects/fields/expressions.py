@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters that follow other values of the document: a text that starts with `=`, such as `=Spreadsheet.height / 2`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...core.issues import InputError
+from ...core.parameters import field as f
+from .rows import Row
+
+MARK = "="
+FOLLOW = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME, f.RATIO, f.NUMBER, f.TURN_RATE, f.COUNT)  # forms of rows that can
+
+
+def is_expression(value: Any) -> bool:
+    """Whether a value is an expression rather than a number or a word."""
+    return isinstance(value, str) and value.lstrip().startswith(MARK)
+
+
+def evaluated(value: str, obj: Any, where: str) -> Any:
+    """What an expression gives now, a quantity or a number, names in it seen from `obj`. InputError 'BAD_EXPRESSION'."""
+    try:
+        found = obj.evalExpression(_bare(value))
+    except Exception as error:  # FreeCAD's own errors share no base
+        raise _wrong(value, where, error) from None
+    if isinstance(found, bool) or not (isinstance(found, (int, float)) or hasattr(found, "Unit")):
+        raise InputError("BAD_EXPRESSION", where, f"{value!r} gives {found!r}, which is no number")
+    return found
+
+
+def follow(obj: Any, row: Row, value: str | None) -> None:
+    """Let the property of a row follow an expression, None for none any more. InputError 'BAD_EXPRESSION'."""
+    if value is None:
+        if row.name in dict(obj.ExpressionEngine):
+            obj.setExpression(row.name, None)
+        return
+    try:
+        obj.setExpression(row.name, _bare(value))
+    except Exception as error:  # such as one that follows itself
+        raise _wrong(value, f"{obj.Label}.{row.name}", error) from None
+
+
+def of(obj: Any, row: Row) -> str:
+    """The expression that the property of a row follows, '' when there is none."""
+    text = dict(obj.ExpressionEngine).get(row.name)
+    return f"{MARK}{text}" if text else ""
+
+
+def broken(obj: Any) -> str:
+    """What to do about an expression of an object that gives nothing any more, '' where there is none such: FreeCAD then
+    computes nothing, and tells nobody but the report view."""
+    for name, text in getattr(obj, "ExpressionEngine", ()):
+        try:
+            obj.evalExpression(text)
+        except Exception:  # FreeCAD's own errors share no base
+            return f"{name} follows the expression {text}, which gives nothing any more; give {name} a value or another one"
+    return ""
+
+
+def _bare(value: str) -> str:
+    return value.strip().removeprefix(MARK).strip()
+
+
+def _wrong(value: str, where: str, error: Exception) -> InputError:
+    told = error.args[0] if error.args else error
+    reason = str(told.get("sErrMsg", "") if isinstance(told, dict) else told).strip().rstrip(".")
+    return InputError(
+        "BAD_EXPRESSION", where, f"{value!r} is not understood ({reason}); write it as in {MARK}Spreadsheet.height / 2"
+    )

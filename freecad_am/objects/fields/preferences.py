@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a user prefers, from FreeCAD's parameters: the only place that reads and writes them.
+
+Preferences are of the window: what it proposes, shows and where it looks. Without one nothing of them counts, so that a job
+gives the same program on every computer.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from typing import Any
+
+import FreeCAD as App
+
+from ...core.parameters.cell import CellParameters
+from ...core.parameters.process import ProcessParameters
+from . import rows
+
+GROUP = "User parameter:BaseApp/Preferences/Mod/RoboticAM"
+SPEED_UNITS = {"mm/s": 1.0, "mm/min": 60.0, "m/min": 0.06}  # how many of them 1 mm/s is
+SHOWN = ("SpeedUnit", "Ramp", "MachineColour")  # entries that what is drawn and told depends on
+RAMPS = ("blue to yellow", "violet to orange", "grey")
+MACHINE_COLOUR = (0.86, 0.87, 0.88)
+# parameters of the process that are proposed for new toolpaths, by row key
+PROCESS = (
+    "travel_speed", "bead_width", "wire_diameter", "wire_feed", "density", "lead_on", "lead_off", "between_layers_wait",
+)
+
+
+def text(name: str, default: str = "") -> str:
+    """An entry that is a text."""
+    return str(App.ParamGet(GROUP).GetString(name, default)) if App.GuiUp else default
+
+
+def keep(name: str, value: str) -> None:
+    """Keep a text as an entry; '' removes it."""
+    if value:
+        App.ParamGet(GROUP).SetString(name, value)
+    else:
+        App.ParamGet(GROUP).RemString(name)
+
+
+def builtin_machine() -> str:
+    """The machine of new cells where none is preferred."""
+    return CellParameters().machine
+
+
+def machine() -> str:
+    """The machine of new cells."""
+    return text("Machine") or builtin_machine()
+
+
+def post() -> str:
+    """The post of new programs, '' for what the controller of the machine reads."""
+    return text("Post")
+
+
+def machine_folder() -> str:
+    """A further folder of machine files, '' for none."""
+    return text("MachineFolder")
+
+
+def programs_folder() -> str:
+    """Where programs are written first: the folder that is preferred, else that of last time; '' for beside the document."""
+    return text("ProgramsFolder") or text("ExportFolder")
+
+
+def process_rows() -> tuple[rows.Row, ...]:
+    """The parameters of the process that have an entry."""
+    return tuple(row for row in rows.rows(ProcessParameters) if row.key in PROCESS)
+
+
+def label(row: rows.Row) -> str:
+    """What the page calls it: 'Wire diameter', 'Wait between layers'."""
+    *before, last = (str(step).replace("_", " ") for step in row.path)
+    words = [last, *before] if before and before[0].startswith("between") else [*before, last]
+    return " ".join(words).capitalize() + (f" ({row.spec.unit})" if row.spec.unit else "")
+
+
+def process() -> dict[str, Any]:
+    """What is preferred for the process in place of the defaults, by row key in outer units."""
+    found: dict[str, Any] = {}
+    for row in process_rows() if App.GuiUp else ():
+        number = App.ParamGet(GROUP).GetFloat(row.name, math.nan)
+        value = text(row.name) or number if row.form == rows.MIXED else number  # those that take words were numbers once
+        if value != row.outer(row.default) and value == value:
+            found[row.key] = value
+    return found
+
+
+def keep_process(values: dict[str, Any]) -> None:
+    """Keep figures in outer units by row key, texts of those that take words; those that are the defaults leave no entry."""
+    for row in process_rows():
+        if row.key in values and row.form == rows.MIXED:
+            App.ParamGet(GROUP).RemFloat(row.name)
+            keep(row.name, "" if values[row.key] == row.outer(row.default) else values[row.key])
+        elif row.key in values and values[row.key] != row.outer(row.default):
+            App.ParamGet(GROUP).SetFloat(row.name, values[row.key])
+        elif row.key in values:
+            App.ParamGet(GROUP).RemFloat(row.name)
+
+
+def check(row: rows.Row, value: Any) -> None:
+    """Raises InputError where a process cannot have this inner value."""
+    rows.build(ProcessParameters, {row.key: value})
+
+
+def proposed(section: str, row: rows.Row) -> Any:
+    """The inner value that the panel of a new stage proposes for a parameter: what is preferred, else its default."""
+    preferred: dict[str, Any] = {}
+    if section == "cell":
+        preferred = {"machine": machine()}
+    elif section == "process":
+        preferred = process()
+    elif section == "program" and post():
+        preferred = {"post": post()}
+    return row.inner(preferred[row.key], row.name) if row.key in preferred else row.default
+
+
+# ---- what is shown
+
+def speed_unit() -> str:
+    """The unit of speeds in fields and read-outs."""
+    unit = text("SpeedUnit", "mm/s")
+    return unit if unit in SPEED_UNITS else "mm/s"
+
+
+def speed(value: float) -> float:
+    """A speed in mm/s in that unit."""
+    return value * SPEED_UNITS[speed_unit()]
+
+
+def ramp() -> str:
+    """Which of RAMPS colours go by."""
+    name = text("Ramp", RAMPS[0])
+    return name if name in RAMPS else RAMPS[0]
+
+
+def machine_colour() -> tuple[float, float, float]:
+    """The colour of machines that are drawn plain, 0..1 each."""
+    packed = text("MachineColour")
+    try:
+        red, green, blue = (int(packed[start:start + 2], 16) / 255.0 for start in (1, 3, 5))
+    except ValueError:
+        return MACHINE_COLOUR
+    return red, green, blue
+
+
+def existing(folder: str) -> bool:
+    """Whether a folder is named and there."""
+    return bool(folder) and os.path.isdir(folder)

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters dataclasses as properties of a document object, written and read back.
+
+Adding the properties that an object lacks is the migration of an old document.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+
+from ...core.issues import InputError
+from ...core.parameters import field as f
+from ..shapes.placement import placement_of
+from .rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, build, flat, property_name, rows
+
+READ_ONLY, HIDDEN, OUTPUT = 1, 4, 8
+
+_TYPES = {
+    f.ANGLE: "App::PropertyAngle", f.SPEED: "App::PropertySpeed", f.RATIO: "App::PropertyFloat",
+    f.NUMBER: "App::PropertyFloat", f.TURN_RATE: "App::PropertyFloat", f.COUNT: "App::PropertyInteger",
+    f.FLAG: "App::PropertyBool",
+    f.CHOICE: "App::PropertyEnumeration", f.TEXT: "App::PropertyString", f.POSE: "App::PropertyPlacement",
+    TEXT_LIST: "App::PropertyStringList", MIXED: "App::PropertyString", LENGTH_OR_POSE: "App::PropertyString",
+}
+
+
+def property_type(row: Row, obj: Any) -> str:
+    """The FreeCAD type that holds a row; times are plain numbers where FreeCAD has no type for them (0.20)."""
+    if row.form == f.LENGTH:
+        signed = row.spec.low is None or row.spec.low < 0
+        return "App::PropertyDistance" if signed else "App::PropertyLength"
+    if row.form == f.TIME:
+        return "App::PropertyTime" if _has_time(obj) else "App::PropertyFloat"
+    return _TYPES[row.form]
+
+
+def tooltip(row: Row, type_name: str) -> str:
+    """The help of a row, with its unit where the property itself has none."""
+    bare = type_name in ("App::PropertyFloat", "App::PropertyString") and row.unit
+    return f"{row.spec.help} ({row.unit})" if bare else row.spec.help
+
+
+def add(obj: Any, cls: type, group: str) -> None:
+    """Give the object the properties of a parameters dataclass that it lacks, at their defaults."""
+    have = set(obj.PropertiesList)
+    for row in rows(cls):
+        if row.name not in have:
+            type_name = property_type(row, obj)
+            obj.addProperty(type_name, row.name, group, tooltip(row, type_name))
+            if row.form == f.CHOICE:
+                setattr(obj, row.name, list(row.spec.choices))
+            _set(obj, row, row.default)
+        elif row.form == f.CHOICE and tuple(obj.getEnumerationsOfProperty(row.name) or ()) != row.spec.choices:
+            chosen = getattr(obj, row.name)
+            setattr(obj, row.name, list(row.spec.choices))
+            _set(obj, row, chosen if chosen in row.spec.choices else row.default)
+
+
+def write(obj: Any, parameters: Any) -> None:
+    """Set the properties of a parameters dataclass; only those that differ, so that nothing else is touched."""
+    values = flat(parameters)
+    for row in rows(type(parameters)):
+        if _differs(obj, row, values[row.key]):
+            _set(obj, row, values[row.key])
+
+
+def read(obj: Any, cls: type, section: str) -> Any:
+    """The parameters dataclass of the object's properties.
+
+    `section` is the prefix of the dataclass's own errors. Raises InputError naming the object's Label and property.
+    """
+    values = {row.key: row.inner(getattr(obj, row.name), f"{obj.Label}.{row.name}") for row in rows(cls)}
+    try:
+        return build(cls, values)
+    except InputError as error:
+        key = error.where[len(section) + 1:] if error.where.startswith(f"{section}.") else error.where
+        raise InputError(error.code, f"{obj.Label}.{property_name(key)}", error.message) from None
+
+
+def fingerprint(obj: Any, cls: type) -> list[str]:
+    """The properties as texts that survive saving: FreeCAD keeps 16 decimals, so the last digits do not count."""
+    return [f"{row.name}={_canonical(getattr(obj, row.name))}" for row in rows(cls)]
+
+
+def _canonical(value: Any) -> str:
+    if isinstance(value, App.Placement):
+        return " ".join(f"{number:.9f}" for number in (*value.Base, *value.Rotation.Q))
+    if isinstance(value, (list, tuple)):
+        return ",".join(str(entry) for entry in value)
+    if isinstance(value, App.Units.Quantity):
+        value = value.Value
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
+
+
+def _differs(obj: Any, row: Row, value: Any) -> bool:
+    try:
+        return bool(row.inner(getattr(obj, row.name), row.name) != value)
+    except InputError:
+        return True
+
+
+def _set(obj: Any, row: Row, value: Any) -> None:
+    if row.form == MIXED and obj.getTypeIdOfProperty(row.name) != _TYPES[MIXED]:
+        _retype(obj, row)
+    if row.form in (MIXED, LENGTH_OR_POSE):
+        setattr(obj, row.name, row.text(value))
+    elif row.form == f.POSE:
+        setattr(obj, row.name, placement_of(value))
+    elif row.form == TEXT_LIST:
+        setattr(obj, row.name, list(value))
+    else:
+        setattr(obj, row.name, row.outer(value))
+        if row.form == f.ANGLE and abs(row.inner(getattr(obj, row.name), row.name) - value) > 1e-9:
+            # FreeCAD keeps angles within a turn and says nothing
+            shown = f.outer_text(row.spec, value)
+            raise InputError("BAD_VALUE", f"{obj.Label}.{row.name}", f"{shown} is out of range; give -360 to 360 deg")
+
+
+def _retype(obj: Any, row: Row) -> None:
+    """Make a property a text, which was a quantity in older documents and takes words by now. Until it is set it stays what
+    it was, so that opening such a document changes nothing."""
+    group = obj.getGroupOfProperty(row.name)
+    obj.setExpression(row.name, None)
+    obj.removeProperty(row.name)
+    obj.addProperty(_TYPES[MIXED], row.name, group, tooltip(row, _TYPES[MIXED]))
+
+
+def _has_time(obj: Any) -> bool:
+    return "App::PropertyTime" in obj.supportedProperties()

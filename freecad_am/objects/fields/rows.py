@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters dataclasses laid out flat: one row per property of a document object, field of a panel, macro keyword.
+
+Outside, numbers are mm, deg, mm/s and s and poses are x y z RX RY RZ; inside, angles are rad.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import FreeCAD as App
+
+from ...core.issues import InputError
+from ...core.parameters import field as f
+
+TEXT_LIST, MIXED, LENGTH_OR_POSE = "text list", "mixed", "length or pose"
+ENDS = ("low", "high")
+_UNITS = {
+    f.LENGTH: (App.Units.Length, "a length such as 1 mm"),
+    f.ANGLE: (App.Units.Angle, "an angle such as 90 deg"),
+    f.SPEED: (App.Units.Velocity, "a speed such as 6 mm/s or 360 mm/min"),
+    f.TIME: (App.Units.TimeSpan, "a time such as 2 s"),
+    f.TURN_RATE: (App.Units.Unit(-1, 0, 0, 0, 0, 0, 0, 1), "a turn per length such as 10 deg/mm"),
+}
+# what FreeCAD reads in a quantity beside the signs of ASCII
+_OTHER_SIGNS = "\N{DEGREE SIGN}\N{MICRO SIGN}\N{PRIME}\N{DOUBLE PRIME}\N{MINUS SIGN}"
+# a comma that may begin decimals, a no-break blank that may group digits
+_TWO_WAYS = re.compile(r"(?:^|\s),\d|\d,\d.*\s|\s.*\d,\d|\d[\u00a0\u2009\u202f]\d", re.DOTALL)
+_ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
+_LABELS = {  # of parameters whose keys do not say it in words
+    "given": "Given polynomials", "degree": "Degree of the polynomials", "parameter": "Polynomials give",
+    "min_condition": "Least condition", "lock": "Axis that stands still", "lock_at": "It stands at",
+    "max_residual": "Largest direction error", "own_branch": "Branch of this path", "compare": "Compare with",
+    "rx": "RX", "ry": "RY",
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """One parameter. `path` leads to it from the dataclass (an int picks an end of a range); `form` is the kind of
+    the property that holds it: the kind of its `Spec`, or one of TEXT_LIST, MIXED (a text holding a quantity or a
+    word, empty for None) and LENGTH_OR_POSE (a text)."""
+
+    path: tuple[str | int, ...]
+    spec: f.Spec
+    form: str
+    default: Any
+
+    @property
+    def key(self) -> str:
+        """Its name as a macro keyword: seam_angle, rotation_range_low."""
+        return "_".join(ENDS[step] if isinstance(step, int) else step for step in self.path)
+
+    @property
+    def name(self) -> str:
+        """Its name as a property: SeamAngle, RotationRangeLow."""
+        return property_name(self.key)
+
+    @property
+    def unit(self) -> str:
+        """The outer unit, '' when there is none."""
+        return f.OUTER_UNIT.get(self.spec.kind, "")
+
+    @property
+    def label(self) -> str:
+        """Its name in a panel: 'Layer height' for layer_height; the group is told by its box."""
+        words = [("from", "to")[step] if isinstance(step, int) else step for step in self.path]
+        if len(words) == 1 and words[0] in _LABELS:
+            return _LABELS[words[0]]
+        words = words[1:] if len(words) > 1 and words[-1] not in ("from", "to") else words
+        return _headed(" ".join(words))
+
+    def inner(self, value: Any, where: str) -> Any:
+        """The value as the dataclass holds it, from a property's value, a plain value in outer units or a text.
+
+        Raises InputError 'BAD_VALUE' or 'BAD_UNIT' naming `where`.
+        """
+        if self.form == f.POSE:
+            return _pose(value, where)
+        if self.form == TEXT_LIST:
+            return tuple(split(value, where) if isinstance(value, str) else value)
+        if self.form == LENGTH_OR_POSE and (_is_list(value) or (isinstance(value, str) and len(split(value, where)) > 2)):
+            return _pose(value, where)
+        if self.form == MIXED and (value is None or (isinstance(value, str) and not value.strip())):
+            return None
+        if isinstance(value, str) and value.strip() in self.spec.words:
+            return value.strip()
+        if self.spec.kind in (f.TEXT, f.CHOICE, f.FLAG):
+            return value
+        if self.spec.kind == f.POSE:
+            return _pose(value, where)
+        return _number(self.spec, value, where)
+
+    def outer(self, value: Any) -> Any:
+        """The value in outer units as a Python literal, such as a panel shows and a macro passes."""
+        if _is_list(value) and (self.spec.kind == f.POSE or self.form == LENGTH_OR_POSE):
+            return tuple(float(number) for number in value[:3]) + tuple(degrees(angle) for angle in value[3:])
+        if self.form == TEXT_LIST:
+            return tuple(value)
+        if isinstance(value, tuple):
+            return " ".join(value)
+        if self.spec.kind in (f.ANGLE, f.TURN_RATE, f.RATIO) and not isinstance(value, str) and value is not None:
+            return value / f.TO_INNER[f.RATIO] if self.spec.kind == f.RATIO else degrees(value)
+        return value
+
+    def text(self, value: Any) -> str:
+        """The value as a text with its unit: what a MIXED or LENGTH_OR_POSE property holds."""
+        shown = self.outer(value)
+        if shown is None or isinstance(shown, str):
+            return shown or ""
+        if _is_list(shown):
+            return " ".join(repr(number) for number in shown)
+        return f"{shown!r} {self.unit}".strip()
+
+
+def group_of(row: Row) -> str:
+    """What a panel calls the group that a row is nested in: 'Seam' for seam.angle."""
+    return _headed(str(row.path[0]))
+
+
+def _headed(key: str) -> str:
+    """A key as a heading."""
+    text = key.replace("_", " ")
+    return _ABBREVIATED.get(text) or text[0].upper() + text[1:]
+
+
+def property_name(key: str) -> str:
+    """LayerHeight for layer_height."""
+    return "".join(word[0].upper() + word[1:] for word in re.split(r"[_.]", key))
+
+
+@cache
+def rows(cls: type) -> tuple[Row, ...]:
+    """The rows of a parameters dataclass, groups flattened, in the order of its fields."""
+    found: list[Row] = []
+    for field in dataclasses.fields(cls):
+        spec = f.spec_of(field)
+        if spec.kind == f.GROUP:
+            factory: Any = field.default_factory
+            found += [dataclasses.replace(row, path=(field.name, *row.path)) for row in rows(factory)]
+        elif spec.kind in f.END_OF:
+            end = dataclasses.replace(spec, kind=f.END_OF[spec.kind])
+            found += [Row((field.name, i), end, end.kind, field.default[i]) for i in (0, 1)]
+        else:
+            found.append(Row((field.name,), spec, _form(spec, str(field.type)), field.default))
+    return tuple(found)
+
+
+def build(cls: type, values: dict[str, Any]) -> Any:
+    """The dataclass from inner values by row key; rows left out keep their default. Raises its InputError."""
+    nested: dict[str, Any] = {}
+    for row in rows(cls):
+        value = values.get(row.key, row.default)
+        here: Any = nested
+        for step in row.path[:-1]:
+            here = here.setdefault(step, {})
+        here[row.path[-1]] = value
+    return _assemble(cls, nested)
+
+
+def flat(parameters: Any) -> dict[str, Any]:
+    """Inner values by row key of a parameters dataclass."""
+    found = {}
+    for row in rows(type(parameters)):
+        value = parameters
+        for step in row.path:
+            value = value[step] if isinstance(step, int) else getattr(value, step)
+        found[row.key] = value
+    return found
+
+
+def degrees(angle: float) -> float:
+    """Degrees of an angle in rad, without the noise of the last digits where the round number means the same."""
+    value = math.degrees(angle)
+    short = float(f"{value:.13g}")
+    return short if abs(math.radians(short) - angle) <= 4e-16 * max(1.0, abs(angle)) else value
+
+
+def _assemble(cls: type, nested: dict[str, Any]) -> Any:
+    values = {}
+    for field in dataclasses.fields(cls):
+        spec, value = f.spec_of(field), nested[field.name]
+        if spec.kind == f.GROUP:
+            factory: Any = field.default_factory
+            value = _assemble(factory, value)
+        elif spec.kind in f.END_OF:
+            value = (value[0], value[1])
+        values[field.name] = value
+    return cls(**values)
+
+
+def _form(spec: f.Spec, annotation: str) -> str:
+    if spec.kind == f.LENGTH and "Pose" in annotation:
+        return LENGTH_OR_POSE
+    if spec.kind == f.TEXT and annotation.startswith("tuple"):
+        return TEXT_LIST
+    return MIXED if spec.words or spec.optional else spec.kind
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, (tuple, list))
+
+
+def split(text: str, where: str) -> list[str]:
+    """The words of a list with commas or blanks between. InputError 'BAD_VALUE' naming `where` for one with both, where a
+    comma may begin decimals ('10,5 20,5' is two numbers, or four), and for digits that are grouped by no-break blanks."""
+    if _TWO_WAYS.search(text.strip()):
+        remedy = "write decimals with a point and one kind of separator, as in 10.5 20.5"
+        raise InputError("BAD_VALUE", where, f"{plain_blanks(text)!r} may be read in two ways; {remedy}")
+    return text.replace(",", " ").split()
+
+
+def plain_blanks(text: str) -> str:
+    """A text with plain blanks for no-break and thin ones, which FreeCAD does not know."""
+    return re.sub(r"\s", " ", text)
+
+
+def quantity(text: str) -> Any:
+    """FreeCAD's quantity of a text. ValueError for what is none, also where FreeCAD would end at a sign it does not know
+    and leave out the rest, unit and all: of '1’234 mm' it takes the 1."""
+    plain = plain_blanks(text).replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
+    if any(not sign.isascii() and sign not in _OTHER_SIGNS for sign in plain):
+        raise ValueError(text)
+    return App.Units.Quantity(plain)
+
+
+def _number(spec: f.Spec, value: Any, where: str) -> Any:
+    also = "".join(f" or {word}" for word in spec.words)
+    if spec.kind not in _UNITS:
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            raise InputError("BAD_VALUE", where, f"{value!r} is not a number{also}") from None
+        if spec.kind == f.COUNT:
+            return int(number) if number.is_integer() else number
+        return number * f.TO_INNER.get(spec.kind, 1.0)
+    unit, example = _UNITS[spec.kind]
+    found = _quantity(value, where, example + also)
+    if found.Unit != unit and found.Unit != App.Units.Unit():
+        raise InputError("BAD_UNIT", where, f"{value!s} has another dimension; give {example}{also}")
+    return math.radians(found.Value) if spec.kind in (f.ANGLE, f.TURN_RATE) else float(found.Value)
+
+
+def _quantity(value: Any, where: str, example: str) -> Any:
+    if isinstance(value, App.Units.Quantity):
+        return value
+    try:
+        if isinstance(value, str) and ("," in value or not value.strip()):
+            raise ValueError
+        if isinstance(value, bool):
+            raise ValueError
+        return quantity(value) if isinstance(value, str) else App.Units.Quantity(value)
+    except (ValueError, TypeError, ArithmeticError, OSError):
+        told = plain_blanks(value) if isinstance(value, str) else value
+        raise InputError("BAD_VALUE", where, f"{told!r} is not understood; give {example}") from None
+
+
+def _pose(value: Any, where: str) -> tuple[float, ...]:
+    if isinstance(value, App.Placement):
+        from ..shapes.placement import pose_of
+
+        return pose_of(value)
+    numbers = split(value, where) if isinstance(value, str) else list(value)
+    try:
+        floats = [float(number) for number in numbers]
+    except (TypeError, ValueError):
+        floats = []
+    if len(floats) not in (3, 6):
+        raise InputError("BAD_VALUE", where, f"{value!r} is not a pose; give x y z in mm and RX RY RZ in deg")
+    floats += [0.0] * (6 - len(floats))
+    return (*floats[:3], *(math.radians(angle) for angle in floats[3:]))

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters given to a stage as keywords or dataclasses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ...core.issues import InputError
+from ..stage import Stage
+from . import expressions, properties, rows
+
+
+def given(obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, Any]) -> None:
+    """Set the parameters of a stage: whole dataclasses (None leaves the properties) and, over them, single values in
+    outer units by row key, or expressions (`=Spreadsheet.height`) that they follow from now on.
+
+    All are checked before the first is set. InputError names what was given.
+    """
+    known = {row.key: row for section in stage.sections for row in rows.rows(section.cls)}
+    unknown = sorted(set(values) - set(known))
+    if unknown:
+        raise InputError(
+            "UNKNOWN_PARAMETER", obj.Label, f"{', '.join(unknown)} is not known; use one of {', '.join(sorted(known))}"
+        )
+    whole = {type(entry): entry for entry in dataclasses if entry is not None}
+    checked = []
+    for section in stage.sections:
+        mine = {row.key: row for row in rows.rows(section.cls) if row.key in values}
+        if section.cls not in whole and not mine:
+            continue
+        base = whole.get(section.cls)
+        inner = rows.flat(base if base is not None else stage.parameters(obj, section.cls))
+        for key, row in mine.items():
+            inner[key] = row.inner(_plain(obj, row, values[key], f"{section.prefix}.{key}"), f"{section.prefix}.{key}")
+        checked.append(rows.build(section.cls, inner))
+    for parameters in checked:
+        properties.write(obj, parameters)
+    for key, value in values.items():
+        expressions.follow(obj, known[key], value if expressions.is_expression(value) else None)
+
+
+def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:
+    """The value, or what its expression gives now."""
+    if not expressions.is_expression(value):
+        return value
+    if row.form not in expressions.FOLLOW:
+        raise InputError("BAD_EXPRESSION", where, "it cannot follow an expression; give a plain value")
+    return expressions.evaluated(value, obj, where)

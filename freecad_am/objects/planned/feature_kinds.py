@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The feature object of each family, imported when one is made."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from ...core.issues import InputError
+from ...core.strategies.families import KINDS
+
+# class paths are a file format
+_PROXIES = {
+    "revolution": ("feature", "RevolutionFeature"),
+    "surface": ("surface_feature", "SurfaceFeature"),
+    "developable": ("developable_feature", "DevelopableFeature"),
+    "curves": ("curves_feature", "CurvesFeature"),
+    "solid": ("solid_feature", "SolidFeature"),
+    "cladding": ("cladding_feature", "CladdingFeature"),
+}
+
+
+def proxy_of(kind: str) -> type[Any]:
+    """The class of the features of a family. InputError BAD_VALUE for a kind that there is not."""
+    if kind not in KINDS:
+        raise InputError("BAD_VALUE", "kind", f"{kind!r} is none of {', '.join(KINDS)}")
+    module, name = _PROXIES[kind]
+    found: type[Any] = getattr(importlib.import_module(f"freecad_am.objects.{module}"), name)
+    return found

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The motion of a joint path as it is run: all of it, or the rows of a program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import Issue
+from ...core.kinematics.cell import Cell
+from ...core.motion import Motion
+from ...core.parameters.program import ProgramParameters
+from ...core.planning.beads import moving_tool, steps
+from ...core.planning.program import build as programs
+from ...core.simulation.margins import on_deposit
+from ...posts import catalogue
+from ..joint_path import Planned
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AsRun:
+    """A motion of n rows. condition, threshold: (n,), NaN where not known. issues: by its points."""
+
+    motion: Motion
+    condition: Array
+    threshold: Array
+    issues: tuple[Issue, ...]
+
+
+def as_run(
+    planned: Planned, cell: Cell, chord_error: float, settings: ProgramParameters | None, issues: tuple[Issue, ...]
+) -> AsRun:
+    """All of a joint path without `settings`; of a program with the points that moves in a line get, without those too
+    soon after others for its controller, and only from where it starts."""
+    motion = planned.motion
+    condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
+    if settings is None:
+        return AsRun(motion, condition, threshold, issues)
+    controller = catalogue.controller(settings.post)
+    straight = settings.motion == "cartesian" and not controller.straight_in_part
+    if straight and cell.arrangement.holds_part:
+        origin = moving_tool.origins(motion, cell, chord_error)
+        beads = [path.bead for path in planned.joint_path.beads]
+        motion = moving_tool.kept_straight(motion, cell, chord_error, beads)
+        condition, threshold = condition[origin], threshold[origin]
+        issues = tuple(_renumbered(issue, planned.motion, motion, origin) for issue in issues)
+    whole = motion
+    motion, kept = steps.told(motion, controller, chord_error, settings.blend)
+    if len(motion) < len(whole):
+        condition, threshold = condition[kept], threshold[kept]
+        issues = tuple(_renumbered(issue, whole, motion, kept) for issue in issues)
+    rows = programs.rows_from(motion, settings.start_at)
+    motion = Motion(**{field.name: getattr(motion, field.name)[rows] for field in fields(motion)})
+    return AsRun(motion, condition[rows], threshold[rows], issues)
+
+
+def _renumbered(issue: Issue, before: Motion, after: Motion, origin: NDArray[np.int64]) -> Issue:
+    """A finding by the number that its point has among added ones, or of the last one before it where it is left out."""
+    here = before.deposit & (before.layer == issue.layer) & (before.bead == issue.bead) & (before.point == issue.point)
+    if issue.point is None or not here.any():
+        return issue
+    row = int(np.searchsorted(origin, int(np.argmax(here)), side="right")) - 1
+    return replace(issue, point=int(after.point[row]))

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What stands in a cell besides part and machine, `cell.obstacles`, and the torch, `cell.nozzle.shape`, as bodies."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from ...brep.files.apart import LARGEST
+from ...brep.files.read import read_mesh, read_shape
+from ...brep.shapes.tessellate import body
+from ...core.collision.nozzle import depositing
+from ...core.collision.scene import scene
+from ...core.geometry import frames
+from ...core.geometry.file_content import digest
+from ...core.geometry.located import is_there, located
+from ...core.geometry.mesh.file_unit import MESHES
+from ...core.geometry.surroundings import Body, box
+from ...core.issues import InputError
+from ...core.kinematics import cell as cells
+from ...core.kinematics import torch
+from ...core.kinematics.cell import Cell
+from ...core.parameters.cell import NO_SHAPE, CellParameters, NozzleParameters
+from ...core.parameters.obstacles import WHERE, Obstacle, obstacles
+from ...core.toolpath import Toolpath
+
+CODE = "OBSTACLE"
+MOST_TORCHES = 4  # kept
+_torches: list[tuple[Body, NozzleParameters, torch.Torch]] = []  # with what they were made of
+
+
+def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str]) -> Cell:
+    """The cell of a toolpath, with what stands in it. Raises InputError as `cells.resolve` does, NO_FILE and the like of
+    files of obstacles, and OBSTACLE where one is at the first point of the job already."""
+    cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
+    bodies = bodies_of(settings)
+    if not cell.arrangement.links_known:
+        return cell
+    cell = dataclasses.replace(cell, obstacles=bodies, torch=torch_of(settings))
+    if bodies:
+        _refuse_at_start(cell, toolpath)
+    return cell
+
+
+def bodies_of(settings: CellParameters) -> tuple[Body, ...]:
+    """The obstacles of a cell in the world, mm. Raises InputError naming the obstacle and its file."""
+    return tuple(_body(one) for one in obstacles(settings.obstacles))
+
+
+def torch_of(settings: CellParameters) -> torch.Torch | None:
+    """The torch of a cell; None without one. Raises InputError TORCH and those of its file."""
+    shape = settings.nozzle.shape.strip()
+    if shape == NO_SHAPE:
+        return None
+    try:
+        return _torch(_read(located(shape)), settings.nozzle)
+    except InputError as error:
+        raise InputError(error.code, torch.WHERE, error.message) from None
+
+
+def hashes_of(text: str, shape: str) -> list[str]:
+    """Of the files that a text of obstacles, and the shape of a torch, name, those that are there. InputError of one that is
+    too large."""
+    files = [(Path(one.file), f"{WHERE} {one.name}") for one in obstacles(text) if one.file]
+    files += [(Path(shape.strip()), torch.WHERE)] if shape.strip() != NO_SHAPE else []
+    return [digest(file, LARGEST, "BAD_FILE", where) for file, where in files if is_there(file)]
+
+
+def _body(one: Obstacle) -> Body:
+    pose = frames.bryant(one.pose)
+    if one.size is not None:
+        return box(one.size, pose, one.name)
+    try:
+        found = _read(located(one.file))
+    except InputError as error:
+        raise InputError(error.code, f"{WHERE} {one.name}", error.message) from None
+    return dataclasses.replace(found, name=one.name).moved(pose)
+
+
+def _read(file: Path) -> Body:
+    """The triangles of a file; it is read again only where it has changed."""
+    try:
+        now = file.stat()
+    except OSError:
+        return _triangles(file)  # which tells what is wrong
+    return _known(file, now.st_mtime_ns, now.st_size)
+
+
+def _torch(body: Body, nozzle: NozzleParameters) -> torch.Torch:
+    """The torch of a body, which is the same one as long as its file is."""
+    for known, of, found in _torches:
+        if known is body and of == nozzle:
+            return found
+    found = torch.torch(body, nozzle)
+    _torches.append((body, nozzle, found))
+    del _torches[:-MOST_TORCHES]
+    return found
+
+
+@lru_cache(maxsize=16)
+def _known(file: Path, changed: int, size: int) -> Body:
+    return _triangles(file)
+
+
+def _triangles(file: Path) -> Body:
+    source = read_mesh(file) if file.suffix.lower() in MESHES else read_shape(file)
+    return body(source, file.name)
+
+
+def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
+    """Raises InputError OBSTACLE where one is about the nozzle as it lays the first point, whatever carries it."""
+    bead = next(bead for _, _, bead in toolpath)
+    point, axis = bead.points[:1], bead.tool[:1]
+    if cell.torch_stands:
+        to_world = frames.inverse(cell.machine.base) @ cell.station
+        point, axis, bodies = to_world[None, :3, 3], to_world[None, :3, 2], cell.obstacles
+    else:
+        bodies = cell.in_part()
+    nozzle = depositing(0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length, 0.0)
+    for one in bodies:
+        if scene((one,), point, nozzle.reach).touched(nozzle, point, axis).any():
+            raise InputError(CODE, f"{WHERE} {one.name}", "it touches the nozzle at the first point of the job already, "
+                             "however the arm stands; its pose is that in the maker's base frame, and files are in mm: "
+                             "move it, or the deposition point")

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Shapes that a user gave the links of a machine, as triangles in the frames of the links."""
+
+from __future__ import annotations
+
+from ...brep.files import looks
+from ...core.issues import InputError
+from ...core.kinematics.links.rods import Mesh
+from ...core.kinematics.links.shape import LinkShape
+from ...core.kinematics.machines.machine import Machine
+
+
+def meshes_of(machine: Machine) -> tuple[Mesh | None, ...]:
+    """(axes + 1) points and triangles of each link's file, base first; None where there is none, or none that can be read:
+    that is told when the link is drawn."""
+    found: list[Mesh | None] = []
+    for shape in machine.shapes:
+        try:
+            found.append(None if shape is None else mesh_of(shape))
+        except InputError:
+            found.append(None)
+    return tuple(found)
+
+
+def mesh_of(shape: LinkShape) -> Mesh:
+    """Points (n, 3) mm in the frame of the link and triangles (m, 3) of a user's file. Raises InputError naming it."""
+    points, triangles = looks.triangles(shape.path)
+    return shape.scale * points @ shape.pose[:3, :3].T + shape.pose[:3, 3], triangles

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A part from a file, as a shape for the document."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import FreeCAD as App
+
+from ...brep.files.apart import apart
+from ...brep.files.read import placed_mesh, read_mesh, read_shape
+from ...core.geometry.located import is_there, located
+from ...core.geometry.mesh.file_unit import MESHES, refuse_scale
+from ...core.issues import InputError
+from ..work import hooks
+from . import document_file
+from .bodies import global_shape, outer_placement
+
+# what the origin of an assembly or a body is made of: since FreeCAD 1.0 with shapes
+ORIGIN = ("App::Line", "App::Plane", "App::Point")
+READING = "reading the file"
+
+
+def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[Any, str]:
+    """The shape of a part file, the mesh of an STL, OBJ or 3MF file or of an object, and a label for it.
+    `object_name`: Name or Label of an object of an FCStd file. scale: mm of one unit of an STL or OBJ file.
+
+    Raises the InputErrors of `brep.read`, NO_OBJECT, and BAD_VALUE for a scale of another file or none above 0.
+    """
+    stem, extension = os.path.splitext(os.path.basename(path))
+    refuse_scale(scale, path, "scale")
+    if extension.lower() in MESHES:
+        return hooks.carry_out(lambda: read_mesh(path, scale), stem, READING), stem
+    if extension.lower() != ".fcstd":
+        return hooks.carry_out(lambda: read_shape(path), stem, READING), stem
+    if not is_there(path):
+        raise InputError("NO_FILE", path, "there is no such file; check the path")
+    for document in App.listDocuments().values():
+        if document.FileName and os.path.realpath(document.FileName) == os.path.realpath(path):
+            return _shape_in(document, path, object_name)  # open already: it is the user's, and stays open
+    return hooks.carry_out(lambda: apart(_shape_of_file, str(located(path)), object_name), stem, READING)
+
+
+def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:
+    active = App.ActiveDocument
+    document = document_file.open_here(path, path)
+    try:
+        return _shape_in(document, path, object_name)
+    finally:
+        App.closeDocument(document.Name)
+        if active is not None:
+            App.setActiveDocument(active.Name)
+
+
+def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
+    """The shape of the object asked for, or of the only one; of a document of meshes alone, or by its name, a mesh."""
+    placed = [obj for obj in document.Objects if obj.TypeId not in ORIGIN]
+    shapes = [obj for obj in placed if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()]
+    meshes = [obj for obj in document.Objects if getattr(getattr(obj, "Mesh", None), "CountFacets", 0)]
+    known = [*shapes, *meshes]
+    if object_name:
+        found = [obj for obj in known if object_name in (obj.Name, obj.Label)]
+    else:
+        found = [obj for obj in shapes or meshes if not any(other in known for other in obj.InListRecursive)]
+    if len(found) != 1:
+        names = ", ".join(obj.Label for obj in known) or "none"
+        asked = repr(object_name) if object_name else "one object that nothing else is made from"
+        raise InputError("NO_OBJECT", path, f"{asked} is not found among the objects with a shape ({names}); name one")
+    if found[0] in shapes:
+        return global_shape(found[0]).copy(), found[0].Label
+    return placed_mesh(found[0].Mesh, outer_placement(found[0])), found[0].Label

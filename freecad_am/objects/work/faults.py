@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a computer gives up on while a stage is computed, told as errors that say what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from ...brep.kernel.limits import told
+from ...core.issues import InputError
+
+
+@contextmanager
+def memory(label: str) -> Iterator[None]:
+    """A lack of memory within, as an InputError NO_MEMORY that names `label`."""
+    try:
+        yield
+    except MemoryError:
+        raise InputError(
+            "NO_MEMORY", label, "there is not enough memory to compute it; give larger steps, such as layer height "
+            "and chord error, or a smaller part"
+        ) from None
+
+
+@contextmanager
+def kernel(obj: Any) -> Iterator[None]:
+    """Faults of the geometry kernel within, as an InputError BAD_SHAPE that names what the stage `obj` is made from."""
+    source = getattr(obj, "Source", None)
+    with told(str(source[0].Label if source else obj.Label)):
+        yield

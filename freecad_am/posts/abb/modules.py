@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads the modules of a RAPID program: their data, and the statements of their routines. No motion yet."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+
+Array = NDArray[np.float64]
+
+_DECLARED = re.compile(r"LOCAL (?:PERS (tooldata|wobjdata)|CONST (speeddata|zonedata)) (\w+):=(\[.*\]);$")
+_TRACK = re.compile(r"! eax_([a-f]) is the track in mm\b")
+_MODULE_LINE, _PROC_LINE = re.compile(r"MODULE ([A-Za-z]\w*)$"), re.compile(r"PROC ([A-Za-z]\w*)\(\)$")
+# deg/s: a move that turns the tool faster would be slowed down
+_TURNING = 500.0
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A tool and a work object, (4, 4) in the world or on the flange: held says that it is the work object that the robot
+    carries, and that the tool stands. unit: the mechanical unit that the work object is seen from, '' where it stands."""
+
+    tool: Array
+    work_object: Array
+    held: bool
+    unit: str = ""
+
+    def same(self, other: Frames) -> bool:
+        """Whether they are those of another module, number by number."""
+        alike = np.array_equal(self.tool, other.tool) and np.array_equal(self.work_object, other.work_object)
+        return alike and (self.held, self.unit) == (other.held, other.unit)
+
+
+@dataclass
+class Module:
+    """A file: the statements of its one routine with the numbers of their lines, and its data by name. slides: numbers of
+    the axes beside the robot that a remark calls the track."""
+
+    file: str
+    name: str
+    routine: str
+    statements: list[tuple[int, str]]
+    tools: dict[str, tuple[bool, Array]] = field(default_factory=dict)
+    objects: dict[str, tuple[bool, Array]] = field(default_factory=dict)
+    speeds: set[str] = field(default_factory=set)
+    zones: dict[str, float] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    slides: tuple[int, ...] = ()
+    _paired: dict[tuple[str, str], Frames] = field(default_factory=dict)
+
+    def tool_and_object(self, tool: str, work_object: str, where: str) -> Frames:
+        """The frames of a tool and a work object, of which the robot carries one."""
+        if (tool, work_object) not in self._paired:
+            if tool not in self.tools or work_object not in self.objects:
+                raise unreadable(where, f"{tool} is no tool of the module, or {work_object} no work object")
+            (on_robot, at), (held, seen) = self.tools[tool], self.objects[work_object]
+            if on_robot == held:
+                raise unreadable(where, "the robot has to carry either the tool or the work object")
+            self._paired[tool, work_object] = Frames(at, seen, held, self.units[work_object])
+        return self._paired[tool, work_object]
+
+
+def modules(files: dict[str, bytes]) -> dict[str, Module]:
+    """The modules by name, lower case. Raises InputError UNREADABLE_PROGRAM."""
+    found: dict[str, Module] = {}
+    for file in sorted(files):
+        module = _module(file, files[file].decode("latin-1").replace("\r\n", "\n").split("\n"))
+        if module.name in found or f"{module.name}.mod" != file.lower():
+            raise unreadable(file, f"its module is called {module.name}, and the file is not, or another one is too")
+        found[module.name] = module
+    return found
+
+
+def _module(file: str, lines: list[str]) -> Module:
+    numbered = [(number, line.strip()) for number, line in enumerate(lines, 1) if line.strip()]
+    routines = [k for k, (_, line) in enumerate(numbered) if _PROC_LINE.match(line)]
+    title = _MODULE_LINE.match(numbered[0][1]) if numbered else None
+    if title is None or len(routines) != 1 or [line for _, line in numbered[-2:]] != ["ENDPROC", "ENDMODULE"]:
+        raise unreadable(file, "it is not a module with one routine")
+    routine = _PROC_LINE.match(numbered[routines[0]][1])
+    assert routine is not None
+    module = Module(file, title[1].lower(), routine[1], numbered[routines[0] + 1 : -2])
+    for number, line in numbered[1 : routines[0]]:
+        if track := _TRACK.match(line):
+            module.slides += ("abcdef".index(track[1]) + 1,)
+        elif not line.startswith("!"):
+            _declare(module, line, f"{file} line {number}")
+    return module
+
+
+def _declare(module: Module, line: str, where: str) -> None:
+    told = _DECLARED.match(line)
+    names = {*module.tools, *module.objects, *module.speeds, *module.zones}
+    if told is None or told[3] in names:
+        raise unreadable(where, f"{line!r} is not understood, or declares a name again")
+    try:
+        value = json.loads(told[4].replace("TRUE", "true").replace("FALSE", "false"))
+        _keep(module, told[1] or told[2], told[3], value)
+    except (ValueError, TypeError):
+        raise unreadable(where, f"the value of {told[3]} is not understood") from None
+
+
+def _keep(module: Module, kind: str, name: str, value: Any) -> None:
+    """Keep a value by its name. ValueError or TypeError for one that is not understood."""
+    if kind == "tooldata":
+        held, at, (_mass, _centre, _axes, _x, _y, _z) = value
+        module.tools[name] = _truth(held), _pose(at)
+    elif kind == "wobjdata":
+        held, fixed, unit, user, inside = value
+        moved = _truth(fixed) is False  # by the unit, whose own frame goes before what is written for the user's
+        written = moved and not np.array_equal(_pose(user), np.eye(4))
+        if moved != bool(unit) or not isinstance(unit, str) or written:
+            raise ValueError
+        module.objects[name], module.units[name] = (_truth(held), _pose(user) @ _pose(inside)), unit
+    elif kind == "speeddata":
+        _, turning, _, _ = map(float, value)
+        if turning < _TURNING:
+            raise ValueError
+        module.speeds.add(name)
+    else:
+        stops, tip, orientation, axes, turn, along, about = value
+        if stops is not False or not tip == orientation == axes == along > 0.0 or not 0.0 < turn == about <= 0.2 * tip:
+            raise ValueError
+        module.zones[name] = float(tip)
+
+
+def _truth(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise ValueError
+    return value
+
+
+def _pose(value: Any) -> Array:
+    """(4, 4) of [[x,y,z],[q1,q2,q3,q4]]."""
+    place, turn = (np.array(part, dtype=np.float64) for part in value)
+    if place.shape != (3,) or turn.shape != (4,) or abs(np.linalg.norm(turn) - 1.0) > 1e-5:
+        raise ValueError
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = turned(turn[None] / np.linalg.norm(turn))[0], place
+    return pose
+
+
+def turned(quaternion: Array) -> Array:
+    """(n, 3, 3) rotations of unit quaternions w x y z (n, 4)."""
+    w, v = quaternion[:, 0], quaternion[:, 1:]
+    across = np.zeros((len(v), 3, 3))
+    across[:, 0, 1], across[:, 0, 2], across[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
+    across -= np.swapaxes(across, 1, 2)
+    # v' = v + 2 w (u x v) + 2 u x (u x v)
+    found: Array = np.eye(3) + 2.0 * w[:, None, None] * across + 2.0 * across @ across
+    return found
+
+
+def unreadable(where: str, why: str) -> InputError:
+    """The error for what is not understood."""
+    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")

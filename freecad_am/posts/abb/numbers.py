@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a RAPID module says in numbers: joint values, quaternions, times, speeds, zones.
+
+RAPID keeps a num in single precision, of seven digits: more are not written.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from ...core.program import DEPOSIT, LINEAR_MOVE, Moves, Program, Six
+from ..parts import place
+from ..refusals import speeds_within
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS = 4, 3, 7
+# mm/s: the least that its three decimals tell well, and the largest of RAPID's own speeds (v7000)
+SPEEDS = (0.01, 7000.0)
+# s: the shortest move within a bead, and the shortest rapid
+SHORTEST, SHORTEST_RAPID = 0.0001, 0.001
+# mm: RAPID's own largest zone is 200
+LARGEST_ZONE = 100.0
+STOP = "fine"
+
+
+class Pose(NamedTuple):
+    """X Y Z in mm and w x y z, as the text has them."""
+
+    position: tuple[float, ...]
+    quaternion: tuple[float, ...]
+
+
+def shown(joints: Array, slides: Mask) -> Array:
+    """Joint values (n, axes) in degrees as the text has them, those that slide (axes,) in mm."""
+    values = np.where(slides, joints, np.degrees(joints))
+    rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
+    return rounded
+
+
+def positions(position: Array) -> Array:
+    """Positions (n, 3) as the text has them."""
+    rounded: Array = np.asarray(np.round(position, LENGTH_DECIMALS) + 0.0, dtype=np.float64)
+    return rounded
+
+
+def quaternions(rotation: Array) -> Array:
+    """(n, 4) w x y z of rotations (n, 3, 3), as the text has them: of the two that there are, the one whose first number
+    that is not 0 is positive."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation.transpose(1, 2, 0)
+    # each row is the quaternion times four times one of its numbers; the largest of these is told best
+    rows = np.array([
+        [1.0 + xx + yy + zz, zy - yz, xz - zx, yx - xy],
+        [zy - yz, 1.0 + xx - yy - zz, yx + xy, xz + zx],
+        [xz - zx, yx + xy, 1.0 - xx + yy - zz, zy + yz],
+        [yx - xy, xz + zx, zy + yz, 1.0 - xx - yy + zz],
+    ])
+    largest = np.argmax(np.einsum("iin->in", rows), axis=0)
+    found = rows[largest, :, np.arange(len(rotation))]
+    found = np.round(found / np.linalg.norm(found, axis=1, keepdims=True), TURN_DECIMALS)
+    first = found[np.arange(len(found)), np.argmax(found != 0.0, axis=1)]
+    signed: Array = np.where(first[:, None] < 0.0, -found, found) + 0.0
+    return signed
+
+
+def pose(six: Six | None) -> Pose:
+    """A frame given as X Y Z mm, RX RY RZ rad, of which R = Rx Ry Rz; none is that of all zeros."""
+    x, y, z, rx, ry, rz = (0.0,) * 6 if six is None else six
+    (sx, cx), (sy, cy), (sz, cz) = ((math.sin(angle), math.cos(angle)) for angle in (rx, ry, rz))
+    rotation = np.array([[
+        [cy * cz, -cy * sz, sy],
+        [cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy],
+        [sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy],
+    ]])
+    return Pose(tuple(positions(np.array([x, y, z])).tolist()), tuple(quaternions(rotation)[0].tolist()))
+
+
+class Words:
+    """Speed and zone of the moves of a program, asked for block by block in the order of motion."""
+
+    def __init__(self, program: Program, speed: str, zone: str) -> None:
+        self._blend, self._speed, self._zone = program.blend, speed, zone
+        self.zones: dict[float, str] = {}
+
+    def __call__(self, moves: Moves) -> Sequence[str]:
+        """`v\\T:=time,zone`, or `v\\V:=speed,zone`, of each move. Raises InputError MOVE_SPEED or MOVE_TIME."""
+        straight = moves.interpolation == LINEAR_MOVE
+        letter, values = ("V", [f"{v:.3f}" for v in speeds_within(moves, *SPEEDS).tolist()]) if straight else (
+            "T", [f"{t:.5f}" for t in _times(moves).tolist()])
+        rounded = self._rounded(moves)
+        corners = [STOP if stops else rounded for stops in moves.stops.tolist()]
+        return [f"{self._speed}\\{letter}:={value},{corner}" for value, corner in zip(values, corners, strict=True)]
+
+    def _rounded(self, moves: Moves) -> str:
+        """How corners are passed: never farther from one than half the shortest move of the bead."""
+        shortest = float(np.nan_to_num(moves.speed * moves.duration).min()) if moves.kind == DEPOSIT else 0.0
+        size = math.floor(1000.0 * min(0.005 * self._blend * shortest, LARGEST_ZONE)) / 1000.0
+        if size <= 0.0:
+            return STOP
+        return self.zones.setdefault(size, f"{self._zone}{len(self.zones) + 1}")
+
+
+
+def _times(moves: Moves) -> Array:
+    seconds = np.where(np.isfinite(moves.duration), moves.duration, 0.0)
+    if moves.kind == DEPOSIT and seconds.min() < SHORTEST:
+        raise InputError(
+            "MOVE_TIME", place(moves),
+            f"a move takes {seconds.min():.3g} s, less than the {SHORTEST:g} s that can be written; use a larger chord error"
+            " or a lower speed",
+        )
+    return np.maximum(seconds, SHORTEST if moves.kind == DEPOSIT else SHORTEST_RAPID)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The text of a RAPID module: head, data, routine, and what stands in its lines. Lines end in CR LF."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..names import plain
+from .numbers import ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS, Pose
+
+Array = NDArray[np.float64]
+
+END_OF_LINE = "\r\n"
+WIDTH = 80  # of remarks
+
+# what the module of a program and those of its parts call their data; each its own (LOCAL)
+TOOL, WORK_OBJECT, SPEED, ZONE = "t_am", "w_am", "v_am", "z_am"
+MAIN = "main"
+# of axes beside the robot's that there are none of
+_NO_AXIS, MOST_AXES = "9E9", 6
+# mm/s of the tip, which every move replaces by a speed or a time of its own; deg/s it turns; axes beside the robot's: those
+# of RAPID's own v1000
+_SPEED = "[1000,500,5000,1000]"
+# kg, mm: the load that RAPID's own tool0 has
+_NOWHERE = "[[0,0,0],[1,0,0,0]]"
+_LOAD = "[0.001,[0,0,0.001],[1,0,0,0],0,0,0]"
+_ANGLES = ",".join([f"%.{ANGLE_DECIMALS}f"] * 6)
+_JOINTS = f"    MoveAbsJ [[{_ANGLES}],<axes>]\\NoEOffs,%s,{TOOL}\\WObj:={WORK_OBJECT};"
+_POSE = f"[{','.join([f'%.{LENGTH_DECIMALS}f'] * 3)}],[{','.join([f'%.{TURN_DECIMALS}f'] * 4)}]"
+# ConfL is off: the controller takes the configuration nearest to where the arm is, and these are not looked at
+_POSITION = f"    MoveL [{_POSE},[0,0,0,0],<axes>],%s,{TOOL}\\WObj:={WORK_OBJECT};"
+
+
+def module(name: str, routine: str, remarks: Iterable[str], data: Iterable[str], lines: Iterable[str]) -> bytes:
+    """One file: a module with one routine. remarks: what it is; data, lines: as they stand, the lines indented."""
+    text = [
+        f"MODULE {name}", *(f"  {line}" for line in remarks), *(f"  {line}" for line in data),
+        f"  PROC {routine}()", *lines, "  ENDPROC", "ENDMODULE",
+    ]
+    return (END_OF_LINE.join(text) + END_OF_LINE).encode("ascii")
+
+
+def data(tool: Pose, work_object: Pose, held: bool, zones: Sequence[tuple[str, float]], unit: str = "") -> list[str]:
+    """Declarations of tool, work object, speed and zones. held: the robot carries the work object, and the tool stands.
+    unit: the mechanical unit whose face the work object is on and moves with, '' where it stands."""
+    tool_held, object_held = ("FALSE", "TRUE") if held else ("TRUE", "FALSE")
+    at, seen = (_POSE % (*pose.position, *pose.quaternion) for pose in (tool, work_object))
+    # the user frame of what a unit moves is the unit's own, whatever is written: the object frame is seen from there
+    fixed, user, inside = ("FALSE", _NOWHERE, f"[{seen}]") if unit else ("TRUE", f"[{seen}]", _NOWHERE)
+    return [
+        f"LOCAL PERS tooldata {TOOL}:=[{tool_held},[{at}],{_LOAD}];",
+        f'LOCAL PERS wobjdata {WORK_OBJECT}:=[{object_held},{fixed},"{unit}",{user},{inside}];',
+        f"LOCAL CONST speeddata {SPEED}:={_SPEED};",
+        *(f"LOCAL CONST zonedata {zone}:={_zone(size)};" for zone, size in zones),
+    ]
+
+
+def _zone(size: float) -> str:
+    """A zone of so many mm, in the proportions of RAPID's own z1: as large for orientation, 0.1 deg per mm."""
+    mm, degrees = f"{size:.3f}", f"{0.1 * size:.4f}"
+    return f"[FALSE,{mm},{mm},{mm},{degrees},{mm},{degrees}]"
+
+
+def joint_moves(degrees: Array, words: Sequence[str], first: int = 1) -> list[str]:
+    """Moves straight in the joints to values (n, 6 and those beside the robot), rounded already. words: speed and zone of
+    each. first: the number of the first axis beside the robot, from 1."""
+    line = _JOINTS.replace("<axes>", _axes(degrees.shape[1] - 6, first))
+    return [line % (*row, word) for row, word in zip(degrees.tolist(), words, strict=True)]
+
+
+def linear_moves(position: Array, quaternion: Array, beside: Array, words: Sequence[str], first: int = 1) -> list[str]:
+    """Moves straight in space to positions (n, 3), quaternions (n, 4) and axes beside the robot (n, k), rounded already."""
+    line = _POSITION.replace("<axes>", _axes(beside.shape[1], first))
+    values = np.hstack((position, quaternion, beside)).tolist()
+    return [line % (*row, word) for row, word in zip(values, words, strict=True)]
+
+
+def _axes(count: int, first: int) -> str:
+    """The axes beside the robot: so many of them, from that number on."""
+    told = [_NO_AXIS] * (first - 1) + [f"%.{ANGLE_DECIMALS}f"] * count if count else []
+    return f"[{','.join(told + [_NO_AXIS] * (MOST_AXES - len(told)))}]"
+
+
+def activated(unit: str) -> list[str]:
+    """Taking the axes of a mechanical unit under control, as they are; nothing for no unit."""
+    return [f"    ActUnit {unit};"] if unit else []
+
+
+def remark(text: str) -> list[str]:
+    """A comment on as many lines as it needs, in plain characters."""
+    return [f"! {line}" for line in textwrap.wrap(plain(text), WIDTH)]
+
+
+def wait(seconds: float) -> list[str]:
+    """Standing still for a time, to 0.001 s; nothing for no time."""
+    return [f"    WaitTime {max(seconds, 0.001):.3f};"] if seconds > 0.0 else []
+
+
+def load(folder: str, part: str) -> list[str]:
+    """Loading the module of a part, running it and making room for the next one."""
+    path = f'"{folder}{part}.mod"'
+    return [f"    Load \\Dynamic,{path};", f'    %"{routine_of(part)}"%;', f"    UnLoad {path};"]
+
+
+def routine_of(part: str) -> str:
+    """The routine of a part: another name for each, for routines of all modules are known together."""
+    return f"{part}_p"

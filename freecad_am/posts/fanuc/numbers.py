@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a FANUC listing says in numbers: times, speeds, angles within half a turn, positions, CONFIG."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from ...core.program import RAPID, Moves
+from ..parts import place
+from ..refusals import speeds_within
+
+Array = NDArray[np.float64]
+
+# Ranges of the FANUC operator's manual (motion instruction, feed rate): 1 to 32000 msec, 0.1 to 3200 sec,
+# up to 2000 mm/sec.
+LONGEST_MSEC = 32_000
+LONGEST_SEC = 3_200.0
+SPEEDS = (0.1, 2000.0)
+
+# The controller counts 180 deg as the next turn, with a tolerance between 0.0004 and 0.0007 deg (CrossArm's
+# measurements on ROBOGUIDE).
+_TURN_TOLERANCE = 0.00055
+
+
+def speed_words(moves: Moves) -> list[str]:
+    """The path speed of each move, to 0.1 mm/s. Raises InputError MOVE_SPEED."""
+    return [f"{speed:.1f}mm/sec" for speed in speeds_within(moves, *SPEEDS).tolist()]
+
+
+def time_words(moves: Moves) -> list[str]:
+    """The time of each move. Whole milliseconds add up to the time of the run, none is 0; moves of more than 32 s
+    are in 0.1 s. Raises InputError MOVE_TIME."""
+    seconds = np.where(np.isfinite(moves.duration), np.maximum(moves.duration, 0.0), 0.0)
+    if seconds.max() > LONGEST_SEC:
+        raise InputError(
+            "MOVE_TIME", place(moves),
+            f"a move of {seconds.max():.0f} s is longer than {LONGEST_SEC:.0f} s; raise the speed or add points",
+        )
+    long = np.rint(seconds * 1000.0) > LONGEST_MSEC
+    n = len(seconds)
+    ends = np.rint(np.cumsum(np.where(long, 0.001, seconds)) * 1000.0).astype(np.int64)
+    if ends[-1] < n and moves.kind != RAPID:
+        raise InputError(
+            "MOVE_TIME", place(moves),
+            f"{n} moves take {seconds.sum():.4g} s in all and cannot be shorter than 1 ms each; use a larger chord"
+            " error or a lower speed",
+        )
+    # beyond the 1 ms that each move takes at least: what has accrued, never falling, never more than the whole
+    spare = np.minimum(np.maximum.accumulate(np.maximum(ends - np.arange(1, n + 1), 0)), max(int(ends[-1]) - n, 0))
+    milliseconds = (1 + np.diff(spare, prepend=0)).tolist()
+    return [
+        f"{second:.1f}sec" if is_long else f"{whole}msec"
+        for second, is_long, whole in zip(seconds.tolist(), long.tolist(), milliseconds, strict=True)
+    ]
+
+
+def within_half_turn(degrees: Array) -> Array:
+    """The same angles in (-180, 180], to 3 decimals."""
+    wrapped: Array = np.round(degrees - 360.0 * np.ceil((degrees - 180.0) / 360.0), 3)
+    return wrapped
+
+
+def poses(position: Array, rotation: Array) -> Array:
+    """X Y Z in mm and W P R in degrees, 3 decimals, (n, 6). The rotation (n, 3, 3) is Rz(R) Ry(P) Rx(W)."""
+    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
+    rotation = np.array(rotation.transpose(1, 2, 0), order="C").transpose(2, 0, 1)
+    across = np.hypot(rotation[:, 0, 0], rotation[:, 1, 0])
+    upright = across > 1e-9  # else only the sum or difference of W and R counts, and W is 0
+    w = np.where(upright, np.arctan2(rotation[:, 2, 1], rotation[:, 2, 2]), 0.0)
+    p = np.arctan2(-rotation[:, 2, 0], across)
+    r = np.where(
+        upright,
+        np.arctan2(rotation[:, 1, 0], rotation[:, 0, 0]),
+        np.arctan2(-rotation[:, 0, 1], rotation[:, 1, 1]),
+    )
+    angles = within_half_turn(np.round(np.degrees(np.stack((w, p, r), axis=1)), 3))
+    return np.hstack((np.round(position, 3), angles)) + 0.0
+
+
+def configurations(moves: Moves, endless: tuple[bool, ...]) -> list[str]:
+    """CONFIG of each point, such as 'N U T, 0, 0, 0'. Raises InputError
+    NO_POSITIONS, ARM_BACKWARDS, TURN_NUMBER.
+
+    F where J5 > 0, D where the elbow is down; the last number counts the turns of J6. Whether the other two belong
+    to J1 and J4 or to J4 and J5 is told differently by different sources, so those axes must stay within half a
+    turn, where both readings agree. What U and D mean of an arm bent over backwards (B) was not confirmed.
+    """
+    if moves.configuration is None:
+        raise InputError("NO_POSITIONS", place(moves), "the program has no arm configurations; use `motion: joint`")
+    if any(shoulder != "front" for shoulder, _, _ in moves.configuration):
+        raise InputError(
+            "ARM_BACKWARDS", place(moves),
+            "Cartesian positions are written only of an arm reaching forwards; use `branch: [front, ...]` or"
+            " `motion: joint`",
+        )
+    degrees = np.degrees(moves.joints)
+    turns = np.sign(degrees) * np.floor((np.abs(degrees) + 180.0 + _TURN_TOLERANCE) / 360.0)
+    turns[:, np.array(endless)] = 0.0
+    untold = (turns != 0.0) & np.array([True, False, False, True, True, False]) | (np.abs(turns) > 9.0)
+    if untold.any():
+        point, axis = np.argwhere(untold)[0]
+        raise InputError(
+            "TURN_NUMBER", place(moves),
+            f"axis {axis + 1} stands at {degrees[point, axis]:.1f} deg and its turn cannot be told reliably in a"
+            " Cartesian position; use `motion: joint`",
+        )
+    wrists = np.where(moves.joints[:, 4] > 0.0, "F", "N").tolist()
+    elbows = ["D" if elbow == "down" else "U" for _, elbow, _ in moves.configuration]
+    last = (turns[:, 5] + 0.0).tolist()
+    return [f"{wrist} {elbow} T, 0, 0, {turn:.0f}" for wrist, elbow, turn in zip(wrists, elbows, last, strict=True)]

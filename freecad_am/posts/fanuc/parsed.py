@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Listings of FANUC programs taken apart: instructions, moves that follow each other, and recorded positions."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import alike
+from .records import Records, records_of, unreadable
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+_NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
+_TITLE = 1000  # bytes that hold the first line
+# what a unit of a move says: duration s, speed mm/s, share
+UNITS = ("sec", "msec", "mm/sec", "%")
+_LINE = re.compile(r" *\d*:(.*?) *; *$")
+_MOTION = re.compile(
+    r" *\d*: *([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:(FINE)|CNT ?(\d+)) *; *$"
+)
+
+
+class _Instruction(NamedTuple):
+    """An instruction and the number of its line; or moves that follow each other, by the first of them and the one after
+    the last."""
+
+    number: int
+    text: str
+    first: int = 0
+    end: int = 0
+
+
+@dataclass
+class _Moves:
+    """All moves of a file in order (n,): the numbers of their lines, positions, numbers and the units of these, whether they
+    are straight, and CNT, NaN of those that stop."""
+
+    line: Index
+    point: Index
+    value: Array
+    unit: Index
+    straight: Mask
+    corner: Array
+
+
+@dataclass
+class Listing:
+    """One file: its instructions, its moves, and its positions in the order of their numbers."""
+
+    file: str
+    instructions: list[_Instruction]
+    moves: _Moves
+    records: Records
+
+    def rows(self, points: Index) -> Index:
+        """Which positions those numbered (k,) are, -1 where there is none."""
+        known = self.records.point
+        if not len(known):
+            return np.full(len(points), -1)
+        at = np.minimum(np.searchsorted(known, points), len(known) - 1)
+        return np.where(known[at] == points, at, -1)
+
+
+def _text(content: bytes) -> str:
+    return content.decode("latin-1").replace("\r\n", "\n")
+
+
+def name_of(file: str, content: bytes) -> str:
+    """The name of a program, upper case."""
+    title = re.match(r"/PROG +(\w+)\s*$", _text(content[:_TITLE]).partition("\n")[0])
+    if title is None:
+        raise unreadable(file, _NO_LISTING)
+    return title[1].upper()
+
+
+def listing_of(file: str, content: bytes) -> Listing:
+    """A file taken apart. InputError UNREADABLE_PROGRAM, naming file and line."""
+    text = f"\n{_text(content)}\n"
+    marks = [text.find(f"\n{section}\n") for section in ("/MN", "/POS", "/END")]
+    if -1 in marks or marks != sorted(marks):
+        raise unreadable(file, _NO_LISTING)
+    # the records, by far the most of it, are not taken apart by lines
+    lines = text[1 : marks[1]].split("\n")
+    start, positions = lines.index("/MN"), len(lines)
+    instructions, moves = _instructions(file, lines[start + 1 :], start + 2)
+    records = records_of(file, lines, text[marks[1] + len("\n/POS\n") : marks[2]], positions)
+    return Listing(file, instructions, moves, records)
+
+
+def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instruction], _Moves]:
+    """The instructions of lines, of which the first has a number, and all moves among them."""
+    count = len(lines)
+    moves = _Moves(
+        np.arange(number, number + count), np.zeros(count, dtype=np.intp), np.zeros(count), np.zeros(count, dtype=np.intp),
+        np.zeros(count, dtype=bool), np.full(count, np.nan),
+    )
+    moving, others = np.zeros(count, dtype=bool), []
+    for shape, some in alike.shapes(lines).items():
+        move = _MOTION.match(shape)
+        if move is None:
+            others += some
+            continue
+        moving[some] = True
+        spans = [move.span(group) for group in (2, 3, 6) if move[group]]
+        told = alike.numbers([lines[row] for row in some], shape, spans)
+        moves.point[some], moves.value[some] = told[:, 0], told[:, 1]
+        moves.unit[some], moves.straight[some] = UNITS.index(move[4]), move[1] == "L"
+        if move[6]:
+            moves.corner[some] = told[:, 2]
+    before = np.cumsum(moving)  # how many moves there are up to a line
+    instructions, done = [], 0
+    for row in [*sorted(row for row in others if lines[row].strip()), count]:
+        moved = int(before[row - 1]) if row else 0
+        if moved > done:
+            instructions.append(_Instruction(0, "", done, moved))
+            done = moved
+        if row < count:
+            statement = _LINE.match(lines[row])
+            if statement is None:
+                raise unreadable(f"{file} line {number + row}", f"{lines[row].strip()!r} is no instruction")
+            instructions.append(_Instruction(number + row, statement[1].strip()))
+    return instructions, _Moves(*(getattr(moves, entry.name)[moving] for entry in dataclasses.fields(moves)))

@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""FANUC: TP listings (.LS) of joint moves by time, or of beads in linear moves with the tool on the robot.
+
+Rapids are joint moves in either, and stop at every point.
+
+What is written, what must be set on the controller and what was confirmed where: docs/posts/fanuc.md.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.controller import Controller
+from ...core.issues import InputError
+from ...core.program import (
+    FIRST_SHARE,
+    LINEAR_MOVE,
+    ROTARY,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Schedule,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
+from ..names import Naming
+from ..on_controller import on_controller
+from ..parts import Piece, Run, continued, grouped, packed
+from ..refusals import (
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_external,
+    refuse_incomplete,
+    refuse_named_track,
+    refuse_schedules,
+    refuse_wire,
+)
+from . import listing as text
+from . import numbers
+from .read import read
+
+__all__ = ["read", "write"]
+
+Array = NDArray[np.float64]
+
+LAST_ANALOGUE = 25  # analogue inputs
+# why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(external=True, positioner="2")
+NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
+NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
+LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
+MOVE_LINE = re.compile(rb" *\d+:[JL] P\[")
+ON_CONTROLLER = on_controller(
+    "UFRAME and UTOOL of the numbers in the program are those of the cell",
+    "Joint values mean what the machine file says, J3 above all",
+    "An axis without limits has the Continuous Turn option",
+    "Payload is set and the override is 100 %",
+    "The deposit output switches the process",
+)
+AXES = 6
+MOST_LINES = 9999
+
+_FIRST_MOVE = f"{100.0 * FIRST_SHARE:.0f}%"
+
+# words of the listing's own language
+_RESERVED = frozenset(
+    ("ABORT", "CALL", "DI", "DO", "ELSE", "END", "ENDFOR", "ENDIF", "FOR", "IF", "JMP", "LBL", "MESSAGE", "MONITOR")
+    + ("PAUSE", "RUN", "SELECT", "THEN", "WAIT", "WHEN")
+)
+# names of 8 characters at most on older controllers
+NAMING = Naming(str.upper, "[A-Z]", "a letter", longest=36, spare=4, prefix="AM_", reserved=_RESERVED)
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The listings of a program, file name -> content; the same bytes for the same program.
+
+    One file where it fits, else NAME.LS that calls NAME01.LS and so on, cut between beads wherever a bead fits.
+    The duration of the very first move is not used.
+
+    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, MOVE_TIME, MOVE_SPEED,
+    ENDLESS_STEP, TURN_NUMBER, NO_WIRE_OUTPUT, NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)]
+    head = [f"  UFRAME_NUM={program.user_frame} ;", f"  UTOOL_NUM={program.tool_frame} ;"]
+    groups = list(grouped(program, _words(program), lambda block: _instructions(program, block)))
+    parts = packed(groups, program.max_points, MOST_LINES - len(head) - len(remarks), continued(text.remark))
+    if len(parts) == 1:
+        refuse_calls_of_own(program, {name}, program_name)
+        return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
+    names = NAMING.parts(name, len(parts))
+    calling = head + remarks + [text.call(part) for part in names]
+    files = {f"{name}.LS": text.listing(name, "Robotic AM", calling, "", _group(program))}
+    for number, (part_name, pieces) in enumerate(zip(names, parts, strict=True), 1):
+        comment = f"part {number} of {len(parts)}"
+        files[f"{part_name}.LS"] = _file(program, part_name, comment, head, pieces)
+    refuse_calls_of_own(program, {*names, name}, program_name)
+    return files
+
+
+def program_name(name: str, where: str) -> str:
+    """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    return NAMING.checked(name, where)
+
+
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
+    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
+    if motion == "cartesian" and setup == "part-on-robot":
+        raise InputError(
+            "REMOTE_TCP", "program.motion",
+            "Cartesian motion with the part on the robot means remote TCP, and what the position records of such moves"
+            " (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`",
+        )
+    if setup not in ("part-on-robot", "tool-on-robot"):
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post fanuc cannot write {setup}")
+    if external:
+        _refuse_coordinated(motion, external)
+
+
+def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
+    """Raises InputError COORDINATED_MOTION for what cannot be said with external axes of these kinds."""
+    if motion != "cartesian":
+        return
+    why = ("linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions"
+           " are then seen from was not confirmed") if ROTARY in external else (
+        "whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up,"
+        " and was not confirmed")
+    raise InputError("COORDINATED_MOTION", "program.motion", f"{why}; use `motion: joint`, whose times hold the speed")
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    refuse_incomplete(program, "fanuc", AXES + len(program.external_kinds))
+    refuse_external(program, len(program.external_kinds), f"[2-{text.GROUPS}]", f"its motion group, 2 to {text.GROUPS}")
+    if program.external_kinds:
+        _refuse_coordinated(program.motion, program.external_kinds)
+    refuse_named_track(program, "E1 of the robot's own motion group")
+    refuse_wire(program, NO_WIRE)
+    refuse_cooling(program, LAST_ANALOGUE)
+    refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
+    for block in program.blocks:
+        if isinstance(block, Call):
+            program_name(block.program, block.where)
+        if isinstance(block, WaitBelow) and block.below != round(block.below):
+            raise InputError(
+                "ANALOGUE_INPUT", "process.cooling",
+                f"analogue inputs are whole numbers, not {block.below:.9g}; change below, gain or zero so that it is one",
+            )
+    _refuse_endless_steps(program)
+
+
+def _refuse_endless_steps(program: Program) -> None:
+    """An axis set to turn without end takes the shorter way, so a move of half a turn or more would go wrong."""
+    axes = np.flatnonzero(program.endless)
+    joints = np.concatenate([run.joints for run in program.moves])[:, axes]
+    places = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
+    large = np.abs(np.diff(joints, axis=0)) > math.radians(180.0 - 0.001)
+    if large.any():
+        move, axis = np.argwhere(large)[0]
+        run = program.moves[places[move + 1]]
+        turn = math.degrees(joints[move + 1, axis] - joints[move, axis])
+        raise InputError(
+            "ENDLESS_STEP", f"layer {run.layer} bead {run.bead}",
+            f"axis {axes[axis] + 1} turns {turn:.1f} deg in one move; an axis of continuous turn goes less than 180 deg"
+            " per move: add points, or limit the axis",
+        )
+
+
+
+def _own_remarks(program: Program) -> Iterator[str]:
+    for axis in np.flatnonzero(program.slides).tolist():
+        yield f"E1 is the track e{axis - AXES + 1}"
+    for axis in np.flatnonzero(program.endless):
+        yield f"axis {axis + 1} turns without end: set it up for Continuous Turn (option)"
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
+    """The speed words of each block, asked for in the order of motion."""
+    first = True
+
+    def words(moves: Moves) -> Sequence[str]:
+        nonlocal first
+        speeds = numbers.speed_words(moves) if moves.interpolation == LINEAR_MOVE else numbers.time_words(moves)
+        if first:
+            speeds[0], first = _FIRST_MOVE, False
+        return speeds
+
+    return words
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    output = f"  DO[{program.deposit_output}]="
+    if isinstance(block, DepositOn):
+        on = output + "ON ;" if block.schedule is None else text.arc("Start", block.schedule)
+        return [] if program.dry_run else [on, *text.wait(block.lead)]
+    if isinstance(block, DepositOff):
+        off = output + "OFF ;" if block.schedule is None else text.arc("End", block.schedule)
+        return [] if program.dry_run else [*text.wait(block.lead), off]
+    if isinstance(block, Schedule):
+        return [f"  GO[{program.schedule_output}]={block.number} ;"]
+    if isinstance(block, LayerStart):
+        return text.remark(f"layer {block.layer}")
+    if isinstance(block, Wait):
+        return text.wait(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"  WAIT DI[{block.number}]=ON    ;"]
+    if isinstance(block, WaitBelow):
+        return [f"  WAIT AI[{block.number}]<{block.below:.0f}    ;"]
+    if isinstance(block, Call):
+        return [text.call(block.program.upper())]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _file(program: Program, name: str, comment: str, head: list[str], pieces: Sequence[Piece]) -> bytes:
+    lines, point = list(head), 0
+    runs = [piece for piece in pieces if isinstance(piece, Run)]
+    for piece in pieces:
+        if isinstance(piece, Run):
+            lines += _motion_lines(program, piece, point)
+            point += len(piece)
+        else:
+            lines += piece
+    return text.listing(name, comment, lines, _record_text(program, runs), _group(program))
+
+
+def _group(program: Program) -> int:
+    """The motion group of the axes that carry the part; the robot's own where there are none."""
+    return int(program.unit) if program.on_positioner else 1
+
+
+def _motion_lines(program: Program, run: Run, points_before: int) -> list[str]:
+    """Lines through all points of a run."""
+    part, points = slice(run.start, run.stop), range(points_before + 1, points_before + 1 + len(run))
+    letter = "L" if run.moves.interpolation == LINEAR_MOVE else "J"
+    corners = ["FINE" if stops else f"CNT{program.blend}" for stops in run.moves.stops[part].tolist()]
+    return [
+        f"{letter} P[{n}] {speed} {corner}    ;" for n, speed, corner in zip(points, run.words[part], corners, strict=True)
+    ]
+
+
+def _record_text(program: Program, runs: Sequence[Run]) -> str:
+    if not runs:
+        return ""
+    if program.motion == "joint":
+        joints = np.concatenate([run.moves.joints[run.start : run.stop] for run in runs])
+        slides, endless = program.slides, np.array(program.endless)
+        told = np.round(np.where(slides, joints, np.degrees(joints)), 3)
+        told[:, endless] = numbers.within_half_turn(told[:, endless])
+        told += 0.0
+        return text.joint_records(
+            told[:, :AXES], told[:, slides], told[:, AXES:][:, ~slides[AXES:]], program.user_frame, program.tool_frame,
+            _group(program),
+        )
+    poses, configuration = [], []
+    for run in runs:
+        moves, part = run.moves, slice(run.start, run.stop)
+        if moves.position is None or moves.rotation is None:
+            raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+        poses.append(numbers.poses(moves.position[part], moves.rotation[part]))
+        configuration += numbers.configurations(moves, program.endless)[part]
+    return text.pose_records(np.concatenate(poses), configuration, program.user_frame, program.tool_frame)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads the positions of FANUC listings: joint values, or poses with their configuration."""
+
+from __future__ import annotations
+
+import re
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from .. import alike
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+_RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
+_FRAMES = r"P\[(\d+)[^\]]*\]\{\s*GP1:\s*UF : (\d+|F), UT : (\d+|F),\s*"
+_DECIMALS = re.compile(r"\.(\d+)")
+_NUMBER = r" *(-?\d*\.\d+) *"
+
+
+def _values(names: str, units: str) -> str:
+    return r",\s*".join(f"{name} ?={_NUMBER}{unit}" for name, unit in zip(names.split(), units.split(), strict=True))
+
+
+_JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
+# one of them, from the end of the line before to its own end, with the digits of its names as numbers too
+_ONE = re.compile(
+    r"\s*\n" + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)") + r"\s*"
+)
+_NUMBERED, _GROUP, _NAMES, _VALUES = 1, 2, range(5, 17, 2), range(6, 17, 2)
+# the same with a track, and the axes of another motion group, in the same frames
+_MORE = re.compile(
+    _FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"(?:,\s*E1 ?= *(-?\d*\.\d+) *mm)?"
+    r"(?:\s*GP([2-8]):\s*UF : (\d+|F), UT : (\d+|F),((?:\s*J\d ?= *-?\d*\.\d+ *deg,?)+))?\s*\};"
+)
+_AXIS = re.compile(r"J(\d) ?= *(-?\d*\.\d+) *deg(,?)")
+_CONFIGURATION = r"CONFIG : '([NF]) ([UD]) ([TB]), *(-?\d), *(-?\d), *(-?\d)',\s*"
+_POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};")
+
+
+class Records(NamedTuple):
+    """Positions of a file by their numbers (n,), values (n, 6, that of a track, and those of another motion group),
+    configurations, frames, half a last digit, the number of that group, whether there is a track, and the numbers of all
+    groups that the header names."""
+
+    point: Index
+    values: Array
+    configuration: list[tuple[str, ...]]
+    frames: list[tuple[str, str]]
+    digits: float
+    cartesian: bool
+    group: str = ""
+    track: bool = False
+    moved: frozenset[str] = frozenset()
+
+
+def records_of(file: str, lines: list[str], text: str, positions: int) -> Records:
+    """The positions, by number, that stand in the text after the first lines of a file, the line that begins them numbered
+    from 0. InputError UNREADABLE_PROGRAM for what is not understood, or recorded twice."""
+    # counting is many times as fast as looking at every line
+    several = text.count("GP") > text.count("GP1:") and re.search(r"^ *GP[2-8]:", text, re.MULTILINE)
+    more = several or "E1" in text
+    found = _with_more(file, text) if more else _joint_records(text) or _any_records(file, text, positions)
+    _check_groups(file, lines, found)
+    order = np.argsort(found.point, kind="stable")
+    if (np.diff(found.point[order]) == 0).any():
+        raise unreadable(file, "a position is recorded twice")
+    some = order.tolist()
+    return found._replace(
+        point=found.point[order], values=found.values[order], frames=[found.frames[row] for row in some],
+        configuration=[found.configuration[row] for row in some], moved=_groups_of(lines),
+    )
+
+
+def _groups_of(lines: list[str]) -> frozenset[str]:
+    """The motion groups that a program moves, by its header."""
+    told = next((line.partition("=")[2].strip(" ;").split(",") for line in lines if line.startswith("DEFAULT_GROUP")), ["1"])
+    return frozenset(str(number) for number, word in enumerate(told, 1) if word == "1")
+
+
+def _check_groups(file: str, lines: list[str], found: Records) -> None:
+    """The groups that a program moves are those that it has positions of."""
+    moved = _groups_of(lines)
+    if len(found.point) and moved != {"1", found.group or "1"}:
+        raise unreadable(file, f"it moves groups {', '.join(sorted(moved))}, and has positions of others")
+
+
+def _with_more(file: str, text: str) -> Records:
+    """The joint positions of a text with a track or two motion groups, all alike."""
+    values, frames, groups, decimals, points = [], [], set(), 99, []
+    for record in _MORE.finditer(text):
+        point, user, tool, *own, track, group, other_user, other_tool, rest = record.groups()
+        beside = _AXIS.findall(rest or "")
+        count = len(beside)
+        due = [(str(axis), "," if axis < count else "") for axis in range(1, count + 1)]
+        if [(axis, comma) for axis, _, comma in beside] != due or (group and (user, tool) != (other_user, other_tool)):
+            raise unreadable(file, f"the second group of P[{point}] is not understood")
+        texts = [*own, *([track] if track else []), *(value for _, value, _ in beside)]
+        points.append(int(point))
+        values.append([float(value) for value in texts])
+        frames.append((user, tool))
+        groups.add((group or "", count, bool(track)))
+        decimals = min(decimals, *(len(value.partition(".")[2]) for value in texts))
+    if len(points) != len(_RECORD_START.findall(text)) or len(groups) != 1:
+        raise unreadable(file, "its positions are not all of the same motion groups, or one is not understood")
+    (number, _, track_told), half = groups.pop(), 0.5 * 10.0**-decimals
+    return Records(
+        np.array(points, dtype=np.intp), np.array(values), [()] * len(points), frames, half, False, number, track_told,
+    )
+
+
+def _joint_records(text: str) -> Records | None:
+    """The positions of a text that holds nothing else than joint positions; None where it may."""
+    *records, rest = f"\n{text}".split("};")
+    if not records or rest.strip():
+        return None
+    point, values, decimals = np.zeros(len(records), dtype=np.intp), np.zeros((len(records), 6)), 99
+    frames = [("", "")] * len(records)
+    for shape, some in alike.shapes(records, "};").items():
+        found = _ONE.fullmatch(shape)
+        if found is None:
+            return None
+        mine = [records[row] for row in some]
+        told = alike.numbers(mine, shape, [found.span(group) for group in (_NUMBERED, _GROUP, *_NAMES, *_VALUES)])
+        if (told[:, 1:8] != [1, 1, 2, 3, 4, 5, 6]).any():
+            return None
+        point[some], values[some] = told[:, 0], told[:, 8:]
+        decimals = min(decimals, *(len(found[group].partition(".")[2]) for group in _VALUES))
+        (a, b), (c, d) = found.span(3), found.span(4)
+        for row, record in zip(some, mine):
+            frames[row] = record[a:b], record[c:d]
+    return Records(point, values, [()] * len(records), frames, 0.5 * 10.0**-decimals, False)
+
+
+def _any_records(file: str, text: str, positions: int) -> Records:
+    """The positions of a text, which begins after that line, whatever stands between them."""
+    starts = _RECORD_START.findall(text)
+    found = _JOINTS.findall(text)
+    cartesian = not found
+    found = found or _POSE.findall(text)
+    if [record[0] for record in found] != starts:
+        understood = {record[0] for record in found}
+        bad = next((point for point in starts if point not in understood), starts[-1])
+        number = next(n for n, line in enumerate(text.split("\n"), positions + 2) if re.match(rf"P\[{bad}\b", line))
+        raise unreadable(f"{file} line {number}", f"the record of P[{bad}] is not understood")
+    texts = " ".join(chain.from_iterable([record[-6:] for record in found]))
+    decimals = min(map(len, _DECIMALS.findall(texts)), default=0)
+    return Records(
+        np.array([int(record[0]) for record in found], dtype=np.intp), np.fromstring(texts, sep=" ").reshape(-1, 6),
+        [record[3:-6] for record in found], [(record[1], record[2]) for record in found], 0.5 * 10.0**-decimals, cartesian,
+    )
+
+
+def unreadable(where: str, why: str) -> InputError:
+    """What is raised for a text that is not understood."""
+    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""KUKA: KRL modules of beads in linear moves with the tool on the robot, and rapids to axis values.
+
+A joint move of KRL is told whole percents of the axes' speeds, so beads are linear moves, whose speed the controller holds
+at the tip. What is written, what must be set on the controller and what was confirmed where: docs/posts/kuka.md.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ...core.controller import Controller
+from ...core.issues import InputError
+from ...core.program import Block, Call, DepositOff, DepositOn, LayerStart, Program, Schedule, Wait, WaitInput
+from ..names import Naming
+from ..on_controller import on_controller
+from ..parts import Piece, Run, grouped, packed, whole
+from ..refusals import (
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_endless,
+    refuse_external,
+    refuse_incomplete,
+    refuse_named_track,
+    refuse_schedules,
+    refuse_wire,
+    refuse_without_positions,
+    refuse_without_speeds,
+)
+from . import text
+from .read import read
+
+__all__ = ["read", "write"]
+
+NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found documented"
+# why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(external=True, positioner="2")
+NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
+NO_SCHEDULE = {"arc": "instructions of ArcTech name weld data that only the pendant makes"}
+LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
+MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")
+ON_CONTROLLER = on_controller(
+    "BASE_DATA and TOOL_DATA of the numbers in the program are those of the cell, with their load",
+    "Joint speeds of the machine file are those the controller calls 100 %",
+    "The deposit output switches the process, and a stop of the program switches it off",
+    "The override is 100 %",
+)
+AXES = 6
+LAST_TOOL, LAST_BASE, LAST_EXTERNAL = 16, 32, 6
+
+_RESERVED = frozenset(
+    ("AND", "ANIN", "ANOUT", "BAS", "BOOL", "BRAKE", "CASE", "CHANNEL", "CHAR", "CIRC", "CONFIRM", "CONST", "CONTINUE")
+    + ("DECL", "DEF", "DEFAULT", "DEFDAT", "DEFFCT", "DELAY", "DIGIN", "DISTANCE", "DO", "ELSE", "END", "ENDDAT")
+    + ("ENDFCT", "ENDFOR", "ENDIF", "ENDLOOP", "ENDSPLINE", "ENDSWITCH", "ENDWHILE", "ENUM", "EXIT", "EXT", "EXTFCT")
+    + ("FALSE", "FOR", "FRAME", "GLOBAL", "GOTO", "HALT", "IF", "IMPORT", "INT", "INTERRUPT", "IS", "LIN", "LOOP", "NOT")
+    + ("OFF", "ON", "OR", "PATH", "POS", "PTP", "PUBLIC", "PULSE", "REAL", "REPEAT", "RESUME", "RETURN", "SEC", "SIGNAL")
+    + ("SLIN", "SPLINE", "SPTP", "STEP", "STRUC", "SWITCH", "THEN", "TO", "TRIGGER", "TRUE", "UNTIL", "WAIT", "WHEN")
+    + ("WHILE", "WITH", "CELL", "SPS", "IR_STOPM")
+)
+# 24 characters from memory: fewer are taken
+NAMING = Naming(str, "[A-Za-z]", "a letter", longest=20, spare=4, prefix="am_", reserved=_RESERVED)
+_NO_END = 10**9  # how many lines a module may have is not known: it is cut by its points
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The modules of a program, file name -> content; the same bytes for the same program.
+
+    One file NAME.src where its points fit, else NAME.src calls NAME01.src, NAME02.src and so on; a bead of more points gets
+    a file of its own. The duration of the very first move is not used.
+
+    Raises InputError: PROGRAM_NAME, JOINT_DEPOSIT, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, UNSUPPORTED_FRAME,
+    ENDLESS_AXIS, NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, NO_POSITIONS, NO_ANALOGUE_INPUT, NO_WIRE_OUTPUT, UNREACHABLE,
+    NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    remarks = [line for words in ("Robotic AM", *program.remarks, *_own_remarks(program)) for line in text.remark(words)]
+    groups = list(grouped(program, text.Lines(program), lambda block: _instructions(program, block)))
+    parts = packed(groups, program.max_points, _NO_END, whole)
+    if len(parts) == 1:
+        refuse_calls_of_own(program, {name}, program_name)
+        return {f"{name}.src": text.module(name, [*remarks, *_body(program, parts[0])])}
+    names = NAMING.parts(name, len(parts))
+    refuse_calls_of_own(program, {name, *names}, program_name)
+    files = {}
+    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+        head = text.remark(f"part {number} of {len(parts)}")
+        files[f"{part}.src"] = text.module(part, [*head, *_body(program, pieces)])
+    remarks += text.remark(f"{len(parts)} parts of {sum(map(len, files.values()))} bytes in all")
+    return {f"{name}.src": text.module(name, [*remarks, *(f"{part}()" for part in names)]), **files}
+
+
+def program_name(name: str, where: str) -> str:
+    """The name on the controller. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    return NAMING.checked(name, where)
+
+
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
+    """Raises InputError UNSUPPORTED_SETUP, REMOTE_TCP or JOINT_DEPOSIT for what cannot be said to this controller."""
+    if setup not in ("part-on-robot", "tool-on-robot"):
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post kuka cannot write {setup}")
+    if setup == "part-on-robot":
+        raise InputError(
+            "REMOTE_TCP", "cell.setup",
+            "with the part on the robot linear moves of KRL have a fixed tool ($IPO_MODE #TCP), and whether points are then"
+            " the nozzle seen from the part or the part seen from the nozzle was not confirmed; use `setup: tool-on-robot`",
+        )
+    if motion == "joint":
+        raise InputError(
+            "JOINT_DEPOSIT", "program.motion",
+            "joint moves of KRL run at whole percents of the axes' speeds, so the speed along a bead would not be the one"
+            " asked for; use `motion: cartesian`",
+        )
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    axes = AXES + len(program.external_kinds)
+    refuse_incomplete(program, "kuka", axes)
+    refuse_external(program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16")
+    refuse_named_track(program, "what the robot's own base is on, which is not told by a MACHINE_DEF")
+    refuse_wire(program, NO_WIRE)
+    refuse_cooling(program, 0, NO_ANALOGUE)
+    _refuse_schedules(program)
+    for what, number, last in (("tool_frame", program.tool_frame, LAST_TOOL), ("user_frame", program.user_frame, LAST_BASE)):
+        if number > last:
+            raise InputError(
+                "UNSUPPORTED_FRAME", f"program.{what}",
+                f"the controller has numbers up to {last}, not {number}; use one of these",
+            )
+    refuse_endless(program)
+    refuse_without_speeds(program, axes)
+    refuse_without_positions(program, straight=True)
+    for block in program.blocks:
+        if isinstance(block, Call):
+            program_name(block.program, block.where)
+
+
+def _refuse_schedules(program: Program) -> None:
+    refuse_schedules(program, LAST_OUTPUT - text.BITS + 1, LAST_SCHEDULE)
+    own = range(program.schedule_output, program.schedule_output + text.BITS)
+    if _scheduled(program) and program.deposit_output in own:
+        raise InputError(
+            "SCHEDULE", "program.schedule.output", f"$OUT[{own[0]}] to $OUT[{own[-1]}] tell the schedule, and one of them "
+            "switches the deposit; use other ones, or another program.deposit_output",
+        )
+
+
+def _scheduled(program: Program) -> bool:
+    return any(isinstance(block, Schedule) for block in program.blocks)
+
+
+def _own_remarks(program: Program) -> Iterator[str]:
+    seen = f", seen from the face of MACHINE_DEF[{program.unit}]" if program.on_positioner else ""
+    yield (f"BASE_DATA[{program.user_frame}] is the program origin{seen}, TOOL_DATA[{program.tool_frame}] the tip of the"
+           " nozzle:")
+    for what, six in (("BASE", program.station), ("TOOL", program.carried)):
+        if six is not None:
+            values = text.frames(np.array([six[:3]]), text.turned(six[3:])[None])[0]
+            yield what + "".join(f" {axis} {value:.3f}" for axis, value in zip("XYZABC", values.tolist(), strict=True))
+    for axis in np.flatnonzero(program.slides).tolist():
+        stands = f"the base of MACHINE_DEF[{program.unit}]" if program.on_positioner else "BASE_DATA"
+        yield (f"E{program.first_external + axis - AXES} is the track in mm, which carries $ROBROOT; {stands} stands in the"
+               " world")
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    # a wait of no time holds what reads ahead until the robot stands
+    output = f"$OUT[{program.deposit_output}]="
+    if isinstance(block, DepositOn):
+        return [] if program.dry_run else [_STAND, f"{output}TRUE", *text.wait(block.lead)]
+    if isinstance(block, DepositOff):
+        return [] if program.dry_run else [_STAND, *text.wait(block.lead), f"{output}FALSE"]
+    if isinstance(block, Schedule):
+        return [_STAND, f"{text.SCHEDULE}={block.number}"]
+    if isinstance(block, LayerStart):
+        return [f"; layer {block.layer}"]
+    if isinstance(block, Wait):
+        return text.wait(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"WAIT FOR $IN[{block.number}]==TRUE"]
+    if isinstance(block, Call):
+        return [_STAND, f"{block.program}()"]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+_STAND = "WAIT SEC 0"
+
+
+def _body(program: Program, pieces: Sequence[Piece]) -> list[str]:
+    unit, base = f"MACHINE_DEF[{program.unit}]", f"BASE_DATA[{program.user_frame}]"
+    coupled = [f"$BASE=EK({unit}.ROOT,{unit}.MECH_TYPE,{base})"] if program.on_positioner else []
+    lines = [
+        *(text.signal(program.schedule_output) if _scheduled(program) else []),
+        "BAS(#INITMOV,0)", f"BAS(#BASE,{program.user_frame})", *coupled, f"BAS(#TOOL,{program.tool_frame})",
+        "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR",
+    ]
+    said: dict[str, str] = {}
+    for piece in pieces:
+        lines += text.spoken(piece.words[piece.start : piece.stop], said) if isinstance(piece, Run) else piece
+    return [*lines, _STAND]

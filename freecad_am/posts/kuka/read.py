@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads KRL modules back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. Understands the plain instructions a path needs and refuses every other one, so
+that no motion can hide in what was not understood.
+"""
+
+from __future__ import annotations
+
+import re
+from array import array
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from ...core.read_moves import Event, ReadMoves
+
+Array = NDArray[np.float64]
+
+_N = r"(-?\d+\.\d+)"
+_AXES, _PLACES = (",".join(f"{name} {_N}" for name in names.split()) for names in ("A1 A2 A3 A4 A5 A6", "X Y Z A B C"))
+_BESIDE = rf"((?:,E[1-6] {_N[1:-1]})*)"  # axes beside the robot
+_TO_AXES = re.compile(rf"PTP \{{{_AXES}{_BESIDE}\}}$")
+_STRAIGHT = re.compile(rf"LIN \{{{_PLACES}{_BESIDE}\}}( C_DIS)?$")
+_EXTERNAL, _SHARED = re.compile(rf",E(\d) {_N}"), re.compile(r"\$VEL_EXTAX\[([1-6])\]=(\d+)$")
+_COUPLED = re.compile(r"\$BASE=EK\(MACHINE_DEF\[(\d+)\]\.ROOT,MACHINE_DEF\[(\d+)\]\.MECH_TYPE,BASE_DATA\[(\d+)\]\)$")
+_PERCENT = re.compile(r"BAS\(#VEL_PTP,(\d+)\)$")
+_METRES, _ROUNDING = re.compile(r"\$VEL\.CP=(\d+\.(\d+))$"), re.compile(r"\$APO\.CDIS=(\d+\.\d+)$")
+_SELECTED = re.compile(r"BAS\(#(BASE|TOOL),(\d+)\)$")
+_SWITCHED, _PAUSE = re.compile(r"\$OUT\[(\d+)\]=(TRUE|FALSE)$"), re.compile(r"WAIT SEC (\d+(?:\.(\d+))?)$")
+_DECLARED, _NUMBERED = re.compile(r"SIGNAL (\w+) \$OUT\[(\d+)\] TO \$OUT\[(\d+)\]$"), re.compile(r"(\w+)=(\d+)$")
+_AWAITED, _LAYERED = re.compile(r"WAIT FOR \$IN\[(\d+)\]==TRUE$"), re.compile(r"; layer (\d+)$")
+_CALLED, _HEADED = re.compile(r"([A-Za-z]\w*)\(\)$"), re.compile(r"DEF ([A-Za-z]\w*)\(\)$")
+_TRACK = re.compile(r"; E([1-6]) is the track in mm\b")
+_INITIAL, _ON_FLANGE, _TURNING = "BAS(#INITMOV,0)", "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR"
+
+
+def _floats() -> array[float]:
+    return array("d")
+
+
+@dataclass
+class _Run:
+    """What happened so far while the modules are followed, column by column.
+
+    state: what was set last, by its name; a module counts on nothing that another one has set. standing: nothing moves, for
+    the program has waited. signals: outputs, the first and the last, by the name they have in the module. beside: values of
+    the axes beside the robot at each move; unit: the mechanism that BASE is coupled to, and numbers of all these axes;
+    slides: of the one that a remark calls the track.
+    """
+
+    files: dict[str, tuple[str, list[str]]]
+    values: list[Array] = field(default_factory=list)
+    linear: bytearray = field(default_factory=bytearray)
+    deposit: bytearray = field(default_factory=bytearray)
+    speed: array[float] = field(default_factory=_floats)
+    share: array[float] = field(default_factory=_floats)
+    rounding: array[float] = field(default_factory=_floats)
+    base: array[float] = field(default_factory=_floats)
+    tool: array[float] = field(default_factory=_floats)
+    events: list[Event] = field(default_factory=list)
+    followed: list[str] = field(default_factory=list)
+    state: dict[str, float] = field(default_factory=dict)
+    half_digits: dict[str, float] = field(default_factory=dict)
+    beside: list[Array] = field(default_factory=list)
+    signals: dict[str, tuple[int, int]] = field(default_factory=dict)
+    unit: str | None = None
+    numbers: tuple[int, ...] = ()
+    slides: tuple[int, ...] = ()
+    output: str = ""
+    on: bool = False
+    standing: bool = True
+
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
+        """Something happens before the next move."""
+        self.events.append(Event(len(self.speed), kind, value, digits))
+
+    def counted(self, what: str, texts: tuple[str, ...]) -> None:
+        """Keep half of the last digit of numbers of a kind."""
+        half = 0.5 * 10.0 ** -min(len(text.partition(".")[2]) for text in texts)
+        self.half_digits[what] = max(half, self.half_digits.get(what, 0.0))
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the files in the order of execution, beginning with the module that no other one calls.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
+    found = {}
+    for file in sorted(files):
+        lines = files[file].decode("latin-1").replace("\r\n", "\n").rstrip("\n").split("\n")
+        title = _HEADED.match(lines[2]) if len(lines) > 3 and lines[:2] == ["&ACCESS RVP", "&REL 1"] else None
+        if title is None or lines[-1] != "END" or f"{title[1]}.src".lower() != file.lower():
+            raise _not_read(file, "it is not a module with one routine of the file's name")
+        found[title[1].lower()] = (file, lines)
+    called = {call[1].lower() for _, lines in found.values() for line in lines if (call := _CALLED.match(line))}
+    main = [name for name in found if name not in called]
+    if len(main) != 1:
+        raise _not_read("program", f"{len(main)} programs are called by none of the others, expected one")
+    run = _Run(found)
+    _go(main[0], run)
+    if not run.speed:
+        raise _not_read("program", "there are no moves")
+    if len(run.followed) != len(found):
+        raise _not_read("program", "there are modules that are never run, or run twice")
+    return _told(run)
+
+
+def _go(name: str, run: _Run) -> None:
+    """Carry out the lines of a module in order, and of those it calls."""
+    file, lines = run.files[name]
+    run.followed.append(name)
+    run.state, run.signals = {}, {}
+    for number, line in enumerate(lines[3:-1], 4):
+        where = f"{file} line {number}"
+        if _TO_AXES.match(line) or _STRAIGHT.match(line):
+            _moved(line, run, where)
+        elif declared := _DECLARED.match(line):
+            _declare(declared, lines[3 : number - 1], run, where)
+        elif (set_to := _NUMBERED.match(line)) and set_to[1] in run.signals:
+            _set(run.signals[set_to[1]], int(set_to[2]), run, where)
+        elif setting := _PERCENT.match(line):
+            run.state["percent"] = float(setting[1])
+        elif setting := _METRES.match(line):
+            run.state["speed"] = 1000.0 * float(setting[1])
+            run.half_digits["speed"] = max(run.half_digits.get("speed", 0.0), 500.0 * 10.0 ** -len(setting[2]))
+        elif setting := _ROUNDING.match(line):
+            run.state["rounding"] = float(setting[1])
+        elif setting := _SELECTED.match(line):
+            run.state[setting[1]] = float(setting[2])
+            if setting[1] == "BASE":
+                run.state.pop("EK", None)
+        elif coupled := _COUPLED.match(line):
+            _couple(coupled, run, where)
+        elif setting := _SHARED.match(line):
+            run.state[f"E{setting[1]}"] = float(setting[2])
+        elif line in (_INITIAL, _ON_FLANGE, _TURNING):
+            if line == _INITIAL:
+                run.state = {}  # what was set before counts no more
+            run.state[line] = 1.0
+        elif layer := _LAYERED.match(line):
+            run.happens("layer", float(layer[1]))
+        elif track := _TRACK.match(line):
+            run.slides += (int(track[1]),)
+        elif not line.startswith(";"):
+            _done(line, run, where)
+    if not run.standing:
+        raise _not_read(file, "it ends before the last move does")
+
+
+def _couple(coupled: re.Match[str], run: _Run, where: str) -> None:
+    """The base is carried by a mechanism."""
+    if coupled[1] != coupled[2] or run.state.get("BASE") != float(coupled[3]):
+        raise _not_read(where, "root and type are of two mechanisms, or the base is not the one selected")
+    run.state["EK"] = float(coupled[1])
+
+
+def _declare(declared: re.Match[str], before: list[str], run: _Run, where: str) -> None:
+    """Name a group of outputs in a module, which comes before its instructions."""
+    if any(not line.startswith(";") for line in before):
+        raise _not_read(where, "it is declared behind an instruction")
+    run.signals[declared[1]] = int(declared[2]), int(declared[3])
+
+
+def _set(outputs: tuple[int, int], number: int, run: _Run, where: str) -> None:
+    """A group of outputs, the first and the last, is set to a number."""
+    if not run.standing or number >= 2 ** (outputs[1] - outputs[0] + 1):
+        raise _not_read(where, "it is set ahead of the motion, or its outputs cannot tell such a number")
+    if run.output and outputs[0] <= int(run.output) <= outputs[1]:
+        raise _not_read(where, "one of its outputs switches the deposit")
+    run.happens("schedule", float(outputs[0]), float(number))
+
+
+def _done(line: str, run: _Run, where: str) -> None:
+    """An instruction that is no move and no setting: it is read ahead but for waits, so outputs and calls come after one."""
+    if pause := _PAUSE.match(line):
+        run.standing = _stopped(run, where)
+        run.happens("wait", float(pause[1]), digits=0.5 * 10.0 ** -len(pause[2] or "") if pause[2] else 0.0)
+    elif awaited := _AWAITED.match(line):
+        run.standing = _stopped(run, where)
+        run.happens("input", float(awaited[1]))
+    elif not run.standing:
+        raise _not_read(where, f"{line!r} is read ahead of the motion: no wait stands before it")
+    elif switched := _SWITCHED.match(line):
+        if run.output not in ("", switched[1]):
+            raise _not_read(where, "a second output is switched")
+        run.output, run.on = switched[1], switched[2] == "TRUE"
+        run.happens("on" if run.on else "off", float(switched[1]), "$OUT")
+    elif call := _CALLED.match(line):
+        if call[1].lower() not in run.files:
+            run.happens("call", call[1].upper())
+        elif call[1].lower() in run.followed or run.on:
+            raise _not_read(where, f"{call[1]} is run already, or called while depositing")
+        else:
+            _go(call[1].lower(), run)
+    else:
+        raise _not_read(where, f"the instruction {line!r} is not understood")
+
+
+def _stopped(run: _Run, where: str) -> bool:
+    """True: a wait holds the program until the robot stands. A corner before it would be no corner."""
+    if run.speed and not np.isnan(run.rounding[-1]):
+        raise _not_read(where, "the move before it is to be approximated, and it stops there")
+    return True
+
+
+def _moved(line: str, run: _Run, where: str) -> None:
+    straight, state = _STRAIGHT.match(line), run.state
+    needed = {_INITIAL, _ON_FLANGE, _TURNING, "BASE", "TOOL"} | ({"speed"} if straight else {"percent"})
+    if straight and straight[8]:
+        needed |= {"rounding"}
+    if not needed <= set(state):
+        raise _not_read(where, "the module does not set all that the move counts on")
+    if not straight and not 1.0 <= state["percent"] <= 100.0:
+        raise _not_read(where, f"{state['percent']:.0f} % of the joint speeds is none of 1 to 100")
+    match = straight or _TO_AXES.match(line)
+    assert match is not None
+    texts = match.groups()[:6]
+    run.values.append(np.array(texts, dtype=np.float64))
+    beside = _EXTERNAL.findall(match[7])
+    _beside(tuple(int(number) for number, _ in beside), 100.0 if straight else state["percent"], run, where)
+    run.beside.append(np.array([value for _, value in beside], dtype=np.float64))
+    for number, value in beside:
+        run.counted("slides" if int(number) in run.slides else "joints", (value,))
+    if straight:
+        run.counted("places", texts[:3])
+        run.counted("turns", texts[3:])
+    else:
+        run.counted("joints", texts)
+    run.linear.append(straight is not None)
+    run.deposit.append(run.on)
+    run.speed.append(state["speed"] if straight else np.nan)
+    run.share.append(np.nan if straight else 0.01 * state["percent"])
+    run.rounding.append(state["rounding"] if straight and straight[8] else np.nan)
+    run.base.append(state["BASE"])
+    run.tool.append(state["TOOL"])
+    run.standing = False
+
+
+def _beside(numbers: tuple[int, ...], share: float, run: _Run, where: str) -> None:
+    """Look at the axes beside the robot of a move: the same ones in all of them, coupled, and as fast as the move needs, in
+    percent: a linear one goes at its own speed only where they may be as fast as they can."""
+    unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
+    if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):
+        raise _not_read(where, "moves with other axes beside the robot are mixed")
+    moved = set(numbers) - set(run.slides)
+    in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
+    if not in_order or bool(moved) != bool(unit) or len(run.slides) > 1 or not {*run.slides} <= {*numbers}:
+        raise _not_read(where, "the axes beside the robot are not told in order, or BASE is not coupled to what they move")
+    if any(run.state.get(f"E{number}") != share for number in numbers):
+        raise _not_read(where, f"axes beside the robot do not run at {share:.0f} % of their speeds")
+    run.unit, run.numbers = unit, numbers
+
+
+def _told(run: _Run) -> ReadMoves:
+    linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
+    values, rounding = np.array(run.values), np.array(run.rounding)
+    half, seen = run.half_digits, linear[:, None]
+    a, b, c = np.radians(np.where(seen, values[:, 3:], np.nan)).T
+    any_line = bool(linear.any())
+    beside = np.array(run.beside)
+    joints = np.radians(np.hstack((np.where(seen, np.nan, values), beside)))
+    joints[:, 6:] = np.where(np.isin(run.numbers, run.slides), beside, joints[:, 6:])
+    return ReadMoves(
+        None if np.isnan(joints).all() else joints, float(np.radians(half.get("joints", 0.0))),
+        np.full(len(linear), np.nan), deposit, linear, np.isnan(rounding), tuple(run.events),
+        position=np.where(seen, values[:, :3], np.nan) if any_line else None,
+        rotation=_about(2, a) @ _about(1, b) @ _about(0, c) if any_line else None,
+        position_digits=half.get("places", 0.0), rotation_digits=float(np.radians(half.get("turns", 0.0))),
+        speed=np.array(run.speed), speed_digits=half.get("speed", 0.0), share=np.array(run.share), share_digits=0.005,
+        linear_digits=half.get("slides", 0.0), rounding=rounding,
+        user_frame=np.array(run.base), tool_frame=np.array(run.tool),
+        unit=run.unit or "", first_external=run.numbers[0] if run.numbers else 1,
+    )
+
+
+def _about(axis: int, angle: Array) -> Array:
+    """(n, 3, 3) rotations about X, Y or Z."""
+    turned = np.zeros((len(angle), 3, 3))
+    one, other = (axis + 1) % 3, (axis + 2) % 3
+    turned[:, axis, axis] = 1.0
+    turned[:, one, one] = turned[:, other, other] = np.cos(angle)
+    turned[:, other, one], turned[:, one, other] = np.sin(angle), -np.sin(angle)
+    return turned
+
+
+def _not_read(where: str, why: str) -> InputError:
+    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a KRL module says: its text, and its numbers: axis values, A B C, speeds, percents. Lines end in CR LF."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
+from ..names import plain
+from ..parts import place
+from ..refusals import speeds_within
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+END_OF_LINE = "\r\n"
+SCHEDULE, BITS = "am_schedule", 8  # what is set to its number, and of how many outputs
+WIDTH = 80  # of remarks
+ANGLE_DECIMALS, LENGTH_DECIMALS = 4, 3
+# mm/s: the least that is told well in m/s with six decimals, and what arms reach
+SPEEDS = (0.01, 3000.0)
+# percent: the least share of the axes' speeds that a controller is told, in whole numbers; half of that is rounded up to it
+LEAST_PERCENT = 1
+_AXES = [f"A{axis} %.{ANGLE_DECIMALS}f" for axis in range(1, 7)]
+_PLACE = [f"{axis} %.{LENGTH_DECIMALS}f" for axis in "XYZ"] + [f"{axis} %.{ANGLE_DECIMALS}f" for axis in "ABC"]
+# of how a move is approached: it stops, or the corner is rounded
+_STOPS, _ROUNDED = "", " C_DIS"
+
+
+def module(name: str, lines: Iterable[str]) -> bytes:
+    """One file: a module of one routine."""
+    text = ["&ACCESS RVP", "&REL 1", f"DEF {name}()", *lines, "END"]
+    return (END_OF_LINE.join(text) + END_OF_LINE).encode("ascii")
+
+
+def remark(text: str) -> list[str]:
+    """A comment on as many lines as it needs, in plain characters."""
+    return [f"; {line}" for line in textwrap.wrap(plain(text), WIDTH)]
+
+
+def signal(first: int) -> list[str]:
+    """The declaration of the outputs that tell a schedule."""
+    return [f"SIGNAL {SCHEDULE} $OUT[{first}] TO $OUT[{first + BITS - 1}]"]
+
+
+def wait(seconds: float) -> list[str]:
+    """Standing still for a time, to 0.001 s; nothing for no time."""
+    return [f"WAIT SEC {max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
+
+
+def shown(joints: Array, slides: Mask) -> Array:
+    """Axis values (n, axes) in degrees as the text has them, those that slide (axes,) in mm."""
+    values = np.where(slides, joints, np.degrees(joints))
+    rounded: Array = np.asarray(np.round(values, ANGLE_DECIMALS) + 0.0, dtype=np.float64)
+    return rounded
+
+
+def frames(position: Array, rotation: Array) -> Array:
+    """X Y Z in mm and A B C in degrees, (n, 6), of positions (n, 3) and rotations (n, 3, 3) = Rz(A) Ry(B) Rx(C)."""
+    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
+    turn = np.array(rotation.transpose(1, 2, 0), order="C").transpose(2, 0, 1)
+    across = np.hypot(turn[:, 0, 0], turn[:, 1, 0])
+    upright = across > 1e-9  # else only the sum or difference of A and C counts, and A is 0
+    a = np.where(upright, np.arctan2(turn[:, 1, 0], turn[:, 0, 0]), 0.0)
+    b = np.arctan2(-turn[:, 2, 0], across)
+    c = np.where(upright, np.arctan2(turn[:, 2, 1], turn[:, 2, 2]), np.arctan2(-turn[:, 1, 2], turn[:, 1, 1]))
+    angles = np.round(np.degrees(np.stack((a, b, c), axis=1)), ANGLE_DECIMALS)
+    values: Array = np.hstack((np.round(position, LENGTH_DECIMALS), angles)) + 0.0
+    return values
+
+
+def turned(angles: Sequence[float]) -> Array:
+    """(3, 3) the rotation Rx Ry Rz of RX, RY, RZ in rad."""
+    (sx, cx), (sy, cy), (sz, cz) = ((math.sin(angle), math.cos(angle)) for angle in angles)
+    return np.array([
+        [cy * cz, -cy * sz, sy],
+        [cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy],
+        [sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy],
+    ])
+
+
+class Lines:
+    """The lines of the moves of a program, asked for block by block in the order of motion: each move with the settings it
+    counts on before it, parted by |."""
+
+    def __init__(self, program: Program) -> None:
+        self._blend = program.blend
+        self._slides = program.slides
+        self._nominal = np.where(self._slides, program.max_speed, np.degrees(np.array(program.max_speed)))
+        self._before: Array | None = None
+        self._own = program.own_axes
+        numbers = [program.first_external + k for k in range(len(program.external_kinds))]
+        beside = [f"E{number} %.{ANGLE_DECIMALS}f" for number in numbers]
+        self._ptp, self._lin = (f"{word} {{{','.join([*values, *beside])}}}" for word, values in (
+            ("PTP", _AXES), ("LIN", _PLACE)))
+        # shares of the speeds of axes beside the robot hold for linear moves too, which they must not slow down
+        self._shares = "".join(f"$VEL_EXTAX[{number}]=%d|" for number in numbers)
+        self._unhindered = self._beside(100)
+
+    def __call__(self, moves: Moves) -> Sequence[str]:
+        """`settings|move` of each move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
+        values = shown(moves.joints, self._slides)
+        if moves.interpolation == LINEAR_MOVE:
+            assert moves.position is not None and moves.rotation is not None
+            size = self._rounding(moves)
+            corners = [_STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()]
+            speeds = [f"$VEL.CP={0.001 * speed:.6f}" for speed in speeds_within(moves, *SPEEDS).tolist()]
+            rows = np.hstack((frames(moves.position, moves.rotation), values[:, self._own :])).tolist()
+            lines = [f"{self._unhindered}{speed}|{self._lin % tuple(row)}{corner}"
+                     for speed, row, corner in zip(speeds, rows, corners, strict=True)]
+            told = [f"$APO.CDIS={size:.3f}|{line}" if corner else line for line, corner in zip(lines, corners, strict=True)]
+        else:
+            percent = self._percent(moves, values)
+            rows = values.tolist()
+            told = [f"BAS(#VEL_PTP,{share:d})|{self._beside(share)}{self._ptp % tuple(row)}"
+                    for share, row in zip(percent, rows, strict=True)]
+        self._before = values[-1]
+        return told
+
+    def _beside(self, share: int) -> str:
+        """Settings of a share, percent, of the speeds of the axes beside the robot; none where there are none."""
+        return self._shares % ((share,) * self._shares.count("%"))
+
+    def _percent(self, moves: Moves, shown: Array) -> list[int]:
+        """Whole percents of the largest joint speeds: the fastest axis gets through its step in the time of the move."""
+        before = shown[:1] if self._before is None else self._before[None]
+        share = (np.abs(np.diff(shown, axis=0, prepend=before)) / self._nominal).max(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            percent = 100.0 * share / moves.duration
+        percent = np.where(share > 0.0, percent, 100.0)
+        if self._before is None:
+            percent[0] = 100.0 * FIRST_SHARE
+        wrong = ~((percent <= 100.5) & (percent >= 0.5 * LEAST_PERCENT))
+        if wrong.any():
+            raise InputError(
+                "JOINT_SPEED", place(moves),
+                f"a rapid would need {percent[wrong][0]:.3g} % of the largest joint speed, and KRL is told whole percents of"
+                f" {LEAST_PERCENT} to 100; use another rapid speed",
+            )
+        return [int(value) for value in np.clip(np.rint(percent), LEAST_PERCENT, 100)]
+
+    def _rounding(self, moves: Moves) -> float:
+        """mm: corners are rounded within half the shortest move of the bead at most."""
+        shortest = float(np.nan_to_num(moves.speed * moves.duration).min()) if moves.kind == DEPOSIT else 0.0
+        return math.floor(1000.0 * min(0.005 * self._blend * shortest, 100.0)) / 1000.0
+
+
+def spoken(words: Sequence[str], said: dict[str, str]) -> list[str]:
+    """The lines of moves, with the settings before them that differ from what is `said` so far, and become it."""
+    lines: list[str] = []
+    for word in words:
+        *settings, move = word.split("|")
+        for setting in settings:
+            key = setting[: max(setting.find("="), 8)]
+            if said.get(key) != setting:
+                said[key] = setting
+                lines.append(setting)
+        lines.append(move)
+    return lines

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""LinuxCNC: programs of linear moves (.ngc) for tables and heads with two rotary axes.
+
+Joint motion is told in axes with the time of each move (G93) or the speed of the linear axes (G94), under the kinematics
+that leaves axes alone (M429). Cartesian motion is told in positions on the part and rotary axes under the kinematics of
+the machine (M428), but for the rapids between beads. What is written, what must be set in the machine's configuration and
+what was confirmed where: docs/posts/linuxcnc.md.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.controller import Controller
+from ...core.issues import InputError
+from ...core.program import (
+    LINEAR_MOVE,
+    ROTARY,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Program,
+    Schedule,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
+from ..names import Naming
+from ..nc import numbers
+from ..nc import parts as common
+from ..on_controller import on_controller
+from ..parts import Piece, Run, grouped, lines_of, packed, whole
+from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_schedules
+from .read import read
+
+__all__ = ["read", "write"]
+
+Array = NDArray[np.float64]
+
+NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_")
+_NO_END = 10**9
+CONTROLLER = Controller()
+NO_WIRE = ""  # the speed of the wire can follow that of the torch
+NO_SCHEDULE = {"arc": "it has no arc instructions"}
+LAST_SCHEDULE = 65535
+MOVE_LINE = re.compile(rb"G[01] ")
+ON_CONTROLLER = on_controller(
+    "The tool table has the torch's length, and the kinematics has the machine file's offsets",
+    "M428 and M429 switch the kinematics, and the work offset is that of the remarks",
+    "The digital and analogue pins are connected to the process",
+    "The feed override is 100 %",
+)
+# pins motion.digital-out, -in and analog-out, counted from 0 there
+LAST_PIN = 64
+# the work offset that this program sets to zero, for moves of the axes themselves
+MACHINE_OFFSET = "G59.3"
+OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2")
+# the machine stands still at the end of every move
+EXACT_STOP = "G61.1"
+# mm/min or deg/min: its interpreter takes 0.1 where the time of a move asks for less, which would be too fast
+SLOWEST = 0.2
+# s: an input that does not come stops the program for good
+LONGEST_WAIT = 10_000_000
+# comments of this kind would be carried out
+_ACTIVE = re.compile(r"(?:abort|debug|error|log\w*|msg|print|probe\w*|py|warning)\s*,", re.IGNORECASE)
+# M words with a meaning of their own
+_TAKEN = frozenset(
+    {f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 19, 30, *range(48, 54), *range(60, 74), *range(428, 431))} | {"M98", "M99", "H"}
+)
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The files of a program, name -> content; the same bytes for the same program.
+
+    One file name.ngc where its points fit, else name.ngc calls the subs name01.ngc, name02.ngc and so on, each with whole
+    beads; a bead with more points has a part of its own.
+
+    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, UNSUPPORTED_FRAME, MOVE_TIME, MOVE_SPEED,
+    NO_POSITIONS, NO_TIP_KINEMATICS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, DEPOSIT_WORD, WIRE_OUTPUT, UNREACHABLE,
+    NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    remarks = [_remark(line) for words in (*program.remarks, *_own_remarks(program)) for line in common.wrapped(words)]
+    groups = list(grouped(program, numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)))
+    parts = packed(groups, program.max_points, _NO_END, whole)
+    if len(parts) == 1:
+        return {f"{name}.ngc": _file([*remarks, *_modes(program), *_lines(program, parts[0]), "M2"])}
+    names = NAMING.parts(name, len(parts))
+    refuse_calls_of_own(program, {name, *names}, program_name)
+    files = {f"{name}.ngc": _file([*remarks, *_modes(program), *(f"o<{part}> call" for part in names), "M2"])}
+    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+        inside = [_remark(f"part {number} of {len(parts)}"), *_modes(program), *_lines(program, pieces)]
+        files[f"{part}.ngc"] = _file([f"o<{part}> sub", *inside, f"o<{part}> endsub", "M2"])
+    return files
+
+
+def program_name(name: str, where: str) -> str:
+    """The name of file and sub, in lower case as LinuxCNC looks for it. Raises InputError PROGRAM_NAME, proposing one."""
+    return NAMING.checked(name, where)
+
+
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
+    """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
+    common.refuse_setup("linuxcnc", motion, setup)
+    if carried is not None and motion == "cartesian":
+        _refuse_tilt(carried)
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    common.refuse_table(program, "linuxcnc")
+    common.refuse_words(program, _TAKEN)
+    common.refuse_wire_output(program, LAST_PIN)
+    refuse_cooling(program, LAST_PIN)
+    refuse_schedules(program, LAST_PIN, LAST_SCHEDULE, inside=True)
+    scheduled, fed = (any(isinstance(block, Schedule) for block in program.blocks),
+                      any(run.wire is not None for run in program.moves))
+    if scheduled and fed and program.schedule_output == program.nc.wire_output:
+        raise InputError(
+            "SCHEDULE", "program.schedule.output", f"analogue output {program.schedule_output} tells the speed of the wire; "
+            "use another one for schedules",
+        )
+    if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
+        raise InputError(
+            "DEPOSIT_OUTPUT", "program.deposit_output",
+            f"digital outputs are 1 to {LAST_PIN} (motion.digital-out-00 is number 1), not {program.deposit_output}",
+        )
+    for block in program.blocks:
+        if isinstance(block, WaitInput) and block.number > LAST_PIN:
+            raise InputError(
+                "DEPOSIT_INPUT", "process.between_layers.input",
+                f"digital inputs are 1 to {LAST_PIN} (motion.digital-in-00 is number 1), not {block.number}",
+            )
+    refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
+    if program.motion == "cartesian":
+        _refuse_cartesian(program)
+
+
+def _refuse_cartesian(program: Program) -> None:
+    if not program.nc.switch_kinematics:
+        raise InputError(
+            "NO_TIP_KINEMATICS", "program.nc.switch_kinematics",
+            "positions on the part need the kinematics that M428 chooses; set it to true, or use `motion: joint`",
+        )
+    if not 1 <= program.user_frame <= len(OFFSETS):
+        raise InputError(
+            "UNSUPPORTED_FRAME", "program.user_frame",
+            f"work offset {program.user_frame} is not there for the part; use 1 to {len(OFFSETS)} (G54 to G59.2; the ninth,"
+            f" {MACHINE_OFFSET}, is set to zero for moves of the axes)",
+        )
+    if program.carried is not None:
+        _refuse_tilt(program.carried)
+
+
+def _refuse_tilt(carried: tuple[float, ...]) -> None:
+    """Raises InputError UNSUPPORTED_FRAME where the program's origin, X Y Z RX RY RZ (mm, rad), leans on the table."""
+    if max(abs(angle) for angle in carried[3:5]) > 1e-9:
+        x, y, z, rx, ry, rz = (*carried[:3], *(math.degrees(angle) for angle in carried[3:]))
+        raise InputError(
+            "UNSUPPORTED_FRAME", "program.origin",
+            f"a work offset of LinuxCNC turns about Z alone, and the part leans on the table by RX {rx:.4g} and RY {ry:.4g} "
+            f"deg; enter an upright origin, as cell.platform: [{x:.6g}, {y:.6g}, {z:.6g}, 0, 0, {rz + 0.0:.6g}], or use "
+            "`motion: joint`",
+        )
+
+
+def _own_remarks(program: Program) -> Iterator[str]:
+    yield f"tool length of tool {program.tool_frame}; {MACHINE_OFFSET} is set to zero"
+    if program.motion == "cartesian":
+        yield f"{OFFSETS[program.user_frame - 1]}: the program origin on the table's face with the rotary axes at zero"
+        if program.carried is not None:
+            x, y, z, _, _, turned = program.carried
+            yield f"X {x:.4f} Y {y:.4f} Z {z:.4f} R {math.degrees(turned) + 0.0:.4f}"
+    for name, endless in zip(program.axis_names, program.endless, strict=True):
+        if endless:
+            yield f"axis {name} turns without end: not WRAPPED_ROTARY, limits wide enough for all turns"
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _remark(text: str) -> str:
+    """A comment of one line that nothing is carried out of."""
+    inside = text.replace("(", "[").replace(")", "]")
+    return f"(remark: {inside})" if _ACTIVE.match(inside) else f"({inside})"
+
+
+def _modes(program: Program) -> list[str]:
+    """What moves begin with: mm, absolute, the tool's length, a stop at every point, axes in the machine's own frame."""
+    zeros = " ".join(f"{name}0" for name in program.axis_names)
+    return [
+        "G21 G17 G90 G94 G40 G49 G80", "G92.2", EXACT_STOP, f"G43 H{program.tool_frame}",
+        f"G10 L2 P9 {zeros} R0", *_axes_again(program),
+    ]  # fmt: skip
+
+
+def _axes_again(program: Program) -> list[str]:
+    return [*(["M429"] if program.nc.switch_kinematics else []), MACHINE_OFFSET]
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    cartesian = program.motion == "cartesian"
+    if isinstance(block, DepositOn):
+        tolerance = f"{program.nc.tolerance:.5f}"
+        enter = [*(["M428", OFFSETS[program.user_frame - 1]] if cartesian else []), f"G64 P{tolerance} Q{tolerance}"]
+        # at rest: at once
+        wire = [] if block.wire is None else [f"M68 {_wire(program).format(*numbers.wire(program, [block.wire]))}"]
+        return [*enter, *(["G4 P0"] if program.dry_run else [*wire, _output(program, True), *_dwell(block.lead)])]
+    if isinstance(block, DepositOff):
+        leave = [EXACT_STOP, *(_axes_again(program) if cartesian else [])]
+        return [*(["G4 P0"] if program.dry_run else [*_dwell(block.lead), _output(program, False)]), *leave]
+    if isinstance(block, Schedule):  # at rest: at once; within a bead queued, where the next move begins
+        return [f"M6{7 if block.inside else 8} E{program.schedule_output - 1} Q{block.number}"]
+    if isinstance(block, LayerStart):
+        return [_remark(f"layer {block.layer}")]
+    if isinstance(block, Wait):
+        return _dwell(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"M66 P{block.number - 1} L3 Q{LONGEST_WAIT}"]
+    if isinstance(block, WaitBelow):  # of analogue inputs M66 only reads the value, into #5399
+        sample, loop = f"M66 E{block.number - 1} L0", f"o<cool{block.layer}_{block.bead}>"
+        return [sample, f"{loop} while [#5399 GE {numbers.level(block.below)}]", *_dwell(0.1), sample, f"{loop} endwhile"]
+    if isinstance(block, Call):
+        return [f"o<{program_name(block.program, block.where)}> call", *_modes(program)]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _output(program: Program, on: bool) -> str:
+    """At once and not queued: these wait for the end of the motion, so that the machine stands when the deposit switches."""
+    if program.nc.deposit_on:
+        return program.nc.deposit_on if on else program.nc.deposit_off
+    return f"M{64 if on else 65} P{program.deposit_output - 1}"
+
+
+def _wire(program: Program) -> str:
+    """Which analogue output and, to be filled in, its value."""
+    return f"E{program.nc.wire_output - 1} Q{{}}"
+
+
+def _dwell(seconds: float) -> list[str]:
+    return common.dwell("P", seconds)
+
+
+def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
+    return lines_of(pieces, lambda run: _motion(program, run))
+
+
+def _motion(program: Program, run: Run) -> list[str]:
+    """Moves through all points of a run; what follows a run waits for its end."""
+    moves, part = run.moves, slice(run.start, run.stop)
+    names = list(program.axis_names)
+    values = numbers.shown(moves.joints[part], program.axis_kinds)
+    if moves.interpolation == LINEAR_MOVE:
+        assert moves.position is not None
+        rotary = np.array([kind == ROTARY for kind in program.axis_kinds])
+        values = np.hstack([np.round(moves.position[part], numbers.DECIMALS) + 0.0, values[:, rotary]])
+        names = [*"XYZ", *(name for name, turns in zip(names, rotary.tolist(), strict=True) if turns)]
+    blocks = numbers.blocks(numbers.rows(numbers.template(names), values), run.words[part])
+    # queued: it takes effect where the next move begins, and corners are rounded all the same
+    return numbers.told_of_wire(program, moves, blocks, f"M67 {_wire(program)}")
+
+
+def _file(lines: list[str]) -> bytes:
+    return ("\n".join(lines) + "\n").encode("ascii")

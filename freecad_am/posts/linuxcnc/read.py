@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads LinuxCNC programs back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. Understands the plain lines a path needs and refuses every other one, so that no motion
+can hide in what was not understood.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from ...core.read_moves import ReadMoves
+from ..nc.read import AXES, TIME, TIP, Shape, Track, unreadable
+
+_NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
+_WORD = re.compile(rf"([XYZABCF])({_NUMBER})$")
+_SUB = re.compile(r"O<(\w+)> (SUB|ENDSUB|CALL)$")
+_COMMENT = re.compile(r"\((?!\s*(?:ABORT|DEBUG|ERROR|LOG\w*|MSG|PRINT|PROBE\w*|PY|WARNING)\s*,)[^()]*\)")
+_HARMLESS = re.compile(r"G92\.2$")
+_CORNERS = re.compile(rf"G61(\.1)?$|G64(?: P({_NUMBER}))?(?: Q({_NUMBER}))?$")
+_TOOL = re.compile(r"G43 H(\d+)$")
+_INPUT = re.compile(r"M66 P(\d+) L3 Q(\d+)$")
+_LAYER = re.compile(r"\(LAYER (\d+)\)$")
+_SAMPLE = re.compile(r"M66 E(\d+) L0$")
+_LOOP = re.compile(rf"O<(\w+)> (?:WHILE \[#5399 GE ({_NUMBER})\]|ENDWHILE)$")
+_DWELL = re.compile(rf"G4 P({_NUMBER})$")
+_ZERO = re.compile(r"G10 L2 P9( [XYZABCR]0)+$")
+_OUTPUT = re.compile(r"M(6[2-5]) P(\d+)$|M(\d+)$")
+_WIRE = re.compile(rf"M6([78]) E(\d+) Q({_NUMBER})$")
+_SCHEDULE = re.compile(r"M6([78]) E(\d+) Q(\d+)$")
+_OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
+_FEEDS, _UNITS = {"G93", "G94"}, {"G21", "G90"}
+_PLAIN = {"G17", "G40", "G49", "G80"}
+_TIP_ON, _TIP_OFF = "M428", "M429"
+
+
+@dataclass
+class _State:
+    """What is set while the programs are followed."""
+
+    files: dict[str, list[tuple[str, str]]]
+    track: Track = field(default_factory=Track)
+    schedules: set[str] = field(default_factory=set)
+    units: set[str] = field(default_factory=set)
+    feed: str = "G94"
+    linear: bool = False
+    offset: str = ""
+    kinematics: str = ""
+    zeroed: set[str] = field(default_factory=set)
+    output: str = ""
+    on_word: str = ""
+    off_word: str = ""
+    sampled: str = ""
+    shape: Shape | None = None
+    loop: tuple[str, str] = ("", "")
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the files in the order of execution, beginning with the one that is no sub.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
+    programs: dict[str, list[tuple[str, str]]] = {}
+    main = []
+    for file, content in files.items():
+        name, lines = file.rpartition(".")[0].upper(), _lines(file, content)
+        if not file.lower().endswith(".ngc") or not lines or lines[-1][1] != "M2":
+            raise unreadable(file, "it is no program that ends with M2")
+        programs[name] = lines[:-1]
+        if not (lines[0][1] == f"O<{name}> SUB" and lines[-2][1] == f"O<{name}> ENDSUB"):
+            main.append(name)
+    if len(main) != 1:
+        raise unreadable("program", f"there are {len(main)} programs that are no subs, expected one")
+    state = _State(programs)
+    _follow(main[0], programs[main[0]], state, ())
+    if state.track.on or state.loop[0]:
+        raise unreadable("program", "it ends with the deposit on, or within a loop")
+    return state.track.moves()
+
+
+def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
+    """Where each line is, and its words without comments."""
+    found = []
+    for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
+        layer = _LAYER.match(line.strip())
+        text = line.strip() if layer else " ".join(_COMMENT.sub(" ", line).split())
+        if len(line) > 250 or (not layer and "(" in text) or ";" in text:
+            raise unreadable(f"{file} line {number}", "a comment that may be carried out, or a line that is too long")
+        if text:
+            found.append((f"{file} line {number}", text))
+    return found
+
+
+def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tuple[str, ...]) -> None:
+    """Carry out the lines of a program in order, and of the subs it calls."""
+    if name in callers:
+        raise unreadable(name, "it calls itself")
+    for where, text in lines:
+        words = None if state.shape is None or state.loop[0] else state.shape.words(text)
+        if words is not None:
+            state.linear, state.sampled = True, ""
+            _move(where, words, state)
+            continue
+        if _cooled(where, text, state):
+            continue
+        if sub := _SUB.match(text):
+            if sub[2] != "CALL":
+                raise unreadable(where, f"{text!r} is not understood here")
+            _call(where, sub[1], state, (*callers, name))
+        elif _ZERO.match(text):
+            state.zeroed = {word[0] for word in text.split()[3:]}
+        elif (told := _SCHEDULE.match(text)) and _tells_schedule(told, state):
+            state.track.happens("schedule", float(told[2]) + 1.0, float(told[3]))
+        elif wire := _WIRE.match(text):
+            if wire[1] == "8" and state.track.on:
+                raise unreadable(where, "the analogue output stops the machine within a bead")
+            state.track.set_wire(int(wire[2]) + 1, wire[3], where)
+            if wire[1] == "8":
+                state.track.rests()
+        elif layer := _LAYER.match(text):
+            state.track.happens("layer", float(layer[1]))
+        elif _settled(text, state):
+            continue
+        elif output := _OUTPUT.match(text):
+            _switch(where, text, output, state)
+        elif not _HARMLESS.match(text):
+            _line(where, text, state)
+
+
+def _tells_schedule(told: re.Match[str], state: _State) -> bool:
+    """Whether an analogue output is that of schedules: it is set at rest before corners are rounded, as the wire's is not;
+    within beads it is known by then."""
+    if told[1] == "8" and state.track.exact:
+        state.schedules.add(told[2])
+        state.track.rests()
+        return True
+    return told[1] == "7" and state.track.on and told[2] in state.schedules
+
+
+def _settled(text: str, state: _State) -> bool:
+    """Whether a line sets how corners are passed or which tool counts, or waits; it is done then."""
+    if corners := _CORNERS.match(text):
+        state.track.exact = text == "G61.1"
+        # G61 stops where it must; another tolerance for points than for corners is none that was asked for
+        known = corners[2] and corners[2] == corners[3]
+        state.track.rounding = float(corners[2]) if known else 0.0 if corners[1] else float("inf")
+    elif tool := _TOOL.match(text):
+        state.track.tool = float(tool[1])
+    elif given := _INPUT.match(text):
+        state.track.rests()
+        state.track.happens("input", float(given[1]) + 1.0)
+    elif dwell := _DWELL.match(text):
+        state.track.rests()
+        state.track.waits(dwell[1])
+    else:
+        return False
+    return True
+
+
+def _cooled(where: str, text: str, state: _State) -> bool:
+    """Whether a line is part of a loop that goes round until an analogue input, read anew each time, is below a value."""
+    sampled, state.sampled = state.sampled, ""
+    loop = _LOOP.match(text)
+    if sample := _SAMPLE.match(text):
+        if state.loop[1] not in ("", sample[1]):
+            raise unreadable(where, "another analogue input is read than the one that is waited for")
+        state.sampled = sample[1]
+    elif loop and loop[2] and sampled and not state.loop[0]:
+        state.loop = loop[1], sampled
+        if state.track.on:
+            raise unreadable(where, "it is waited for an analogue input within a bead")
+        state.track.happens("below", float(sampled) + 1.0, float(loop[2]), digits=1e-6)
+    elif loop and not loop[2] and sampled and state.loop[0] == loop[1]:
+        state.loop = "", ""
+    elif loop or (state.loop[0] and not _DWELL.match(text)):
+        raise unreadable(where, f"{text!r} in or about a loop that waits for an analogue input")
+    else:
+        return bool(state.loop[0])
+    return True
+
+
+def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> None:
+    if state.track.on or state.kinematics == _TIP_ON:
+        raise unreadable(where, "another program is called within a bead")
+    if name in state.files:
+        _follow(name, state.files[name][1:-1], state, callers)
+    else:
+        # a program of the controller; what it leaves set is not known
+        state.units, state.offset, state.zeroed, state.linear, state.kinematics = set(), "", set(), False, ""
+        state.track.happens("call", name)
+        state.track.rests()
+        state.track.tool, state.track.exact, state.track.rounding = float("nan"), False, float("inf")
+
+
+def _line(where: str, text: str, state: _State) -> None:
+    words: dict[str, str] = {}
+    for token in text.split():
+        if word := _WORD.match(token):
+            if word[1] in words:
+                raise unreadable(where, f"{word[1]} stands there twice")
+            words[word[1]] = word[2]
+        elif token == "G1":
+            state.linear = True
+        elif token in _FEEDS:
+            state.feed = token
+        elif token in _UNITS:
+            state.units.add(token)
+        elif token in _OFFSETS:
+            state.offset = token
+            state.track.frame = _OFFSETS.index(token) + 1.0
+        elif token not in _PLAIN:
+            raise unreadable(where, f"{token!r} is not understood")
+    if words:
+        _move(where, words, state)
+        state.shape = Shape.of(text)
+
+
+def _move(where: str, words: dict[str, str], state: _State) -> None:
+    if not state.linear or state.units != _UNITS or not state.offset:
+        raise unreadable(where, "a move before G1, G21, G90 and a work offset are said")
+    if state.kinematics == _TIP_ON:
+        if state.feed != "G94" or state.offset == "G59.3":
+            raise unreadable(where, "a position on the part needs G94 and a work offset of its own")
+        if {*words} != {*state.track.axes, *"XYZF"}:
+            raise unreadable(where, "a position on the part needs X Y Z and all rotary axes")
+        state.track.add(TIP, words, where)
+        return
+    if state.offset != "G59.3" or not set(words) - {"F"} <= state.zeroed:
+        raise unreadable(where, "axes are moved in another frame than that of the machine")
+    state.track.add(TIME if state.feed == "G93" else AXES, words, where)
+
+
+def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None:
+    """Kinematics, and the deposit: an output by its number; of two M words the first one switches on."""
+    if text in (_TIP_ON, _TIP_OFF):
+        if state.track.on:
+            raise unreadable(where, "the kinematics changes while the deposit is on")
+        state.kinematics = text
+        state.track.rests()
+        return
+    if output[1]:
+        name, on, wrong = f"P{output[2]}", output[1] in ("62", "64"), False
+    else:
+        state.on_word = state.on_word or text
+        on = text == state.on_word
+        if not on:
+            state.off_word = state.off_word or text
+        name, wrong = "M", text not in (state.on_word, state.off_word) or output[3] in ("0", "1", "2", "6", "30")
+    if wrong or state.output not in ("", name):
+        raise unreadable(where, f"{text!r} is not understood, or a second output is switched")
+    state.output, state.track.on = name, on
+    if output[1] not in ("62", "63"):  # these wait for the next move instead
+        state.track.rests()
+    state.track.happens("on" if on else "off", float(output[2]) + 1.0 if output[1] else 0.0, text)

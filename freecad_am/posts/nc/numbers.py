@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What programs of five-axis machines say in numbers, whatever the controller: axis words, direction vectors, feeds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from ...core.program import LINEAR, LINEAR_MOVE, RAPID, Moves, Program, slide_feeds
+from ..parts import place
+
+Array = NDArray[np.float64]
+
+# of mm and deg; Siemens' manual on 5-axis machining asks for 5 of positions and 6 of direction vectors
+DECIMALS, VECTOR_DECIMALS = 5, 6
+# significant digits of a feed, and the range every controller takes; digits of what tells the speed of the wire
+FEED_DIGITS, WIRE_DIGITS = 7, 5
+SLOWEST, FASTEST = 0.001, 999_999.0
+# mm: where the linear axes go less than this, their speed is no measure of the time of a move
+SHORTEST_WAY = 0.01
+# feed as one over the time of the move, and as a speed
+TIME, PATH = "G93", "G94"
+
+
+def shown(joints: Array, kinds: Sequence[str]) -> Array:
+    """Joint values (n, axes) in mm and deg, as the text has them."""
+    factor = np.array([1.0 if kind == LINEAR else math.degrees(1.0) for kind in kinds])
+    values: Array = np.round(joints * factor, DECIMALS) + 0.0
+    return values
+
+
+def rows(template: str, values: Array) -> list[str]:
+    """One text per row of the values (n, columns)."""
+    return [template % row for row in zip(*values.T.tolist(), strict=True)]
+
+
+def template(names: Sequence[str]) -> str:
+    """Plain words with these addresses: X%.5f Y%.5f."""
+    return " ".join(f"{name}%.{DECIMALS}f" for name in names)
+
+
+def feed(value: float) -> str:
+    """A feed with its significant digits, never in exponents."""
+    return f"F{_significant(value, FEED_DIGITS)}"
+
+
+def _significant(value: float, digits: int) -> str:
+    return f"{value:.{max(digits - 1 - math.floor(math.log10(value)), 0)}f}"
+
+
+def level(value: float) -> str:
+    """A value of an analogue input, never in exponents."""
+    text = f"{value:.6f}".rstrip("0")
+    return f"{text}0" if text.endswith(".") else text
+
+
+def wire(program: Program, speeds: Sequence[float]) -> list[str]:
+    """Values of the analogue output at speeds of the wire, mm/s."""
+    values = [program.nc.wire_gain * 0.06 * speed for speed in speeds]
+    return [_significant(value, WIRE_DIGITS) if value > 1e-9 else "0" for value in values]
+
+
+def told_of_wire(program: Program, moves: Moves, lines: Sequence[str], statement: str) -> list[str]:
+    """The lines of a run of moves, the last ones one per move, with the statement that sets the analogue output in front of
+    each move at which its value changes. The first value was told before the run."""
+    if moves.wire is None:
+        return list(lines)
+    values = wire(program, moves.wire.tolist())
+    changed = [value != before for before, value in zip(values, values[1:])]
+    rest = len(lines) - len(values) + 1
+    told = [[statement.format(value)] if new else [] for new, value in zip(changed, values[1:], strict=True)]
+    return [*lines[:rest], *(line for words, move in zip(told, lines[rest:], strict=True) for line in (*words, move))]
+
+
+class Feeds:
+    """Feed words of the moves of a program, asked for run by run in the order of motion.
+
+    Moves of axes last as long as planned: F is one over that time in minutes (G93). With `program.nc.path_feed` it is the
+    speed of the linear axes in mm/min (G94) wherever these move. Beads told in positions run at the speed of the tip.
+    slowest: mm/min or deg/min that a controller does not fall below by itself however long the time told; slower moves are
+    told by this speed: of the linear axes, or of the rotary ones where these alone move.
+    """
+
+    def __init__(self, program: Program, slowest: float = 0.0) -> None:
+        self.linear = np.array([kind == LINEAR for kind in program.axis_kinds])
+        self.kinds, self.by_tip = program.axis_kinds, program.motion == "cartesian"
+        self.path_feed, self.slowest = program.nc.path_feed and not self.by_tip, slowest
+        self.before: Array | None = None
+        self.after_tip = False
+
+    def __call__(self, moves: Moves) -> list[str]:
+        """One text per move: the sort of feed and its value, such as 'G93 F120.0000' or 'G94 F300.0000'.
+
+        Raises InputError MOVE_SPEED or MOVE_TIME, naming the bead.
+        """
+        at = shown(moves.joints, self.kinds)
+        start = at[0] if self.before is None else self.before
+        self.before = at[-1]
+        if moves.interpolation == LINEAR_MOVE:
+            self.after_tip = True
+            return [f"{PATH} {feed(value)}" for value in _tip_feeds(moves).tolist()]
+        inverse = _inverse_times(moves)
+        steps = np.diff(np.concatenate([start[None], at]), axis=0)
+        way = np.linalg.norm(steps[:, self.linear], axis=1)
+        speeds = 60.0 * slide_feeds(start, at, 60.0 / inverse, self.kinds)
+        turning = way == 0.0
+        speeds[turning] = (np.linalg.norm(steps[:, ~self.linear], axis=1) * inverse)[turning]
+        by_speed = (speeds > 0.0) & (speeds < self.slowest)
+        if self.path_feed and moves.kind != RAPID:
+            by_speed |= (way >= SHORTEST_WAY) & (speeds >= SLOWEST) & (speeds <= FASTEST)
+        by_speed[0] &= not self.after_tip  # a text that ended in a position does not tell the way
+        self.after_tip = False
+        return [f"{PATH} {feed(speed)}" if is_slow else f"{TIME} {feed(by_time)}"
+                for is_slow, speed, by_time in zip(by_speed.tolist(), speeds.tolist(), inverse.tolist(), strict=True)]
+
+
+def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
+    """G1 blocks of these words and feeds, the sort of feed in front, and in the blocks that change it."""
+    lines, sort = [], ""
+    for word, (before, value) in zip(words, (feed.split() for feed in feeds), strict=True):
+        if not sort:
+            lines.append(before)
+        lines.append(f"{before} G1 {word} {value}" if sort not in ("", before) else f"G1 {word} {value}")
+        sort = before
+    return lines
+
+
+def _inverse_times(moves: Moves) -> Array:
+    """(n,) 1/min of the moves."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse: Array = 60.0 / moves.duration
+    if moves.kind == RAPID:  # one that hardly moves may take no time at all
+        inverse = np.clip(np.nan_to_num(inverse, nan=FASTEST, posinf=FASTEST), SLOWEST, FASTEST)
+    wrong = ~((inverse >= SLOWEST) & (inverse <= FASTEST))
+    if wrong.any():
+        raise InputError(
+            "MOVE_TIME", place(moves),
+            f"a move of {moves.duration[wrong][0]:.4g} s cannot be written; moves take {60.0 / FASTEST:.2g} to"
+            f" {60.0 / SLOWEST:.0f} s: use another speed or a larger chord error",
+        )
+    return inverse
+
+
+def _tip_feeds(moves: Moves) -> Array:
+    """(n,) mm/min at the tip."""
+    feeds: Array = 60.0 * moves.speed
+    wrong = ~((feeds >= SLOWEST) & (feeds <= FASTEST))
+    if wrong.any():
+        raise InputError(
+            "MOVE_SPEED", place(moves),
+            f"{moves.speed[wrong][0]:.4g} mm/s cannot be written; use {SLOWEST / 60.0:.2g} to {FASTEST / 60.0:.0f} mm/s",
+        )
+    return feeds

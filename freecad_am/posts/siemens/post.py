@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Siemens: SINUMERIK 840D programs of linear blocks, for tables and heads with two rotary axes.
+
+Joint motion is told in plain axes with the time of each move (G93) or the speed of the linear axes (G94); Cartesian
+motion in positions and direction vectors of the torch with the transformation TRAORI, but for the rapids between beads,
+which stay in plain axes, so that every bead begins with known turns. What is written, what must be set on the controller
+and what was confirmed where: docs/posts/siemens.md.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.controller import Controller
+from ...core.issues import InputError
+from ...core.program import (
+    LINEAR_MOVE,
+    ROTARY,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Program,
+    Schedule,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
+from ..names import Naming
+from ..nc import numbers
+from ..nc import parts as common
+from ..on_controller import on_controller
+from ..parts import Piece, Run, grouped, lines_of, packed, place, whole
+from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_schedules
+from .read import read
+
+__all__ = ["read", "write"]
+
+Array = NDArray[np.float64]
+
+_NO_END = 10**9
+CONTROLLER = Controller()
+NO_WIRE = ""  # the speed of the wire can follow that of the torch
+NO_SCHEDULE = {"arc": "it has no arc instructions"}
+LAST_SCHEDULE = 65535
+MOVE_LINE = re.compile(rb"N\d+ (?:G9 )?G[01] ")
+ON_CONTROLLER = on_controller(
+    "The tool offset has the torch's length, and G500 is the machine's zero",
+    "TRAORI and the work offset are those of the machine file and of the remarks",
+    "The words that switch the deposit and the inputs are taken up in the PLC",
+    "The feed override is 100 %",
+)
+# an endless axis goes the shorter way
+LARGEST_TURN = 180.0 - 0.001
+# address extensions of H words, numbers of inputs the controller reads itself, and of analogue inputs and outputs
+LAST_OUTPUT, LAST_INPUT, LAST_ANALOGUE = 99, 32, 8
+
+# M words that stop or end a program, change the tool or set the spindle
+_TAKEN = frozenset(f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 17, 19, 30, 40, 41, 42, 43, 44, 45, 70))
+# words of the language that begin like a name; what else it knows is found by trying it on the controller
+_RESERVED = frozenset(
+    ("AND", "ATRANS", "AROT", "BRISK", "CASE", "COMPCAD", "COMPCURV", "COMPOF", "COMPON", "DEF", "DIV", "ELSE", "ENDFOR")
+    + ("ENDIF", "ENDLOOP", "ENDWHILE", "EXTERN", "FALSE", "FFWOF", "FFWON", "FGROUP", "FOR", "GOTO", "GOTOB", "GOTOF", "IF")
+    + ("LOOP", "MCALL", "MOD", "MSG", "NOT", "OR", "ORIMKS", "ORIVECT", "ORIWKS", "PROC", "REPEAT", "RET", "ROT", "SET")
+    + ("SETMS", "SOFT", "STOPRE", "SUPA", "TO", "TRAFOOF", "TRANS", "TRAORI", "TRUE", "UNTIL", "WHILE", "XOR")
+)
+NAMING = Naming(
+    str.upper, "[A-Z]{2}|_[A-Z]", "two letters, or an underscore and a letter", longest=24, spare=3, prefix="AM_",
+    reserved=_RESERVED,
+)
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The files of a program, name -> content; the same bytes for the same program.
+
+    One main program NAME.MPF where its points fit, else NAME.MPF calls NAME01.SPF, NAME02.SPF and so on, each with whole
+    beads; a bead with more points has a part of its own.
+
+    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_STEP, MOVE_TIME, MOVE_SPEED,
+    NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    remarks = [f"; {line}" for words in (*program.remarks, *_own_remarks(program)) for line in common.wrapped(words)]
+    groups = list(grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block)))
+    parts = packed(groups, program.max_points, _NO_END, whole)
+    if len(parts) == 1:
+        return {f"{name}.MPF": _file([*remarks, *_HEAD, *_modes(program), *_lines(program, parts[0]), "M30"])}
+    names = NAMING.parts(name, len(parts))
+    refuse_calls_of_own(program, {name, *names}, program_name)
+    files = {f"{name}.MPF": _file([*remarks, *_HEAD, *names, "M30"])}
+    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+        lines = [f"; part {number} of {len(parts)}", *_HEAD, *_modes(program), *_lines(program, pieces), "M17"]
+        files[f"{part}.SPF"] = _file(lines)
+    return files
+
+
+def program_name(name: str, where: str) -> str:
+    """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    return NAMING.checked(name, where)
+
+
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
+    """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
+    common.refuse_setup("siemens", motion, setup)
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    common.refuse_table(program, "siemens")
+    common.refuse_wire_output(program, LAST_ANALOGUE)
+    refuse_cooling(program, LAST_ANALOGUE)
+    _refuse_schedules(program)
+    if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_OUTPUT:
+        raise InputError(
+            "DEPOSIT_OUTPUT", "program.deposit_output",
+            f"H words have address extensions to {LAST_OUTPUT}, not {program.deposit_output}; use another output, or"
+            " program.nc.deposit_on and deposit_off",
+        )
+    common.refuse_words(program, _TAKEN)
+    for block in program.blocks:
+        if isinstance(block, WaitInput) and block.number > LAST_INPUT:
+            raise InputError(
+                "DEPOSIT_INPUT", "process.between_layers.input",
+                f"the controller's program reads inputs 1 to {LAST_INPUT}, not {block.number}; use one of these",
+            )
+    refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
+    _refuse_endless_steps(program)
+
+
+def _refuse_schedules(program: Program) -> None:
+    refuse_schedules(program, LAST_OUTPUT, LAST_SCHEDULE)
+    own = program.nc.deposit_on or f"H{program.deposit_output}="
+    if any(isinstance(block, Schedule) for block in program.blocks) and own.startswith(f"H{program.schedule_output}="):
+        raise InputError(
+            "SCHEDULE", "program.schedule.output", f"H{program.schedule_output} switches the deposit; use another one for "
+            "schedules",
+        )
+
+
+def _refuse_endless_steps(program: Program) -> None:
+    """C=DC(...) takes the shorter way, so a move of half a turn or more would go wrong."""
+    axes = np.flatnonzero(program.endless)
+    degrees = np.degrees(np.concatenate([run.joints for run in program.moves])[:, axes])
+    steps = np.abs(np.diff(degrees, axis=0))
+    if (steps > LARGEST_TURN).any():
+        move, axis = np.argwhere(steps > LARGEST_TURN)[0]
+        places = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
+        raise InputError(
+            "ENDLESS_STEP", place(program.moves[places[move + 1]]),
+            f"axis {program.axis_names[axes[axis]]} turns {steps[move, axis]:.1f} deg in one move; an axis without end goes"
+            " less than 180 deg per move: add points, or limit the axis",
+        )
+
+
+def _own_remarks(program: Program) -> Iterator[str]:
+    if program.motion == "cartesian":
+        yield f"{_offset(program.user_frame)}: the program origin with the rotary axes at zero, from the table's face"
+        if program.carried is not None:
+            x, y, z, *angles = program.carried
+            yield f"X {x:.4f} Y {y:.4f} Z {z:.4f}, then Z {{}} Y {{}} X {{}} deg (RPY)".format(*_rpy(angles))
+    for name, endless in zip(program.axis_names, program.endless, strict=True):
+        if endless:
+            yield f"axis {name} turns without end: a modulo rotary axis"
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _rpy(bryant: Sequence[float]) -> tuple[str, ...]:
+    """Degrees about Z, the new Y and the new X, as work offsets count them, of the rotation Rx Ry Rz."""
+    (sa, sb, sc), (ca, cb, cc) = np.sin(bryant).tolist(), np.cos(bryant).tolist()
+    across = math.hypot(cb * cc, ca * sc + sa * sb * cc)
+    z, y = math.atan2(ca * sc + sa * sb * cc, cb * cc), math.atan2(ca * sb * cc - sa * sc, across)
+    x = math.atan2(sa * cc + ca * sb * sc, ca * cb)
+    if across < 1e-9:
+        z, x = math.atan2(cb * sc, ca * cc - sa * sb * sc), 0.0
+    return tuple(f"{math.degrees(angle) + 0.0:.4f}" for angle in (z, y, x))
+
+
+_HEAD = ["G17 G710 G40 G90"]
+_WIRE = "$A_OUTA[{}]={}"
+
+
+def _modes(program: Program) -> list[str]:
+    """What moves begin with: the zero frame, the tool's length, smoothing, what a feed in mm/min is the speed of."""
+    smooth = ["SOFT FFWON", "G642"] if program.nc.smooth else ["BRISK FFWOF", "G64"]
+    path = ["FGROUP(X,Y,Z)"] if program.nc.path_feed or program.motion == "cartesian" else []
+    return [f"G500 D{program.tool_frame}", *smooth, *path]
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    cartesian = program.motion == "cartesian"
+    if isinstance(block, DepositOn):
+        wire = [] if block.wire is None else [_WIRE.format(program.nc.wire_output, *numbers.wire(program, [block.wire]))]
+        on = [] if program.dry_run else [*wire, _output(program, True), *_dwell(block.lead)]
+        return [*([_offset(program.user_frame), "TRAORI", "ORIWKS ORIVECT"] if cartesian else []), *on]
+    if isinstance(block, DepositOff):
+        off = [] if program.dry_run else [*_dwell(block.lead), _output(program, False)]
+        return [*off, *(["TRAFOOF", "G500"] if cartesian else [])]
+    if isinstance(block, Schedule):
+        return [f"H{program.schedule_output}={block.number}"]
+    if isinstance(block, LayerStart):
+        return [f"; layer {block.layer}"]
+    if isinstance(block, Wait):
+        return _dwell(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"WHILE $A_IN[{block.number}]==0", *_dwell(0.1), "ENDWHILE"]
+    if isinstance(block, WaitBelow):
+        return [f"WHILE $A_INA[{block.number}]>={numbers.level(block.below)}", *_dwell(0.1), "ENDWHILE"]
+    if isinstance(block, Call):
+        return [program_name(block.program, block.where), *_HEAD, *_modes(program)]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _output(program: Program, on: bool) -> str:
+    if program.nc.deposit_on:
+        return program.nc.deposit_on if on else program.nc.deposit_off
+    return f"H{program.deposit_output}={int(on)}"
+
+
+def _offset(number: int) -> str:
+    """The settable work offset: G500 for none, G54 to G57, G505 and on."""
+    return "G500" if number == 0 else f"G{53 + number}" if number <= 4 else f"G{500 + number}"
+
+
+def _dwell(seconds: float) -> list[str]:
+    return common.dwell("F", seconds)
+
+
+def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
+    return lines_of(pieces, lambda run: _motion(program, run))
+
+
+def _motion(program: Program, run: Run) -> list[str]:
+    """Blocks through all points of a run, with an exact stop where the machine stands still."""
+    moves, part = run.moves, slice(run.start, run.stop)
+    if moves.interpolation == LINEAR_MOVE:
+        assert moves.position is not None and moves.direction is not None
+        vector = " ".join(f"{name}=%.{numbers.VECTOR_DECIMALS}f" for name in ("A3", "B3", "C3"))
+        values = np.hstack([
+            np.round(moves.position[part], numbers.DECIMALS), np.round(moves.direction[part], numbers.VECTOR_DECIMALS),
+        ])  # fmt: skip
+        words = numbers.rows(f"{numbers.template('XYZ')} {vector}", values + 0.0)
+    else:
+        words = numbers.rows(*_axis_words(program, moves.joints[part]))
+    blocks = numbers.blocks(words, run.words[part])
+    ahead = len(blocks) - len(words)
+    for row in np.flatnonzero(moves.stops[part]).tolist():
+        blocks[ahead + row] = f"G9 {blocks[ahead + row]}"
+    # a synchronized action of one block: it takes effect where that begins, without a stop
+    told = numbers.told_of_wire(program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}"))
+    # the time of one block would be that of all those compressed into one, and so would the wire's speed
+    by_speed = all(feed.startswith(numbers.PATH) for feed in run.words[part])
+    if program.nc.compress and by_speed and len(told) == len(blocks):
+        return [blocks[0], "COMPCAD", *blocks[1:], "COMPOF"]
+    return told
+
+
+def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:
+    """The template and the values of the axes; one without end in [0, 360), by the shorter way."""
+    values = numbers.shown(joints, program.axis_kinds)
+    endless = np.array(program.endless)
+    values[:, endless] = np.round(values[:, endless] % 360.0, numbers.DECIMALS) % 360.0
+    words = [
+        f"{name}=DC(%.{numbers.DECIMALS}f)" if end and kind == ROTARY else numbers.template([name])
+        for name, kind, end in zip(program.axis_names, program.axis_kinds, program.endless, strict=True)
+    ]
+    return " ".join(words), values
+
+
+def _file(lines: list[str]) -> bytes:
+    """The lines with block numbers, but for remarks."""
+    numbered, number = [], 0
+    for line in lines:
+        if line.startswith(";"):
+            numbered.append(line)
+            continue
+        number += 10
+        numbered.append(f"N{number} {line}")
+    return ("\n".join(numbered) + "\n").encode("ascii")

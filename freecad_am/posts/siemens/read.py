@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads SINUMERIK programs back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. Understands the plain blocks a path needs and refuses every other one, so that no motion
+can hide in what was not understood.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from ...core.read_moves import ReadMoves
+from ..nc.read import SLIDES, TIME, TIP, Shape, Track, unreadable
+
+_NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
+_WORD = re.compile(rf"([XYZABCF])=?({_NUMBER})$|([ABC]3)=({_NUMBER})$")
+_SHORTER = re.compile(rf"([ABC])=DC\(({_NUMBER})\)$")
+_NUMBERED = re.compile(r"N(\d+)(?: +|$)")
+_NAME = re.compile(r"(?:[A-Z]{2}|_[A-Z])[A-Z0-9_]*$")
+_OUTPUT = re.compile(r"\$A_OUT\[(\d+)\]=([01])$|H(\d+)=(\d+)$|M(\d+)$")
+_WIRE = re.compile(rf"(DO )?\$A_OUTA\[(\d+)\]=({_NUMBER})$")
+_OFFSET = re.compile(r"G5(?:0[05-9]|[4-7]|[1-9]\d)$")
+_TIP_WORDS = {*"XYZF", "A3", "B3", "C3"}
+_FEEDS = {"G93", "G94"}
+_UNITS = {"G710", "G90"}
+_COMPRESS = {"COMPCAD": True, "COMPCURV": True, "COMPON": True, "COMPOF": False}
+_HARMLESS = re.compile(r"(?:G17|G40|G9|ORIVECT|STOPRE|FGROUP\(X,Y,Z\))$")
+# rounding of corners with the jerk limit and feed forward that belong to it
+_CORNERS = re.compile(r"G60|G64\d?|SOFT|BRISK|FFWON|FFWOF")
+_SMOOTH, _HARD = {"SOFT", "FFWON"}, {"BRISK", "FFWOF"}
+_PAIRED = {"G642": _SMOOTH, "G64": _HARD}
+_TOOL = re.compile(r"D(\d+)$")
+_LAYER = re.compile(r"; ?LAYER (\d+)$")
+_WAIT = re.compile(r"WHILE \$A_IN\[(\d+)\]==0$")
+_COOL = re.compile(rf"WHILE \$A_INA\[(\d+)\]>=({_NUMBER})$")
+_DWELL = re.compile(rf"G4 F({_NUMBER})$")
+
+
+@dataclass
+class _State:
+    """What is set while the programs are followed. switching: words that switch the deposit, of those that a number is set
+    to."""
+
+    files: dict[str, list[tuple[str, str]]]
+    switching: set[str] = field(default_factory=set)
+    track: Track = field(default_factory=Track)
+    units: set[str] = field(default_factory=set)
+    feed: str = "G94"
+    linear: bool = False
+    offset: str = ""
+    tip: bool = False
+    workpiece: bool = False
+    group: bool = False
+    corners: set[str] = field(default_factory=set)
+    compress: bool = False
+    waiting: bool = False
+    shape: Shape | None = None
+    output: str = ""
+    on_word: str = ""
+    off_word: str = ""
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the files in the order of execution, beginning with the one main program.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
+    main = [name for name in files if name.upper().endswith(".MPF")]
+    if len(main) != 1 or any(not name.upper().endswith((".MPF", ".SPF")) for name in files):
+        raise unreadable("program", f"there are {len(main)} main programs, expected one with its parts")
+    programs = {name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()}
+    words = {text for blocks in programs.values() for _, text in blocks}
+    # an H word that is ever 0 switches; others tell schedules, which begin with 1
+    state = _State(programs, switching={text.partition("=")[0] for text in words if text.endswith("=0")})
+    start = main[0].upper().rpartition(".")[0]
+    _follow(start, state, ())
+    if state.track.on:
+        raise unreadable("program", "it ends with the deposit on")
+    return state.track.moves()
+
+
+def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
+    """Where each block is, and its words; comments and block numbers are gone."""
+    blocks, last = [], 0
+    for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
+        text = line.partition(";")[0].strip() if not _LAYER.match(line) else line.strip()
+        where = f"{file} line {number}"
+        if numbered := _NUMBERED.match(text):
+            if int(numbered[1]) <= last:
+                raise unreadable(where, "block numbers do not rise")
+            last, text = int(numbered[1]), text[numbered.end() :]
+        if text:
+            tidy = text.isprintable() and "  " not in text
+            blocks.append((where, text if tidy else " ".join(text.split())))
+    return blocks
+
+
+def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
+    """Carry out the blocks of a program in order, and of those it calls."""
+    end = "M17" if callers else "M30"
+    blocks = state.files[name]
+    if not blocks or blocks[-1][1] != end or name in callers:
+        raise unreadable(name, f"it does not end with {end}, or calls itself")
+    for where, text in blocks[:-1]:
+        words = None if state.shape is None or state.waiting else state.shape.words(text)
+        if state.shape is not None and words is not None:
+            state.linear = True
+            state.track.shorter |= state.shape.shorter
+            _move(where, words, state, text.startswith("G9 "))
+        elif state.waiting:
+            if text == "ENDWHILE":
+                state.waiting = False
+            elif not _DWELL.match(text):
+                raise unreadable(where, f"{text!r} in a loop that waits for an input")
+        elif given := _WAIT.match(text):
+            state.waiting = True
+            state.track.happens("input", float(given[1]))
+        elif cool := _COOL.match(text):
+            if state.track.on:
+                raise unreadable(where, "it is waited for an analogue input within a bead")
+            state.waiting = True
+            state.track.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
+        elif dwell := _DWELL.match(text):
+            state.track.waits(dwell[1])
+        elif layer := _LAYER.match(text):
+            state.track.happens("layer", float(layer[1]))
+        else:
+            _block(where, text, state, (*callers, name))
+    if state.waiting:
+        raise unreadable(name, "it ends within a loop")
+
+
+def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> None:
+    if wire := _WIRE.match(text):
+        if state.compress or (not wire[1] and state.track.on):
+            raise unreadable(where, "the analogue output stops the machine within a bead, or its compressor")
+        state.track.set_wire(int(wire[2]), wire[3], where)
+        return
+    words: dict[str, str] = {}
+    rest = []
+    for token in text.split():
+        if shorter := _SHORTER.match(token):
+            state.track.shorter.add(shorter[1])
+        if found := _WORD.match(token) or shorter:
+            address, value = (group for group in found.groups() if group is not None)
+            if address in words:
+                raise unreadable(where, f"{address} stands there twice")
+            words[address] = value
+        elif token == "G1":
+            state.linear = True
+        elif token in ("TRAORI", "TRAFOOF") and state.track.on:
+            raise unreadable(where, "the transformation changes while the deposit is on")
+        elif not _mode(token, state):
+            rest.append(token)
+    if words:
+        if rest:
+            raise unreadable(where, f"{rest[0]!r} with a move is not understood")
+        _move(where, words, state, "G9" in text.split())
+        state.shape = Shape.of(text, "G9")
+    elif len(rest) == 1:
+        _other(where, rest[0], state, callers)
+    elif rest:
+        raise unreadable(where, f"{text!r} is not understood")
+
+
+def _mode(token: str, state: _State) -> bool:
+    """Whether the word sets a mode; it is set then."""
+    if token in _FEEDS:
+        state.feed = token
+    elif token in _UNITS:
+        state.units.add(token)
+    elif _OFFSET.match(token):
+        state.offset = token
+        state.track.frame = float(token[1:]) - (53.0 if len(token) == 3 else 500.0)
+    elif tool := _TOOL.match(token):
+        state.track.tool = float(tool[1])
+    elif _CORNERS.fullmatch(token):
+        if token.startswith("G6"):
+            state.corners -= {word for word in state.corners if word.startswith("G6")}
+            state.track.exact = token == "G60"
+        else:
+            state.corners -= {"SOFT", "BRISK"} if token in ("SOFT", "BRISK") else {"FFWON", "FFWOF"}
+        state.corners.add(token)
+    elif token in _COMPRESS:
+        state.compress = _COMPRESS[token]
+    elif token in ("TRAORI", "TRAFOOF"):
+        state.tip, state.workpiece = token == "TRAORI", False
+    elif token == "ORIWKS":
+        state.workpiece = True
+    else:
+        state.group |= token.startswith("FGROUP")
+        return _HARMLESS.match(token) is not None
+    return True
+
+
+def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None:
+    if not state.linear or state.units != _UNITS:
+        raise unreadable(where, "a move before G1, G90 and G710 are said")
+    if state.corners and not any(state.corners == {word, *others} for word, others in _PAIRED.items()):
+        raise unreadable(where, f"{' '.join(sorted(state.corners))} do not belong together")
+    if state.tip:
+        known = state.workpiece and state.group and state.offset
+        if state.feed != "G94" or not known or words.keys() != _TIP_WORDS:
+            raise unreadable(where, "with TRAORI a move needs X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS and a work offset")
+        state.track.add(TIP, words, where, stops)
+        return
+    if state.offset != "G500":
+        raise unreadable(where, "axes are moved in another frame than that of the machine")
+    if state.feed == "G94":
+        if not state.group:
+            raise unreadable(where, "it is not said which axes the feed is the speed of")
+        state.track.add(SLIDES, words, where, stops)
+        return
+    if state.compress:
+        raise unreadable(where, "blocks that tell a time are compressed into one, which would take the time of the last")
+    state.track.add(TIME, words, where, stops)
+
+
+def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> None:
+    output = _OUTPUT.match(token)
+    if output and output[3] and token.partition("=")[0] not in state.switching:
+        if state.compress or state.track.on:
+            raise unreadable(where, "a schedule is told within a bead")
+        state.track.happens("schedule", float(output[3]), float(output[4]))
+    elif output:
+        if output[5] in ("0", "1", "2", "6", "17", "30"):
+            raise unreadable(where, f"{token!r} is not understood")
+        _switch(where, token, output, state)
+    elif token in state.files:
+        if state.track.on or state.tip:
+            raise unreadable(where, "another program is called within a bead")
+        _follow(token, state, callers)
+    elif not _NAME.match(token) or state.track.on or state.tip or state.compress:
+        raise unreadable(where, f"{token!r} is not understood")
+    else:
+        # a program of the controller; what it leaves set is not known
+        state.units, state.offset, state.group, state.linear, state.corners = set(), "", False, False, set()
+        state.track.happens("call", token)
+        state.track.frame = state.track.tool = float("nan")
+
+
+def _switch(where: str, token: str, output: re.Match[str], state: _State) -> None:
+    """The deposit: an output or H word with its value; of two M words the first one switches on."""
+    if output[5]:
+        state.on_word = state.on_word or token
+        on = token == state.on_word
+        if not on:
+            state.off_word = state.off_word or token
+        wrong = token not in (state.on_word, state.off_word)
+        name = "M"
+    else:
+        name, on, wrong = token.partition("=")[0], (output[2] or output[4]) != "0", False
+    number = float(output[1] or output[3] or 0)
+    if wrong or state.output not in ("", name):
+        raise unreadable(where, "a second output is switched")
+    state.output, state.track.on = name, on
+    state.track.happens("on" if on else "off", number, token)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a VAL 3 application says in numbers: joint values, frames, motion descriptors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
+from ..parts import place
+
+Array = NDArray[np.float64]
+
+ANGLE_DECIMALS, LENGTH_DECIMALS = 5, 4
+# what a descriptor does not limit: mm/s and deg/s no arm reaches
+UNLIMITED = "99999"
+# mm/s, and percent of the nominal joint speed
+SLOWEST, LEAST_PERCENT = 0.01, 0.001
+
+
+def degrees(joints: Array) -> Array:
+    """Joint values (n, axes) in degrees as the text has them."""
+    rounded: Array = np.asarray(np.round(np.degrees(joints), ANGLE_DECIMALS) + 0.0, dtype=np.float64)
+    return rounded
+
+
+def frames(position: Array, rotation: Array) -> Array:
+    """X Y Z in mm and RX RY RZ in degrees, (n, 6), of positions (n, 3) and rotations (n, 3, 3) = Rx Ry Rz."""
+    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
+    rotation = np.array(rotation.transpose(1, 2, 0), order="C").transpose(2, 0, 1)
+    upright = np.hypot(rotation[:, 1, 2], rotation[:, 2, 2])
+    rx = np.where(upright > 1e-12, np.arctan2(-rotation[:, 1, 2], rotation[:, 2, 2]), 0.0)
+    sine, cosine = np.sin(rx), np.cos(rx)
+    # with the RX found, so that the three give the rotation back even where RX and RZ turn about one axis
+    rz = np.arctan2(
+        cosine * rotation[:, 1, 0] + sine * rotation[:, 2, 0], cosine * rotation[:, 1, 1] + sine * rotation[:, 2, 1]
+    )
+    angles = np.stack((rx, np.arctan2(rotation[:, 0, 2], upright), rz), axis=1)
+    values: Array = np.hstack((np.round(position, LENGTH_DECIMALS), np.round(np.degrees(angles), ANGLE_DECIMALS))) + 0.0
+    return values
+
+
+class Descriptors:
+    """The motion descriptors of the moves of a program, asked for block by block in the order of motion."""
+
+    def __init__(self, program: Program) -> None:
+        self.cartesian, self.blend = program.motion == "cartesian", program.blend
+        self.nominal: Array = np.degrees(np.array(program.max_speed))
+        self.before: Array | None = None
+
+    def __call__(self, moves: Moves) -> Sequence[str]:
+        """The attributes of one descriptor per move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
+        shown = degrees(moves.joints)
+        blend = self._blend(moves)
+        if moves.interpolation == LINEAR_MOVE:
+            words = [_descriptor("100", f"{speed:.3f}", blend) for speed in _speeds(moves).tolist()]
+        else:
+            start = shown[:1] if self.before is None else self.before
+            percent = self._percent(moves, np.diff(shown, axis=0, prepend=start))
+            if self.before is None:
+                percent[0] = 100.0 * FIRST_SHARE
+            words = [_descriptor(f"{share:.5f}", UNLIMITED, blend) for share in percent.tolist()]
+        self.before = shown[-1:]
+        return words
+
+    def _percent(self, moves: Moves, steps: Array) -> Array:
+        """Of the nominal joint speed, (n,): the fastest axis gets through its step in the time of the move."""
+        share = (np.abs(steps) / self.nominal).max(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            percent = 100.0 * share / moves.duration
+        wrong = (share > 0.0) & ~(percent <= 100.0 + LEAST_PERCENT)
+        if moves.kind == DEPOSIT:
+            wrong |= percent < LEAST_PERCENT
+        if self.before is None:
+            wrong[0] = False
+        if wrong.any():
+            raise InputError(
+                "JOINT_SPEED", place(moves),
+                f"a move would need {percent[wrong][0]:.4g} % of the largest joint speed, which cannot be written; use"
+                f" another speed, so that it is {LEAST_PERCENT} to 100 %",
+            )
+        return np.where(share > 0.0, np.clip(percent, LEAST_PERCENT, 100.0), 100.0)
+
+    def _blend(self, moves: Moves) -> str:
+        """Corners within a bead are passed through, never farther from one than half its shortest move."""
+        distance = 0.0
+        if moves.kind == DEPOSIT:
+            shortest = float(np.nan_to_num(moves.speed * moves.duration).min())
+            distance = math.floor(1000.0 * min(0.005 * self.blend * shortest, 100.0)) / 1000.0
+        kind = ("Cartesian" if self.cartesian else "joint") if distance > 0.0 else "off"
+        return f'blend="{kind}" leave="{distance:.3f}" reach="{distance:.3f}"'
+
+
+def _speeds(moves: Moves) -> Array:
+    fits = (moves.speed >= SLOWEST) & (moves.speed < float(UNLIMITED))
+    if not fits.all():
+        raise InputError(
+            "MOVE_SPEED", place(moves), f"{moves.speed[~fits][0]:.4g} mm/s cannot be written; use at least {SLOWEST} mm/s"
+        )
+    return moves.speed
+
+
+def _descriptor(percent: str, speed: str, blend: str) -> str:
+    return f'accel="100" vel="{percent}" decel="100" tmax="{speed}" rmax="{UNLIMITED}" {blend}'

@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stäubli: VAL 3 applications of joint moves, or of linear moves with the speed held at the deposition point.
+
+With the part on the robot linear moves have a fixed target, the deposition point, and a tool of their own each: the
+point of the part that is to come there (Chalvin 2019, III.A, "jauges outil"). What is written, what must be set on
+the controller and what was confirmed where: docs/posts/staubli.md.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.controller import Controller
+from ...core.issues import InputError
+from ...core.program import JOINT_MOVE, Block, Call, DepositOff, DepositOn, LayerStart, Program, Six, Wait, WaitInput
+from ..names import Naming
+from ..on_controller import on_controller
+from ..parts import Piece, Run, grouped, packed, size, unbroken, withdrawn
+from ..refusals import (
+    refuse_cooling,
+    refuse_endless,
+    refuse_incomplete,
+    refuse_wire,
+    refuse_without_positions,
+    refuse_without_speeds,
+)
+from . import numbers, text
+from .read import read
+
+__all__ = ["read", "write"]
+
+Array = NDArray[np.float64]
+
+NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
+# why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(whole_beads=True)
+NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
+NO_SCHEDULE = {
+    "output": "that VAL 3 sets several outputs to one number was not found documented",
+    "arc": "VAL 3 has no arc instructions",
+}
+MOVE_LINE = re.compile(rb" *move[jl]\(")
+ON_CONTROLLER = on_controller(
+    "The controller's world is the robot's base, and joint speeds are its nominal ones",
+    "The outputs and inputs are linked to the process",
+    "Loaded parts and tools that stand on other tools have been tried with a dry run",
+    "Payload is set and the monitor speed is 100 %",
+)
+AXES = 6
+SETUPS = ("part-on-robot", "tool-on-robot")
+PART = "prog"  # alias of the part that is loaded
+
+# words of the language that an alias of a library cannot be; case does not count in file names
+_RESERVED = frozenset(
+    ("AND", "BEGIN", "BREAK", "CALL", "CASE", "DEFAULT", "DO", "ELSE", "ELSEIF", "END", "ENDFOR", "ENDIF", "ENDSWITCH")
+    + ("ENDWHILE", "FALSE", "FLANGE", "FOR", "IF", "NOT", "OR", "RETURN", "START", "STEP", "STOP", "SWITCH", "THEN", "TO")
+    + ("TRUE", "UNTIL", "WHILE", "WORLD", "XOR", PART.upper())
+)
+NAMING = Naming(
+    str, "[A-Za-z]", "a letter", longest=15, spare=3, prefix="am_", reserved=_RESERVED, what="an application's name"
+)
+_LOAD = """\
+if {alias}:libLoad("./{part}")!=0
+  popUpMsg("{part} cannot be loaded")
+  return
+endIf
+call {alias}:start()"""
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The files of a program, path with slashes -> content; the same bytes for the same program.
+
+    One application NAME/ where its points fit, else NAME/ loads NAME/NAME01/, NAME/NAME02/ and so on one after the
+    other, each with whole beads. The duration of the very first move is not used.
+
+    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, NO_JOINT_SPEED, JOINT_SPEED,
+    MOVE_SPEED, NO_POSITIONS, BEAD_TOO_LONG, NO_WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)]
+    groups = list(grouped(program, numbers.Descriptors(program), lambda block: _instructions(program, block)))
+    if size([piece for group in groups for piece in group])[0] <= program.max_points:
+        (pieces,) = packed(groups, program.max_points, _NO_END, unbroken)
+        return _application(program, name, name, remarks, pieces)
+    # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
+    parts = withdrawn(packed(groups, program.max_points - 1, _NO_END, unbroken))
+    names = NAMING.parts(name, len(parts))
+    load = [line for part in names for line in _LOAD.format(alias=PART, part=part).split("\n")]
+    files = _files(program, name, name, [*remarks, *load], {}, {PART: f"./{names[0]}/{names[0]}.pjx"})
+    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+        head = text.remark(f"part {number} of {len(parts)}")
+        files |= _application(program, f"{name}/{part}", part, head, pieces)
+    return files
+
+
+_NO_END = 10**9  # programs are short: moves are in the data
+
+
+def program_name(name: str, where: str) -> str:
+    """The name on the controller. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    return NAMING.checked(name, where)
+
+
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
+    """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
+    if setup not in SETUPS:
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post staubli cannot write {setup} ({motion} motion)")
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    refuse_incomplete(program, "staubli", AXES)
+    refuse_wire(program, NO_WIRE)
+    refuse_cooling(program, 0, NO_ANALOGUE)
+    refuse_endless(program)
+    refuse_without_speeds(program, AXES)
+    refuse_without_positions(program)
+    for block in program.blocks:
+        if isinstance(block, Call) and re.fullmatch(rf"{program.name}\d*", program_name(block.program, block.where), re.I):
+            raise InputError(
+                "PROGRAM_NAME", block.where, f"{block.program!r} may be a program of this very job; call one of another name"
+            )
+
+
+_CALL = "process.between_layers.call"
+
+
+
+def _own_remarks(program: Program) -> Iterator[str]:
+    if program.motion == "cartesian" and program.setup == "part-on-robot":
+        yield "pTarget is the deposition point, tCarried the program origin on the flange"
+        yield "each tPath is the point of the part that comes to pTarget, seen from the program origin"
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    if isinstance(block, DepositOn):
+        return [] if program.dry_run else ["doDeposit=true", *text.delay(block.lead)]
+    if isinstance(block, DepositOff):
+        return [] if program.dry_run else [*text.delay(block.lead), "doDeposit=false"]
+    if isinstance(block, LayerStart):
+        return text.remark(f"layer {block.layer}")
+    if isinstance(block, Wait):
+        return text.delay(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"wait(diInput{block.number}==true)"]
+    if isinstance(block, Call):
+        return [f"call {block.program}:start()"]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _application(
+    program: Program, folder: str, name: str, remarks: list[str], pieces: Sequence[Piece]
+) -> dict[str, bytes]:
+    arrays: dict[str, tuple[str, list[str]]] = {}
+    lines = list(remarks)
+    for piece in pieces:
+        lines += _motion(program, piece, arrays) if isinstance(piece, Run) else piece
+    libraries = {}
+    for block in program.blocks:
+        if isinstance(block, WaitInput) and f"wait(diInput{block.number}==true)" in lines:
+            arrays[f"diInput{block.number}"] = ("dio", [f'link="BasicIO-1\\%I{block.number - 1}"'])
+        if isinstance(block, Call) and f"call {block.program}:start()" in lines:
+            libraries[block.program] = f"Disk://{block.program}/{block.program}.pjx"
+    if program.motion == "cartesian":
+        arrays["fStation"] = ("frame", _single(program.station, 'fatherId="world[0]"'))
+    if program.motion == "cartesian" and program.setup == "part-on-robot":
+        arrays["pTarget"] = ("pointRx", _single(None, _POINT))
+    arrays["tCarried"] = ("tool", _single(program.carried, _TOOL))
+    return _files(program, folder, name, lines, arrays, libraries)
+
+
+_POINT = 'shoulder="ssame" elbow="esame" wrist="wsame" fatherId="fStation[0]"'
+_TOOL = 'fatherId="flange[0]"'
+_GAUGE = 'fatherId="tCarried[0]"'
+
+
+def _single(six: Six | None, more: str) -> list[str]:
+    values = np.zeros(6) if six is None else np.array([*six[:3], *np.degrees(six[3:])])
+    return text.frames(values[None] + 0.0, more)
+
+
+def _files(
+    program: Program, folder: str, name: str, lines: list[str], arrays: dict[str, tuple[str, list[str]]],
+    libraries: dict[str, str],
+) -> dict[str, bytes]:
+    off = [] if program.dry_run else ["doDeposit=false"]
+    if off:
+        arrays = {**arrays, "doDeposit": ("dio", [f'link="BasicIO-1\\%Q{program.deposit_output - 1}"'])}
+    return {
+        f"{folder}/{name}.pjx": text.project(name, ("start", "stop"), libraries),
+        f"{folder}/{name}.dtx": text.database(arrays),
+        f"{folder}/start.pgx": text.code("start", lines),
+        f"{folder}/stop.pgx": text.code("stop", ["resetMotion()", *off]),
+    }
+
+
+def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]) -> list[str]:
+    """Lines through all points of a run, with a stop at the last; the points and descriptors go to the arrays."""
+    moves, rows = run.moves, slice(run.start, run.stop)
+    if moves.interpolation == JOINT_MOVE:
+        pattern, array, kind = "movej(jPath[{point}],tCarried,mPath[{speed}])", "jPath", "jointRx"
+        values = text.joints(numbers.degrees(moves.joints[rows]))
+    else:
+        assert moves.position is not None and moves.rotation is not None
+        places = numbers.frames(moves.position[rows], moves.rotation[rows])
+        if program.setup == "part-on-robot":
+            pattern, array, kind = "movel(pTarget,tPath[{point}],mPath[{speed}])", "tPath", "tool"
+            values = text.frames(places, _GAUGE)
+        else:
+            pattern, array, kind = "movel(pPath[{point}],tCarried,mPath[{speed}])", "pPath", "pointRx"
+            values = text.frames(places, _POINT)
+    first = _appended(arrays, array, kind, values)
+    words = list(run.words[rows])
+    alike = len(set(words)) == 1
+    last = arrays["mPath"][1] if "mPath" in arrays else []
+    same = alike and last[-1:] == words[:1]
+    speed = len(last) - 1 if same else _appended(arrays, "mPath", "mdesc", words[:1] if alike else words)
+    if len(run) == 1:
+        return [pattern.format(point=first, speed=speed), "waitEndMove()"]
+    index = str(speed) if alike else "l_nI" if speed == first else f"l_nI{speed - first:+d}"
+    return [
+        f"for l_nI={first} to {first + len(run) - 1}", f"  {pattern.format(point='l_nI', speed=index)}", "endFor",
+        "waitEndMove()",
+    ]
+
+
+def _appended(arrays: dict[str, tuple[str, list[str]]], name: str, kind: str, values: list[str]) -> int:
+    """The index of the first of the values added to an array."""
+    held = arrays.setdefault(name, (kind, []))[1]
+    held += values
+    return len(held) - len(values)

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads VAL 3 applications back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. Understands the plain instructions a path needs and refuses every other one, so
+that no motion can hide in what was not understood.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.read_moves import Event, ReadMoves
+from .files import Application, Data, applications, unreadable
+from .moves import Step, moves_of
+
+Indices = NDArray[np.int64]
+
+_INDEX = r"(?:\[(\d+|l_nI(?:[+-]\d+)?)\])?"
+_MOVE = re.compile(rf"move([jl])\((\w+){_INDEX},(\w+){_INDEX},(\w+){_INDEX}\)$")
+_FOR = re.compile(r"for l_nI=(\d+) to (\d+)$")
+_OUTPUT = re.compile(r"(\w+)=(true|false)$")
+_CALL = re.compile(r"call (?:(\w+):)?(\w+)\(\)$")
+_LOAD = re.compile(r'if (\w+):libLoad\("\./(\w+)"\)!=0$')
+_DELAY = re.compile(r"delay\((\d+(?:\.(\d*))?)\)$")
+_WAIT = re.compile(r"wait\((\w+)==true\)$")
+_LAYER = re.compile(r"// layer (\d+)$")
+_NUMBER = re.compile(r".*%[IQ](\d+)$")
+
+
+@dataclass
+class _Run:
+    """What happened so far while the programs are followed."""
+
+    found: dict[str, Application]
+    steps: list[Step] = field(default_factory=list)
+    loaded: dict[tuple[str, str], str] = field(default_factory=dict)
+    output: str = ""
+    on: bool = False
+    moving: bool = False
+    moves: int = 0
+    events: list[Event] = field(default_factory=list)
+
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
+        """Something happens before the next move."""
+        self.events.append(Event(self.moves, kind, value, digits))
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the files in the order of execution, beginning with `start` of the outermost application.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
+    found = applications(files)
+    outer = [folder for folder in found if not any(folder.startswith(f"{other}/") for other in found)]
+    if len(outer) != 1:
+        raise unreadable("program", f"there are {len(outer)} applications, expected one with its parts")
+    run = _Run(found)
+    _follow(found[outer[0]], "start", run, ())
+    if not run.steps:
+        raise unreadable("program", "there are no moves")
+    if run.moving:
+        raise unreadable("program", "it ends before the last move does")
+    read_moves = dataclasses.replace(moves_of(run.steps), events=tuple(run.events))
+    for app in found.values():
+        _check_stop(app, run.output)
+    return read_moves
+
+
+def _check_stop(app: Application, output: str) -> None:
+    """Stopping an application must end its motion and switch off what it may have switched on."""
+    lines = [line for _, line in app.programs.get("stop", [])]
+    named = [name for name, data in app.data.items() if data.kind == "dio" and "%Q" in data.values[0].get("link", "")]
+    links = {app.data[name].values[0]["link"] for name in named}
+    if lines != ["resetMotion()", *(f"{name}=false" for name in named)] or links != ({output} if output else set()):
+        raise unreadable(f"{app.folder}/stop.pgx", "it does not end the motion and switch the deposit off")
+
+
+def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, str], ...]) -> None:
+    """Carry out the statements of a program in order, and of those it calls."""
+    here = (app.folder, name)
+    if name not in app.programs or here in callers:
+        raise unreadable(app.folder, f"{name} is no program of it, or calls itself")
+    statements = iter(app.programs[name])
+    for number, line in statements:
+        where = f"{app.folder}/{name}.pgx line {number}"
+        if loop := _FOR.match(line):
+            (_, inside), (_, end) = next(statements, (0, "")), next(statements, (0, ""))
+            if not _MOVE.match(inside) or end != "endFor" or int(loop[1]) > int(loop[2]):
+                raise unreadable(where, "only a loop over one move is understood")
+            _move(app, inside, np.arange(int(loop[1]), int(loop[2]) + 1), run, where)
+        elif _MOVE.match(line):
+            _move(app, line, np.zeros(0, np.int64), run, where)
+        elif line == "waitEndMove()":
+            run.moving = False
+            if run.steps:
+                run.steps[-1] = dataclasses.replace(run.steps[-1], stops=True)
+        elif layer := _LAYER.match(line):
+            run.happens("layer", float(layer[1]))
+        elif run.moving:
+            raise unreadable(where, f"{line!r} does not wait for the moves before it")
+        elif load := _LOAD.match(line):
+            _load(app, load[1], load[2], statements, run, where)
+        elif call := _CALL.match(line):
+            called = app if call[1] is None else _library(app, call[1], run, where)
+            if called is not None:
+                _follow(called, call[2], run, (*callers, here))
+            else:
+                run.happens("call", str(call[1]).upper() if call[2] == "start" else f"{call[1]}:{call[2]}")
+        else:
+            _other(app, line, run, where)
+
+
+def _load(
+    app: Application, alias: str, part: str, statements: Iterator[tuple[int, str]], run: _Run, where: str
+) -> None:
+    """Loading a part stops the program where it fails; the robot must not deposit meanwhile."""
+    rest = [next(statements, (0, ""))[1] for _ in range(3)]
+    if not rest[0].startswith("popUpMsg(") or rest[1:] != ["return", "endIf"]:
+        raise unreadable(where, "a part is loaded without stopping where it cannot be")
+    if run.on or f"{app.folder}/{part}" not in run.found or alias not in app.libraries:
+        raise unreadable(where, f"{part} is loaded while depositing, is not there, or {alias} is no library")
+    run.loaded[app.folder, alias] = f"{app.folder}/{part}"
+
+
+def _library(app: Application, alias: str, run: _Run, where: str) -> Application | None:
+    """The application behind an alias; None for one that stands elsewhere on the controller."""
+    if alias not in app.libraries:
+        raise unreadable(where, f"{alias} is no library of the project")
+    if (app.folder, alias) in run.loaded:
+        return run.found[run.loaded[app.folder, alias]]
+    if not app.libraries[alias].startswith("Disk://"):
+        raise unreadable(where, f"{alias} is called before it is loaded")
+    return None
+
+
+def _other(app: Application, line: str, run: _Run, where: str) -> None:
+    if output := _OUTPUT.match(line):
+        link = _link(app, output[1], "Q", where)
+        if run.output not in ("", link):
+            raise unreadable(where, "a second output is switched")
+        run.output, run.on = link, output[2] == "true"
+        run.happens("on" if run.on else "off", _number(link, where), output[1])
+    elif delay := _DELAY.match(line):
+        run.happens("wait", float(delay[1]), digits=0.5 * 10.0 ** -len(delay[2] or ""))
+    elif wait := _WAIT.match(line):
+        run.happens("input", _number(_link(app, wait[1], "I", where), where))
+    else:
+        raise unreadable(where, f"the instruction {line!r} is not understood")
+
+
+def _link(app: Application, name: str, letter: str, where: str) -> str:
+    data = app.data.get(name, Data("", ()))
+    if data.kind != "dio" or len(data.values) != 1 or f"%{letter}" not in data.values[0].get("link", ""):
+        raise unreadable(where, f"{name} is no digital {'output' if letter == 'Q' else 'input'} of the project")
+    return data.values[0]["link"]
+
+
+def _number(link: str, where: str) -> float:
+    """The number of an input or output, from 1."""
+    number = _NUMBER.match(link)
+    if number is None:
+        raise unreadable(where, f"{link!r} has no number")
+    return float(number[1]) + 1.0
+
+
+def _move(app: Application, line: str, counter: Indices, run: _Run, where: str) -> None:
+    match = _MOVE.match(line)
+    assert match is not None
+    letter, *arguments = match.groups()
+    names, kinds = arguments[0::2], ("pointRx" if letter == "l" else "jointRx", "tool", "mdesc")
+    rows = []
+    for name, kind, index in zip(names, kinds, arguments[1::2], strict=True):
+        data = app.data.get(name, Data("", ()))
+        taken = _indices(index, counter)
+        if data.kind != kind or taken is None or taken.min() < 0 or taken.max() >= len(data.values):
+            raise unreadable(where, f"{name} is not {kind} data of the project, or has not so many values")
+        rows.append(taken)
+    run.moving = True
+    run.moves += len(rows[0])
+    run.steps.append(Step(app, where, letter == "l", (names[0], names[1], names[2]), rows[0], rows[1], rows[2], run.on))
+
+
+def _indices(index: str | None, counter: Indices) -> Indices | None:
+    """The rows an index takes for each value of the counter; None for a counter outside its loop."""
+    if index is None or index.isdigit():
+        return np.full(max(len(counter), 1), int(index or 0))
+    return counter + int(index[4:] or 0) if len(counter) else None

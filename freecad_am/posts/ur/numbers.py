@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a URScript program says in numbers: metres, radians, rotation vectors, blend radii, times."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from ...core.program import LINEAR_MOVE, RAPID, Moves, Program
+from ..parts import place
+
+Array = NDArray[np.float64]
+
+DECIMALS = 7  # of rad and m
+# of the shorter one of the ways before and after a point, at most: blends that overlap make the controller leave points out
+LARGEST_SHARE = 0.4
+MICRON = 1e-6  # m, the step of a blend radius
+# s: the controller's own step, and the shortest time that is written
+CYCLE, SHORTEST = 0.002, 0.001
+# mm/s: a path speed is written to 0.001 mm/s
+SLOWEST, FASTEST = 0.01, 1000.0
+# mm on the flange: places for the point whose way the blends of joint moves count on, the part being carried
+TOOL_POINTS = np.array([[0, 0, 0], [200, 0, 0], [-200, 0, 0], [0, 200, 0], [0, -200, 0], [0, 0, 200]], dtype=np.float64)
+
+
+class Words:
+    """The words of each move about time or speed and blend, asked for block by block; and the tool point of the blends.
+
+    tool_point: mm on the flange, where the part is carried; None where the tip itself is the tool. Raises InputError
+    MOVE_TIME, MOVE_SPEED, BLEND_RADIUS.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self.tool_point, ways = _ways(program)
+        radii = _radii(program, ways)
+        counts = np.cumsum([0] + [len(run) for run in program.moves])
+        self.radii = {id(run): radii[start : start + len(run)] for run, start in zip(program.moves, counts.tolist())}
+
+    def __call__(self, moves: Moves) -> list[str]:
+        """`t=..., r=...` of joint moves, `v=..., r=...` of straight ones."""
+        if moves.interpolation == LINEAR_MOVE:
+            told = [f"v={speed:.6f}" for speed in (_speeds(moves) * 0.001).tolist()]
+        else:
+            told = [f"t={seconds:.6f}" for seconds in _times(moves).tolist()]
+        return [f"{word}, r={radius:.6f}" for word, radius in zip(told, self.radii[id(moves)].tolist())]
+
+
+def _ways(program: Program) -> tuple[Array | None, Array]:
+    """The tool point, and (n,) mm that it goes on each move of a bead."""
+    moves = program.moves
+    if program.setup != "part-on-robot":  # the tip is the tool
+        return None, np.concatenate([run.speed * run.duration for run in moves])
+    flange = np.concatenate([run.flange for run in moves if run.flange is not None])
+    at = flange[:, :3, :3] @ TOOL_POINTS.T + flange[:, :3, 3:]
+    ways = np.linalg.norm(np.diff(at, axis=0, prepend=at[:1]), axis=1)
+    through = ~np.concatenate([run.stops for run in moves])
+    shortest = np.minimum(ways, np.vstack([ways[1:], ways[-1:]]))[through].min(axis=0, initial=np.inf)
+    best = int(np.argmax(np.round(shortest, 6)))
+    return TOOL_POINTS[best], ways[:, best]
+
+
+def _radii(program: Program, ways: Array) -> Array:
+    """(n,) m: the blend at the end of each move, 0 where it stops. A share of the shorter way beside the point."""
+    moves = program.moves
+    stops = np.concatenate([run.stops for run in moves])
+    beside = np.minimum(ways, np.append(ways[1:], 0.0))
+    microns = np.floor(LARGEST_SHARE * 0.01 * program.blend * beside * 0.001 / MICRON + 1e-6)
+    radii: Array = np.where(stops, 0.0, microns * MICRON)
+    short = ~stops & (radii < MICRON)
+    if program.blend and short.any():
+        first = int(np.argmax(short))
+        run = moves[int(np.searchsorted(np.cumsum([len(run) for run in moves]), first, side="right"))]
+        raise InputError(
+            "BLEND_RADIUS", place(run),
+            f"the tool goes {beside[first]:.3g} mm beside a point that is not stopped at, too little for a blend radius, and"
+            " the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to"
+            " stop at every point",
+        )
+    return radii
+
+
+def _times(moves: Moves) -> Array:
+    """(n,) s. Raises InputError MOVE_TIME."""
+    seconds = np.where(np.isfinite(moves.duration), moves.duration, 0.0)
+    if moves.kind != RAPID and seconds.min() < CYCLE:
+        raise InputError(
+            "MOVE_TIME", place(moves),
+            f"a move takes {1000.0 * seconds.min():.3g} ms, less than the {1000.0 * CYCLE:.0f} ms in which the controller"
+            " steps; use a larger strategy.chord_error or a lower process.travel_speed",
+        )
+    times: Array = np.maximum(seconds, SHORTEST)
+    return times
+
+
+def _speeds(moves: Moves) -> Array:
+    fits = (moves.speed >= SLOWEST) & (moves.speed <= FASTEST)
+    if not fits.all():
+        raise InputError(
+            "MOVE_SPEED", place(moves),
+            f"{moves.speed[~fits][0]:.4g} mm/s cannot be written; use {SLOWEST} to {FASTEST:.0f} mm/s",
+        )
+    return moves.speed
+
+
+def poses(position: Array, rotation: Array) -> Array:
+    """x y z in m and the rotation vector in rad, (n, 6), as the text has them, of mm (n, 3) and (n, 3, 3)."""
+    values: Array = np.round(np.hstack([0.001 * position, rotation_vectors(rotation)]), DECIMALS) + 0.0
+    return values
+
+
+def rotation_vectors(rotation: Array) -> Array:
+    """(n, 3) rad of rotations (n, 3, 3), none longer than half a turn; by the quaternion's largest part, which is sound
+    near half turns too."""
+    r = np.ascontiguousarray(rotation)
+    trace = r[:, 0, 0] + r[:, 1, 1] + r[:, 2, 2]
+    squares = np.stack([1.0 + trace, *(1.0 - trace + 2.0 * r[:, k, k] for k in range(3))], axis=1)
+    wx, wy, wz = r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]
+    xy, xz, yz = r[:, 1, 0] + r[:, 0, 1], r[:, 0, 2] + r[:, 2, 0], r[:, 2, 1] + r[:, 1, 2]
+    rows = np.stack([
+        np.stack([squares[:, 0], wx, wy, wz], axis=1), np.stack([wx, squares[:, 1], xy, xz], axis=1),
+        np.stack([wy, xy, squares[:, 2], yz], axis=1), np.stack([wz, xz, yz, squares[:, 3]], axis=1),
+    ], axis=1)  # fmt: skip
+    q = rows[np.arange(len(r)), np.argmax(squares, axis=1)]
+    q = q * np.where(q[:, :1] < 0.0, -1.0, 1.0) / np.linalg.norm(q, axis=1, keepdims=True)
+    sine = np.linalg.norm(q[:, 1:], axis=1)
+    turn = 2.0 * np.arctan2(sine, np.ascontiguousarray(q[:, 0]))
+    vectors: Array = q[:, 1:] * np.where(sine > 1e-12, turn / np.maximum(sine, 1e-300), 2.0)[:, None]
+    return vectors

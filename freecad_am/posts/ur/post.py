@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Universal Robots: URScript of joint moves by time, or of beads in process moves (movep) with the tool on the robot.
+
+Rapids are joint moves that stop at every point, in either. A script is one file: parts are functions in it, for URScript
+cannot load another file. What is written, what must be set on the controller and what was confirmed where: docs/posts/ur.md.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.controller import Controller
+from ...core.issues import InputError
+from ...core.program import (
+    LINEAR_MOVE,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Schedule,
+    Six,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
+from ..names import Naming
+from ..nc import parts as common
+from ..on_controller import on_controller
+from ..parts import Piece, Run, grouped, lines_of, packed, whole
+from ..refusals import (
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_endless,
+    refuse_incomplete,
+    refuse_schedules,
+    refuse_wire,
+    refuse_without_positions,
+)
+from . import numbers
+from .read import read
+
+__all__ = ["read", "write"]
+
+Array = NDArray[np.float64]
+
+AXES = 6
+# why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3)
+NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
+NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
+LAST_REGISTER, LAST_SCHEDULE = 47, 65535
+MOVE_LINE = re.compile(rb" *move[jlp]\(")
+ON_CONTROLLER = on_controller(
+    "Joint programs count on the nominal arm; the calibrated one stands up to millimetres beside it",
+    "The robot keeps the time of every move through the blends",
+    "Payload is set, safety limits allow the speeds, and the speed slider is at 100 %",
+    "The deposit output switches the process",
+)
+LAST_PIN = 16  # digital inputs and outputs: 1 to 8 are the standard ones 0 to 7, 9 to 16 the configurable ones
+LAST_ANALOGUE = 2
+
+# words of the language, and functions of its library that programs here or beside them use
+_RESERVED = frozenset(
+    ("AND", "BREAK", "CASE", "CONTINUE", "DEF", "DEFAULT", "ELIF", "ELSE", "END", "ENTER_CRITICAL", "EXIT_CRITICAL", "FALSE")
+    + ("GLOBAL", "HALT", "IF", "JOIN", "KILL", "LOCAL", "MOD", "NOT", "OR", "RETURN", "RUN", "SEC", "STRUCT", "SWITCH")
+    + ("THREAD", "TRUE", "WHILE", "XOR", "P", "PLATFORM", "SLEEP", "SYNC", "MOVEJ", "MOVEL", "MOVEP", "MOVEC", "SERVOJ")
+    + ("SERVOC", "SPEEDJ", "SPEEDL", "STOPJ", "STOPL", "SET_TCP", "SET_PAYLOAD", "POSE_TRANS", "POSE_INV", "POSE_ADD")
+    + ("GET_INVERSE_KIN", "GET_FORWARD_KIN", "POPUP", "TEXTMSG", "FREEDRIVE_MODE", "FORCE_MODE", "POWERDOWN")
+    + ("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "ATAN2", "SQRT", "POW", "LOG", "FLOOR", "CEIL", "NORM", "RANDOM")
+)
+NAMING = Naming(str, "[A-Za-z]", "a letter", longest=30, spare=4, prefix="am_", reserved=_RESERVED)
+_NO_END = 10**9
+_JOINTS = "[" + ", ".join([f"%.{numbers.DECIMALS}f"] * 6) + "]"
+_INDENT = "  "
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The script of a program, file name -> content; the same bytes for the same program.
+
+    One file: a function of the program's name, which calls functions inside it, NAME01, NAME02 and so on, where it has more
+    than max_points. The duration of the very first move is not told by the plan but is that of `FIRST_TIME`.
+
+    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, MOVE_TIME, MOVE_SPEED,
+    BLEND_RADIUS, NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, NO_WIRE_OUTPUT, ANALOGUE_INPUT, UNREACHABLE,
+    NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    words = numbers.Words(program)
+    groups = list(grouped(program, words, lambda block: _instructions(program, block)))
+    parts = packed(groups, program.max_points, _NO_END, whole)
+    names = NAMING.parts(name, len(parts)) if len(parts) > 1 else []
+    refuse_calls_of_own(program, {name, *names}, program_name)
+    remarks = [f"# {line}" for text in (*program.remarks, *_own_remarks(program, names)) for line in common.wrapped(text)]
+    lines = [*remarks, *_frames(program, words.tool_point)]
+    if not names:
+        lines += _lines(parts[0])
+    for part, pieces in zip(names, parts):
+        lines += [f"def {part}():", *(_INDENT + line for line in _lines(pieces)), "end"]
+    lines += [f"{part}()" for part in names]
+    text = "\n".join([f"def {name}():", *(_INDENT + line for line in lines), "end", ""])
+    return {f"{name}.script": text.encode("ascii")}
+
+
+def program_name(name: str, where: str) -> str:
+    """The name of file and function. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    return NAMING.checked(name, where)
+
+
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
+    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
+    if motion == "cartesian" and setup == "part-on-robot":
+        raise InputError(
+            "REMOTE_TCP", "program.motion",
+            "URScript moves a tool that the flange carries, at its speed; with the part on the robot the tool stands and the"
+            " speed at the deposition point is another one at every point of the part, which no documented instruction of"
+            " URScript holds; use `motion: joint`",
+        )
+    if setup not in ("part-on-robot", "tool-on-robot"):
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post ur cannot write {setup}")
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    refuse_incomplete(program, "ur", AXES)
+    refuse_wire(program, NO_WIRE)
+    refuse_cooling(program, LAST_ANALOGUE)
+    refuse_schedules(program, LAST_REGISTER, LAST_SCHEDULE)
+    refuse_endless(program)
+    refuse_without_positions(program)
+    if program.setup == "part-on-robot" and any(run.flange is None for run in program.moves):
+        raise InputError("NO_POSITIONS", "program", "the program does not tell where the flange is, which blends count on")
+    if not program.dry_run and program.deposit_output > LAST_PIN:
+        raise InputError(
+            "DEPOSIT_OUTPUT", "program.deposit_output",
+            f"digital outputs are 1 to {LAST_PIN} (1 to 8 are digital_out[0] to [7], 9 to {LAST_PIN} the configurable ones),"
+            f" not {program.deposit_output}",
+        )
+    for block in program.blocks:
+        if isinstance(block, WaitInput) and block.number > LAST_PIN:
+            raise InputError(
+                "DEPOSIT_INPUT", "process.between_layers.input",
+                f"digital inputs are 1 to {LAST_PIN} (1 to 8 are digital_in[0] to [7], 9 to {LAST_PIN} the configurable"
+                f" ones), not {block.number}",
+            )
+
+
+def _own_remarks(program: Program, names: Sequence[str]) -> Iterator[str]:
+    if program.setup == "part-on-robot":
+        yield "the tool centre point is one that the part carries: blend radii count on its way, nothing else does"
+    if names:
+        yield f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts"
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _frames(program: Program, tool_point: Array | None) -> list[str]:
+    """The tool, and in Cartesian programs the frame that positions are seen in."""
+    tool = program.carried if tool_point is None else (*tool_point.tolist(), 0.0, 0.0, 0.0)
+    lines = [f"set_tcp({_pose(tool)})"]
+    if program.motion == "cartesian":
+        lines.append(f"global platform = {_pose(program.station)}")
+    return lines
+
+
+def _pose(six: Six | None) -> str:
+    """X Y Z mm, RX RY RZ rad (Rx Ry Rz) as a pose of URScript."""
+    x, y, z, rx, ry, rz = six or (0.0,) * 6
+    (a, b, c), (d, e, f) = ((math.cos(angle) for angle in (rx, ry, rz)), (math.sin(angle) for angle in (rx, ry, rz)))
+    rotation = np.array([
+        [b * c, -b * f, e], [a * f + d * e * c, a * c - d * e * f, -d * b], [d * f - a * e * c, d * c + a * e * f, a * b],
+    ])  # fmt: skip
+    return "p" + _JOINTS % tuple(numbers.poses(np.array([[x, y, z]]), rotation[None])[0].tolist())
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    if isinstance(block, DepositOn):
+        return [] if program.dry_run else [_output(program.deposit_output, True), *_sleep(block.lead)]
+    if isinstance(block, DepositOff):
+        return [] if program.dry_run else [*_sleep(block.lead), _output(program.deposit_output, False)]
+    if isinstance(block, Schedule):
+        return [f"write_output_integer_register({program.schedule_output}, {block.number})"]
+    if isinstance(block, LayerStart):
+        return [f"# layer {block.layer}"]
+    if isinstance(block, Wait):
+        return _sleep(block.seconds)
+    if isinstance(block, WaitInput):
+        kind, pin = _pin(block.number)
+        return [f"while get_{kind}_digital_in({pin}) == False:", f"{_INDENT}sleep(0.010)", "end"]
+    if isinstance(block, WaitBelow):
+        level = f"while get_standard_analog_in({block.number - 1}) >= {block.below:.6f}:"
+        return [level, f"{_INDENT}sleep(0.100)", "end"]
+    if isinstance(block, Call):
+        return [f"{program_name(block.program, block.where)}()"]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _output(number: int, on: bool) -> str:
+    kind, pin = _pin(number)
+    return f"set_{kind}_digital_out({pin}, {on})"
+
+
+def _pin(number: int) -> tuple[str, int]:
+    return ("standard", number - 1) if number <= 8 else ("configurable", number - 9)
+
+
+def _sleep(seconds: float) -> list[str]:
+    return [f"sleep({max(seconds, 0.001):.3f})"] if seconds > 0.0 else []
+
+
+def _lines(pieces: Sequence[Piece]) -> list[str]:
+    return lines_of(pieces, _motion)
+
+
+def _motion(run: Run) -> list[str]:
+    """Moves through all points of a run."""
+    moves, part = run.moves, slice(run.start, run.stop)
+    if moves.interpolation == LINEAR_MOVE:
+        pattern, values = f"movep({_SEEN}, a=1.2, %s)", _seen(moves, part)
+    elif moves.position is None:
+        pattern, values = f"movej({_JOINTS}, a=1.4, v=1.05, %s)", _joints(moves, part)
+    else:  # the controller's own arm finds the joints of the position, those next to the planned ones
+        pattern = f"movej(get_inverse_kin({_SEEN}, {_JOINTS}), a=1.4, v=1.05, %s)"
+        values = np.hstack([_seen(moves, part), _joints(moves, part)])
+    return [pattern % (*row, word) for row, word in zip(values.tolist(), run.words[part], strict=True)]
+
+
+_SEEN = f"pose_trans(platform, p{_JOINTS})"
+
+
+def _joints(moves: Moves, part: slice) -> Array:
+    values: Array = np.round(moves.joints[part], numbers.DECIMALS) + 0.0
+    return values
+
+
+def _seen(moves: Moves, part: slice) -> Array:
+    assert moves.position is not None and moves.rotation is not None
+    return numbers.poses(moves.position[part], moves.rotation[part])

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads URScript back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. Nothing is evaluated: each line has to be one of the few that a path needs, as it stands, and
+every other one is refused, so that no motion can hide in what was not understood.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from array import array
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from ...core.read_moves import Event, ReadMoves
+
+Array = NDArray[np.float64]
+
+_N = r"-?\d+\.\d+"
+_SIX = rf"\[({_N}), ({_N}), ({_N}), ({_N}), ({_N}), ({_N})\]"
+_DEF = re.compile(r"def ([A-Za-z]\w*)\(\):$")
+_CALL = re.compile(r"([A-Za-z]\w*)\(\)$")
+_BY_JOINTS = re.compile(rf"movej\({_SIX}, a=1\.4, v=1\.05, t=({_N}), r=({_N})\)$")
+_BY_POSE = re.compile(
+    rf"movej\(get_inverse_kin\(pose_trans\(platform, p{_SIX}\), {_SIX}\), a=1\.4, v=1\.05, t=({_N}), r=({_N})\)$"
+)
+_STRAIGHT = re.compile(rf"movep\(pose_trans\(platform, p{_SIX}\), a=1\.2, v=({_N}), r=({_N})\)$")
+_TCP = re.compile(rf"set_tcp\(p{_SIX}\)$")
+_PLATFORM = re.compile(rf"global platform = p{_SIX}$")
+_OUTPUT = re.compile(r"set_(standard|configurable)_digital_out\(([0-7]), (True|False)\)$")
+_REGISTER = re.compile(r"write_output_integer_register\((\d+), (\d+)\)$")
+_SLEEP = re.compile(r"sleep\((\d+\.(\d+))\)$")
+_INPUT = re.compile(r"while get_(standard|configurable)_digital_in\(([0-7])\) == False:$")
+_BELOW = re.compile(r"while get_standard_analog_in\(([01])\) >= (-?\d+\.(\d+)):$")
+_LAYER = re.compile(r"# layer (\d+)$")
+_FIRST = {"standard": 1.0, "configurable": 9.0}  # number of pin 0
+
+
+@dataclass
+class _Line:
+    number: int
+    text: str
+
+
+@dataclass
+class _Function:
+    """A function: the line it begins with, its lines, and the functions inside it by their names."""
+
+    begins: int
+    lines: list[_Line] = field(default_factory=list)
+    inside: dict[str, _Function] = field(default_factory=dict)
+
+
+# of each move: pose, joints, time, speed, radius
+_COLUMNS = {
+    "pose": slice(0, 6), "joints": slice(6, 12), "time": slice(12, 13), "speed": slice(13, 14), "blend": slice(14, 15),
+}
+_WIDTH = 15
+_NONE = ("nan",) * 6
+
+
+@dataclass
+class _Run:
+    """What happened so far while the functions are followed: packed. decimals: the fewest of the numbers in columns."""
+
+    file: str
+    numbers: array[float] = field(default_factory=lambda: array("d"))
+    decimals: dict[str, int] = field(default_factory=lambda: dict.fromkeys(_COLUMNS, 99))
+    deposit: bytearray = field(default_factory=bytearray)
+    events: list[Event] = field(default_factory=list)
+    tcp: tuple[str, ...] = ()
+    platform: tuple[str, ...] = ()
+    output: float | None = None
+    on: bool = False
+
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
+        """Something happens before the next move."""
+        self.events.append(Event(len(self.deposit), kind, value, digits))
+
+
+def unreadable(where: str, why: str) -> InputError:
+    """What is raised for a text that is not understood."""
+    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the script in the order of execution. Raises InputError UNREADABLE_PROGRAM, naming file and line."""
+    if len(files) != 1:
+        raise unreadable("program", f"there are {len(files)} files, expected one script")
+    ((file, content),) = files.items()
+    name, main = _parsed(file, content)
+    if not re.fullmatch(rf"(?:.*/)?{name}\.script", file):
+        raise unreadable(file, f"its function is called {name}")
+    run = _Run(file)
+    _follow(name, main, {}, run, ())
+    if not run.deposit:
+        raise unreadable("program", "there are no moves")
+    return _moves(run)
+
+
+def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
+    """The function that a script is, with its name."""
+    try:
+        lines = content.decode("ascii").split("\n")
+    except UnicodeDecodeError:
+        raise unreadable(file, "it has other characters than ASCII") from None
+    title = _DEF.match(lines[0])
+    if title is None or len(lines) < 2 or lines[-2:] != ["end", ""]:
+        raise unreadable(file, "it is not one function from its first line to its last")
+    main = _Function(1)
+    here, depth = main, 1
+    for number, line in enumerate(lines[1:-2], 2):
+        where = f"{file} line {number}"
+        text = line[2 * depth :]
+        if line[: 2 * depth].strip() or not text:
+            if depth == 2 and line == "  end":
+                here, depth = main, 1
+                continue
+            raise unreadable(where, f"{line!r} stands outside of its function")
+        inner = _DEF.match(text)
+        if inner is None:
+            here.lines.append(_Line(number, text))
+            continue
+        if depth == 2 or inner[1] in main.inside or inner[1] == title[1]:
+            raise unreadable(where, f"{inner[1]} is defined again, or within a part")
+        here = main.inside[inner[1]] = _Function(number)
+        depth = 2
+    if depth == 2:
+        raise unreadable(file, "a part does not end")
+    return title[1], main
+
+
+def _follow(name: str, function: _Function, known: dict[str, _Function], run: _Run, callers: tuple[str, ...]) -> None:
+    """Carry out the lines of a function in order, and those of the functions of this script that it calls."""
+    lines = iter(function.lines)
+    known = {**known, **function.inside}
+    for line in lines:
+        where, text = f"{run.file} line {line.number}", line.text
+        if _move(text, run, where):
+            continue
+        if output := _OUTPUT.match(text):
+            number = _FIRST[output[1]] + float(output[2])
+            if run.output not in (None, number):
+                raise unreadable(where, "a second output is switched")
+            run.output, run.on = number, output[3] == "True"
+            run.happens("on" if run.on else "off", number, f"{output[1]}_digital_out")
+        elif register := _REGISTER.match(text):
+            run.happens("schedule", float(register[1]), float(register[2]))
+        elif sleep := _SLEEP.match(text):
+            run.happens("wait", float(sleep[1]), digits=0.5 * 10.0 ** -len(sleep[2]))
+        elif given := _INPUT.match(text):
+            _loop(lines, where)
+            run.happens("input", _FIRST[given[1]] + float(given[2]))
+        elif below := _BELOW.match(text):
+            _loop(lines, where)
+            run.happens("below", 1.0 + float(below[1]), float(below[2]), digits=0.5 * 10.0 ** -len(below[3]))
+        elif call := _CALL.match(text):
+            if call[1] in (*callers, name):
+                raise unreadable(where, f"{call[1]} calls itself")
+            if call[1] in known and line.number < known[call[1]].begins:
+                raise unreadable(where, f"{call[1]} is called before it is defined")
+            if call[1] in known:
+                _follow(call[1], known[call[1]], known, run, (*callers, name))
+            else:
+                run.happens("call", call[1].upper())
+        elif layer := _LAYER.match(text):
+            run.happens("layer", float(layer[1]))
+        elif not text.startswith("# "):
+            raise unreadable(where, f"the instruction {text!r} is not understood")
+
+
+def _loop(lines: Iterator[_Line], where: str) -> None:
+    """A loop that waits has one line, which takes time."""
+    inside, end = (next(lines, _Line(0, "")).text for _ in range(2))
+    if not re.fullmatch(r"  sleep\(0\.\d*[1-9]\d*\)", inside) or end != "end":
+        raise unreadable(where, "only a loop that waits is understood")
+
+
+def _move(text: str, run: _Run, where: str) -> bool:
+    """Whether the line moves, or says what moves count on, which has to come before them."""
+    found: tuple[str, ...]
+    if move := _BY_JOINTS.match(text):
+        found = (*_NONE, *move.groups()[:6], move[7], "nan", move[8])
+    elif move := _BY_POSE.match(text):
+        found = (*move.groups()[:13], "nan", move[14])
+    elif move := _STRAIGHT.match(text):
+        found = (*move.groups()[:6], *_NONE, "nan", move[7], move[8])
+    else:
+        frame = _TCP.match(text) or _PLATFORM.match(text)
+        if frame is None:
+            return False
+        if run.deposit or (run.tcp if text.startswith("set_tcp") else run.platform):
+            raise unreadable(where, "tool or platform is set anew")
+        if text.startswith("set_tcp"):
+            run.tcp = frame.groups()
+        else:
+            run.platform = frame.groups()
+        return True
+    if not run.tcp or (found[0] == "nan") is bool(run.platform):
+        raise unreadable(where, "it moves without a tool, without the platform, or in joints where positions are told")
+    values = [float(number) for number in found]
+    if values[12] <= 0.0 or values[13] <= 0.0 or values[14] < 0.0:
+        raise unreadable(where, "its time, speed or blend is none that is kept")
+    run.numbers.extend(values)
+    run.deposit.append(run.on)
+    for name, columns in _COLUMNS.items():
+        run.decimals[name] = min(run.decimals[name], _decimals(found[columns]))
+    return True
+
+
+def _moves(run: _Run) -> ReadMoves:
+    told = np.array(run.numbers).reshape(-1, _WIDTH)
+    half = {name: 0.5 * 10.0**-decimals for name, decimals in run.decimals.items()}
+    pose, joints, (duration, speed, radius) = told[:, :6], told[:, 6:12], told[:, 12:].T
+    tool = np.broadcast_to(_poses(np.array([run.tcp], dtype=np.float64))[0], (len(told), 4, 4))
+    moves = ReadMoves(
+        joints, half["joints"], duration, np.array(run.deposit, dtype=np.bool_), np.isfinite(speed), radius == 0.0,
+        tuple(run.events), speed=1000.0 * speed, speed_digits=1000.0 * half["speed"],
+        duration_digits=np.full(len(told), half["time"]), blend_radius=1000.0 * radius, tool=tool,
+    )
+    if not run.platform:
+        return moves
+    seen = _poses(pose)
+    digits = max(half["pose"], 0.5 * 10.0 ** -_decimals((*run.tcp, *run.platform)))
+    return dataclasses.replace(
+        moves, joints=None, digits=0.0, near=joints, near_digits=half["joints"], position=seen[:, :3, 3],
+        rotation=seen[:, :3, :3], position_digits=1000.0 * digits, rotation_digits=digits,
+        frame=_poses(np.array([run.platform], dtype=np.float64))[0],
+    )
+
+
+def _decimals(texts: tuple[str, ...]) -> int:
+    """The fewest decimals of numbers, many where there are none."""
+    return 99 if texts[0] == "nan" else min(len(text) - text.index(".") - 1 for text in texts)
+
+
+def _poses(values: Array) -> Array:
+    """(n, 4, 4) mm of m and rotation vectors (n, 6), by Rodrigues' formula."""
+    angle = np.linalg.norm(values[:, 3:], axis=1)
+    x, y, z = (values[:, 3:] / np.where(angle > 0.0, angle, 1.0)[:, None]).T
+    none = np.zeros(len(values))
+    cross = np.stack([none, -z, y, z, none, -x, -y, x, none], axis=1).reshape(-1, 3, 3)
+    sine, versine = np.sin(angle)[:, None, None], (1.0 - np.cos(angle))[:, None, None]
+    found = np.tile(np.eye(4), (len(values), 1, 1))
+    found[:, :3, :3] += sine * cross + versine * (cross @ cross)
+    found[:, :3, 3] = 1000.0 * values[:, :3]
+    return found

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Yaskawa: INFORM jobs (.JBI) of joint moves, or of beads in linear moves with the tool on the robot, all to pulses.
+
+Rapids are joint moves that stop at every point, in either. Pulses need no option of the controller and say the arm's
+configuration and turns by themselves; how many there are to a degree is in the machine file, for each robot has its own.
+What is written, what must be set on the controller and what was confirmed where: docs/posts/yaskawa.md.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import textwrap
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.controller import Controller
+from ...core.issues import InputError
+from ...core.program import (
+    DEPOSIT,
+    FIRST_SHARE,
+    LINEAR_MOVE,
+    ROTARY,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Schedule,
+    Wait,
+    WaitInput,
+)
+from ..names import Naming, plain
+from ..on_controller import on_controller
+from ..parts import continued, grouped, packed, place
+from ..refusals import (
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_endless,
+    refuse_external,
+    refuse_incomplete,
+    refuse_named_track,
+    refuse_schedules,
+    refuse_wire,
+    refuse_without_speeds,
+)
+from .read import read
+from .text import AXES, BASE, job, pulses
+
+__all__ = ["read", "write"]
+Array = NDArray[np.float64]
+
+NO_ANALOGUE = "how a job waits for an analogue input differs with the controller's options, and the post yaskawa knows none"
+# why the speed of the wire cannot follow that of the torch
+CONTROLLER = Controller(external=True, positioner="ST1", pulses=True)
+NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
+NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
+LAST_GROUP, LAST_SCHEDULE, LAST_FILE = 512, 255, 1000  # groups of eight outputs; files of arc conditions
+MOVE_LINE = re.compile(rb"MOV[JL] ")
+ON_CONTROLLER = on_controller(
+    "Pulses per degree of the machine file are the controller's, and zero pulses the zero of its angles",
+    "VJ is a share of the largest speeds of the machine file, those of the axis that takes longest",
+    "The tool file of the number in the job is the nozzle's tip, and speeds have the unit of the remarks",
+    "The deposit output switches the process",
+)
+MOST_EXTERNAL = 6
+MOST_LINES = 9999
+OUTPUTS = 4096
+LONGEST_WAIT = 600.0  # s of one TIMER
+# percent of the largest joint speed: the step it is told in, and what a bead may go at least, where that is right to 10 %
+STEP_PERCENT, LEAST_PERCENT = 0.01, 0.05
+LEVELS = 8  # of rounded corners
+# what a unit of path speed is in mm/s, and its decimals
+UNITS = {"mm/s": (1.0, 1), "cm/min": (1.0 / 6.0, 0), "mm/min": (1.0 / 60.0, 0)}
+FASTEST = 1500.0  # mm/s
+_COMMENT = 32
+# names of 8 characters at most on older controllers
+NAMING = Naming(str.upper, "[A-Z]", "a letter", longest=32, spare=4, prefix="AM_")
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The jobs of a program, file name -> content; the same bytes for the same program.
+
+    One job where it fits, else NAME.JBI that calls NAME01.JBI and so on, cut between beads wherever a bead fits. The
+    duration of the very first move is not used.
+
+    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, NO_PULSES, NO_SPEED_UNIT,
+    NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, DEPOSIT_OUTPUT, NO_WIRE_OUTPUT, NO_ANALOGUE_INPUT, UNREACHABLE,
+    NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    words = _Words(program)
+    groups = list(grouped(program, words, lambda block: _instructions(program, block)))
+    remarks = [line for text in (*program.remarks, *_own_remarks(program, words.off)) for line in _remark(text)]
+    meaning = [line for text in _meaning(program) for line in _remark(text)]
+    room = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
+    parts = packed(groups, min(program.max_points, room), room, continued(_remark))
+    if len(parts) == 1:
+        refuse_calls_of_own(program, {name}, program_name)
+        return {f"{name}.JBI": job(program, name, [*remarks, *meaning], parts[0])}
+    names = NAMING.parts(name, len(parts))
+    refuse_calls_of_own(program, {name, *names}, program_name)
+    told = [*remarks, *_remark(f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts")]
+    files = {f"{name}.JBI": job(program, name, [*told, *(f"CALL JOB:{part}" for part in names)], [])}
+    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+        head = [*_remark(f"part {number} of {len(parts)}"), *meaning]
+        files[f"{part}.JBI"] = job(program, part, head, pieces)
+    return files
+
+
+def program_name(name: str, where: str) -> str:
+    """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    return NAMING.checked(name, where)
+
+
+def refuse_setup(
+    motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
+) -> None:
+    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
+    if motion == "cartesian" and setup == "part-on-robot":
+        raise InputError(
+            "REMOTE_TCP", "program.motion",
+            "linear moves at the speed of a fixed nozzle over a part on the robot need the controller's external reference"
+            " point, whose instruction is not documented well enough to write it; use `motion: joint`",
+        )
+    if setup not in ("part-on-robot", "tool-on-robot"):
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post yaskawa cannot write {setup}")
+    if external:
+        _refuse_coordinated(motion, external)
+
+
+def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
+    """Raises InputError COORDINATED_MOTION for what cannot be said with external axes of these kinds."""
+    if motion != "cartesian":
+        return
+    why = "of a robot on a track have the base axis go along, and whether their speed counts its way"
+    if ROTARY in external:
+        why = "over a part on a positioner are coordinated motion (SMOVL), and what their speed is of"
+    raise InputError(
+        "COORDINATED_MOTION", "program.motion",
+        f"linear moves {why} was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it",
+    )
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    axes = len(AXES) + len(program.external_kinds)
+    refuse_incomplete(program, "yaskawa", axes)
+    if program.external_kinds:
+        _refuse_coordinated(program.motion, program.external_kinds)
+        refuse_external(program, MOST_EXTERNAL, r"ST[1-9]\d?", "the name of its station, such as ST1")
+        refuse_named_track(program, f"the base axis {BASE} of the robot")
+        if program.first_external != 1:
+            raise InputError("UNSUPPORTED_AXES", "program.axes.first", "a position of a station or of base axes has a value "
+                             f"for each of them from the first one on; use 1, not {program.first_external}")
+    refuse_wire(program, NO_WIRE)
+    refuse_cooling(program, 0, NO_ANALOGUE)
+    refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE, LAST_FILE)
+    refuse_endless(program)
+    if len(program.pulses_per_degree) != axes:
+        raise InputError("NO_PULSES", "cell.machine", "the machine file has no controller.pulses_per_degree; add them")
+    if program.motion == "cartesian" and program.speed_unit not in UNITS:
+        raise InputError("NO_SPEED_UNIT", "cell.machine", "the machine file has no controller.speed_unit; add it")
+    refuse_without_speeds(program, axes)
+    if not program.dry_run and program.deposit_output > OUTPUTS:
+        raise InputError(
+            "DEPOSIT_OUTPUT", "program.deposit_output",
+            f"digital outputs are 1 to {OUTPUTS}, not {program.deposit_output}; use one of these",
+        )
+
+
+def _own_remarks(program: Program, off: float) -> Iterator[str]:
+    if off > 0.0:
+        yield f"VJ has steps of {STEP_PERCENT} %: speed of beads is right to {100.0 * off:.1f} %"
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _meaning(program: Program) -> Iterator[str]:
+    """What the numbers of a job mean, which its own words do not tell."""
+    beside = [f"E{number + 1}" for number in range(len(program.external_kinds))]
+    for axis, slides, count in zip([*AXES, *beside], program.slides.tolist(), program.pulses_per_degree, strict=True):
+        yield f"pulses/{'mm' if slides else 'deg'} {axis} {count!r}"
+    if program.motion == "cartesian":
+        yield f"V in {program.speed_unit}"
+
+
+def _remark(text: str) -> list[str]:
+    """A comment on as many lines as its width needs."""
+    return [f"'{line}" for line in textwrap.wrap(plain(text), _COMMENT)]
+
+
+class _Words:
+    """The words of each move behind its position, asked for in the order of motion.
+
+    off: by what share of it the speed of a joint move of a bead is off at most, for the steps of VJ.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self.program, self.off = program, 0.0
+        self.before: Array | None = None
+        self.level = math.ceil(0.01 * LEVELS * program.blend)
+
+    def __call__(self, moves: Moves) -> Sequence[str]:
+        values = pulses(self.program, moves.joints) / np.array(self.program.pulses_per_degree)
+        shown = np.where(self.program.slides, values, np.radians(values))
+        start = shown[:1] if self.before is None else self.before
+        if moves.interpolation == LINEAR_MOVE:
+            speeds = _path_speeds(self.program, moves)
+        else:
+            percent = _percent(self.program, moves, np.diff(shown, axis=0, prepend=start), self.before is None)
+            speeds = [f"VJ={share:.2f}" for share in percent.tolist()]
+            if moves.kind == DEPOSIT:
+                self.off = max(self.off, float(np.abs(np.round(percent, 2) / percent - 1.0).max()))
+        self.before = shown[-1:]
+        levels = np.where(moves.stops, 0, self.level).tolist()
+        return [f"{speed} PL={level}" for speed, level in zip(speeds, levels, strict=True)]
+
+
+def _percent(program: Program, moves: Moves, steps: Array, first: bool) -> Array:
+    """Of the largest joint speeds, (n,): the axis that takes longest gets through its step in the time of the move."""
+    share = (np.abs(steps) / np.array(program.max_speed)).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        percent = 100.0 * share / moves.duration
+    wrong = (share > 0.0) & ~(percent <= 100.0 + 0.5 * STEP_PERCENT)
+    if moves.kind == DEPOSIT:
+        wrong |= percent < LEAST_PERCENT
+    if first:
+        wrong[0] = False
+    if wrong.any():
+        raise InputError(
+            "JOINT_SPEED", place(moves),
+            f"a move would need {percent[wrong][0]:.4g} % of the largest joint speed, which is told in steps of"
+            f" {STEP_PERCENT} %; use another speed, so that it is {LEAST_PERCENT} to 100 %",
+        )
+    percent = np.where(share > 0.0, np.clip(percent, STEP_PERCENT, 100.0), 100.0)
+    if first:
+        percent[0] = 100.0 * FIRST_SHARE
+    return np.asarray(percent, dtype=np.float64)
+
+
+def _path_speeds(program: Program, moves: Moves) -> list[str]:
+    unit, decimals = UNITS[program.speed_unit]
+    least = 10.0**-decimals * unit
+    fits = (moves.speed >= least) & (moves.speed <= FASTEST)
+    if not fits.all():
+        raise InputError(
+            "MOVE_SPEED", place(moves),
+            f"{moves.speed[~fits][0]:.4g} mm/s cannot be written in {program.speed_unit}; use {least:.3g} to"
+            f" {FASTEST:.0f} mm/s",
+        )
+    return [f"V={speed:.{decimals}f}" for speed in (moves.speed / unit).tolist()]
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    output = f"DOUT OT#({program.deposit_output})"
+    if isinstance(block, (DepositOn, DepositOff)):
+        word, arc = ("ON", "ARCON ASF") if isinstance(block, DepositOn) else ("OFF", "ARCOF AEF")
+        lines = [f"{output} {word}" if block.schedule is None else f"{arc}#({block.schedule})", *_timer(block.lead)]
+        return [] if program.dry_run else lines if word == "ON" else [*lines[1:], lines[0]]
+    if isinstance(block, Schedule):
+        return [f"DOUT OG#({program.schedule_output}) {block.number}"]
+    if isinstance(block, LayerStart):
+        return _remark(f"layer {block.layer}")
+    if isinstance(block, Wait):
+        return _timer(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"WAIT IN#({block.number})=ON"]
+    if isinstance(block, Call):
+        return [f"CALL JOB:{program_name(block.program, block.where)}"]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _timer(seconds: float) -> list[str]:
+    """Standing still for a time, to 0.01 s; nothing for no time."""
+    hundredths, most = max(round(100.0 * seconds), int(seconds > 0.0)), round(100.0 * LONGEST_WAIT)
+    whole, rest = divmod(hundredths, most)
+    return [f"TIMER T={step / 100.0:.2f}" for step in (*(most,) * whole, rest) if step]

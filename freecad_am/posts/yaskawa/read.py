@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads INFORM jobs back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. How many pulses there are to a degree, and the unit of V, are what the text's own remarks
+say. Understands the plain instructions a path needs and refuses every other one, so that no motion can hide in what was
+not understood.
+"""
+
+from __future__ import annotations
+
+import re
+from array import array
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import InputError
+from ...core.read_moves import ARC, Event, ReadMoves
+
+Array = NDArray[np.float64]
+
+_NAME = re.compile(r"//NAME ([A-Z][A-Z0-9_]{0,31})$")
+_COUNT = re.compile(r"///NPOS (\d+),(\d+),(\d+),0,0,0$")
+_TOOL = re.compile(r"///TOOL (\d+)$")
+_POINT = re.compile(r"C(\d{5})=" + ",".join([r"(-?\d+)"] * 6) + "$")
+_BESIDE = {"BC": re.compile(r"BC(\d{5})=(-?\d+)$"), "EC": re.compile(r"EC(\d{5})=(-?\d+(?:,-?\d+){0,5})$")}
+_GROUP = re.compile(r"///GROUP1 RB1(,BS1)?(?:,(ST\d+))?$")
+_INST: tuple[str | re.Pattern[str], ...] = (
+    r"//INST", r"///DATE \d{4}/\d\d/\d\d \d\d:\d\d", r"///COMM [ -~]{0,32}", r"///ATTR SC,RW", _GROUP, r"NOP",
+)
+_MOVJ = re.compile(r"MOVJ C(\d{5})(?: BC(\d{5}))?(?: EC(\d{5}))? VJ=(\d+\.(\d+)) PL=([0-8])$")
+_MOVL = re.compile(r"MOVL C(\d{5})()() V=(\d+(?:\.(\d+))?) PL=([0-8])$")
+_OUTPUT = re.compile(r"DOUT OT#\((\d+)\) (ON|OFF)$")
+_OUTPUTS = re.compile(r"DOUT OG#\((\d+)\) (\d+)$")
+_ARC = re.compile(r"ARC(ON ASF|OF AEF)#\((\d+)\)$")
+_TIMER = re.compile(r"TIMER T=(\d+\.(\d+))$")
+_INPUT = re.compile(r"WAIT IN#\((\d+)\)=ON$")
+_CALL = re.compile(r"CALL JOB:([A-Z][A-Z0-9_]{0,31})$")
+_LAYER = re.compile(r"'layer (\d+)$")
+_PER_UNIT = re.compile(r"'pulses/(deg [SLURBT]|(?:deg|mm) E[1-7]) (-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)$")
+_UNIT = re.compile(r"'V in (mm/s|cm/min|mm/min)$")
+_MM_PER_S = {"mm/s": 1.0, "cm/min": 10.0 / 60.0, "mm/min": 1.0 / 60.0}
+_OWN = 6  # axes of a robot
+_LINE = 34  # characters of a remark with its sign, and one
+
+
+@dataclass
+class _Job:
+    """One job: its tool, its positions (n, 6, that of a track, and those of a station) in pulses, and its lines from NOP to
+    END with the number of the first; whether there is a track in its group, and the station there, '' for none."""
+
+    file: str
+    tool: float
+    points: Array
+    lines: list[str]
+    first: int
+    track: bool
+    station: str
+
+
+@dataclass
+class _Run:
+    """What happened so far while the jobs are followed. moves: of each share, V, corner level and tool, and pulses; beside:
+    track and station of all moves, None before the first; per_unit: pulses to a degree or a mm of axes, and slides those
+    that are told in mm."""
+
+    moves: array[float] = field(default_factory=lambda: array("d"))
+    deposit: bytearray = field(default_factory=bytearray)
+    events: list[Event] = field(default_factory=list)
+    per_unit: dict[str, float] = field(default_factory=dict)
+    slides: set[str] = field(default_factory=set)
+    unit: str = ""
+    axes: int = 0
+    decimals: list[int] = field(default_factory=lambda: [99, 99])  # the fewest of VJ and of V
+    beside: tuple[bool, str] | None = None
+    output: str = ""
+    on: bool = False
+
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
+        """Something happens before the next move."""
+        self.events.append(Event(len(self.deposit), kind, value, digits))
+
+
+_WORDS = 4  # of a move besides its pulses
+
+
+def unreadable(where: str, why: str) -> InputError:
+    """What is raised for a text that is not understood."""
+    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the files in the order of execution, beginning with the job that no other one calls.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
+    jobs = {}
+    for file in sorted(files):
+        name, job = _job(file, files[file])
+        if not re.fullmatch(rf"(?:.*/)?{name}\.JBI", file):
+            raise unreadable(file, f"its job is called {name}")
+        jobs[name] = job
+    called = {call[1] for job in jobs.values() for line in job.lines if (call := _CALL.match(line))}
+    main = [name for name in jobs if name not in called]
+    if len(main) != 1:
+        raise unreadable("program", f"{len(main)} jobs are called by none of the others, expected one")
+    run = _Run()
+    _follow(main[0], jobs, run, ())
+    if not run.deposit:
+        raise unreadable("program", "there are no moves")
+    return _moves(run)
+
+
+def _moves(run: _Run) -> ReadMoves:
+    told = np.array(run.moves).reshape(-1, _WORDS + run.axes)
+    names = _axes(run.axes)
+    per_unit, slides = np.array([run.per_unit[axis] for axis in names]), np.array([axis in run.slides for axis in names])
+    pulses = told[:, _WORDS:]
+    if slides.any():  # the track stands before the station in a job, wherever its axis is among them
+        track, at = pulses[:, _OWN], int(np.argmax(slides))
+        pulses = np.insert(np.delete(pulses, _OWN, axis=1), at, track, axis=1)
+    values, per_mm = pulses / per_unit, float(np.abs(per_unit[slides]).min(initial=np.inf))
+    share, path, level, tool = told[:, :_WORDS].T
+    linear = np.isfinite(path)
+    unit = _MM_PER_S.get(run.unit, np.nan)
+    half = [0.5 * 10.0**-decimals for decimals in run.decimals]
+    return ReadMoves(
+        np.where(slides, values, np.radians(values)), np.radians(0.5 / np.abs(per_unit)), np.full(len(told), np.nan),
+        np.array(run.deposit, dtype=np.bool_), linear, level == 0.0, tuple(run.events), speed=path * unit,
+        speed_digits=half[1] * unit if linear.any() else 0.0, share=0.01 * share, share_digits=0.01 * half[0], level=level,
+        tool_frame=tool, unit=run.beside[1] if run.beside else "", linear_digits=0.5 / per_mm,
+    )
+
+
+def _job(file: str, content: bytes) -> tuple[str, _Job]:
+    """The name and the content of one job."""
+    try:
+        lines = content.decode("ascii").split("\r\n")
+    except UnicodeDecodeError:
+        raise unreadable(file, "it has other characters than ASCII") from None
+    name, count = (_NAME.match(lines[1]), _COUNT.match(lines[3])) if len(lines) > 3 else (None, None)
+    if name is None or count is None or (lines[0], lines[2]) != ("/JOB", "//POS") or lines[-2:] != ["END", ""]:
+        raise unreadable(file, "it is not a job from /JOB to END")
+    points, at, tool = int(count[1]), 4, float("nan")
+    values = np.zeros((points, 6))
+    if points:
+        chosen = _TOOL.match(lines[4])
+        if chosen is None or lines[5:7] != ["///POSTYPE PULSE", "///PULSE"]:
+            raise unreadable(f"{file} line 5", "its positions are not pulses of one tool")
+        tool, at = float(chosen[1]), 7
+        for number, line in enumerate(lines[at : at + points]):
+            point = _POINT.match(line)
+            if point is None or int(point[1]) != number:
+                raise unreadable(f"{file} line {at + number + 1}", f"{line!r} is not position {number}")
+            values[number] = [float(value) for value in point.groups()[1:]]
+        at += points
+    told = {letters: int(number) for letters, number in zip(_BESIDE, count.groups()[1:])}
+    for letters, beside in told.items():
+        if beside not in (0, points):
+            raise unreadable(f"{file} line 4", "not every position has one of the axes beside the robot, or these are alone")
+        values = np.hstack([values, _beside(file, letters, lines[at : at + beside], at)]) if beside else values
+        at += beside
+    for number, pattern in enumerate(_INST):
+        if at + number >= len(lines) or not re.fullmatch(pattern, lines[at + number]):
+            raise unreadable(f"{file} line {at + number + 1}", "the instructions do not begin as those of a robot's job do")
+    first = at + len(_INST)
+    group = _GROUP.match(lines[first - 2])
+    track, station = (bool(group[1]), group[2] or "") if group else (False, "")
+    if points and (track, bool(station)) != (told["BC"] > 0, told["EC"] > 0):
+        raise unreadable(f"{file} line {first - 1}", "its group is not that of its positions")
+    return name[1], _Job(file, tool, values, lines[first:-2], first + 1, track, station)
+
+
+def _beside(file: str, letters: str, lines: list[str], at: int) -> Array:
+    """(n, k) pulses of a track or a station at the positions, told on lines after number `at`."""
+    rows: list[list[float]] = []
+    for number, line in enumerate(lines):
+        point = _BESIDE[letters].match(line)
+        if point is None or int(point[1]) != number or (rows and len(rows[0]) != point[2].count(",") + 1):
+            raise unreadable(f"{file} line {at + number + 1}", f"{line!r} is not position {number} of {letters}")
+        rows.append([float(value) for value in point[2].split(",")])
+    return np.array(rows)
+
+
+def _axes(count: int) -> list[str]:
+    """What the axes are called, those of the robot and of a station."""
+    return [*"SLURBT", *(f"E{number + 1}" for number in range(count - _OWN))]
+
+
+def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...]) -> None:
+    """Carry out the lines of a job in order, and of those it calls."""
+    job = jobs[name]
+    if name in callers:
+        raise unreadable(job.file, "it calls itself")
+    told = [ratio[1].split() for line in job.lines if (ratio := _PER_UNIT.match(line))]
+    named, slides = sorted(axis for _, axis in told), [axis for unit, axis in told if unit == "mm"]
+    if len(job.points) and (named != sorted(_axes(job.points.shape[1])) or len(slides) != job.track):
+        raise unreadable(job.file, "it does not say how many pulses there are to a degree of each axis, a mm of a track")
+    if any(_MOVL.match(line) for line in job.lines) and not any(_UNIT.match(line) for line in job.lines):
+        raise unreadable(job.file, "it does not say what unit V has")
+    for number, text in enumerate(job.lines, job.first):
+        where = f"{job.file} line {number}"
+        if text.startswith("MOV"):
+            _move(job, text, run, where)
+        elif output := _OUTPUT.match(text):
+            if run.output not in ("", output[1]):
+                raise unreadable(where, "a second output is switched")
+            run.output, run.on = output[1], output[2] == "ON"
+            run.happens("on" if run.on else "off", float(output[1]), "OT")
+        elif group := _OUTPUTS.match(text):
+            run.happens("schedule", float(group[1]), float(group[2]))
+        elif arc := _ARC.match(text):
+            if run.output not in ("", ARC) or run.on == arc[1].startswith("ON"):
+                raise unreadable(where, "an output is switched too, or the arc burns already, or not yet")
+            run.output, run.on = ARC, arc[1].startswith("ON")
+            run.happens("on" if run.on else "off", float(arc[2]), ARC)
+        elif timer := _TIMER.match(text):
+            run.happens("wait", float(timer[1]), digits=0.5 * 10.0 ** -len(timer[2]))
+        elif given := _INPUT.match(text):
+            run.happens("input", float(given[1]))
+        elif call := _CALL.match(text):
+            if call[1] in jobs:
+                _follow(call[1], jobs, run, (*callers, name))
+            else:
+                run.happens("call", call[1])
+        elif not text.startswith("'") or len(text) >= _LINE:
+            raise unreadable(where, f"the instruction {text!r} is not understood")
+        else:
+            _remark(text, run, where)
+
+
+def _remark(text: str, run: _Run, where: str) -> None:
+    """What remarks say of the numbers, the same in all jobs, and where layers begin."""
+    if layer := _LAYER.match(text):
+        run.happens("layer", float(layer[1]))
+    elif ratio := _PER_UNIT.match(text):
+        of, axis = ratio[1].split()
+        if run.per_unit.setdefault(axis, float(ratio[2])) != float(ratio[2]) or float(ratio[2]) == 0.0:
+            raise unreadable(where, f"the pulses per {of} of {axis} differ, or are none")
+        run.slides |= {axis} if of == "mm" else set()
+    elif unit := _UNIT.match(text):
+        if run.unit not in ("", unit[1]):
+            raise unreadable(where, "V has two units")
+        run.unit = unit[1]
+
+
+def _numbers(move: re.Match[str]) -> tuple[str | None, str | None]:
+    """The positions of track and station that a move names."""
+    return move[2] or None, move[3] or None
+
+
+def _move(job: _Job, text: str, run: _Run, where: str) -> None:
+    joint, line = _MOVJ.match(text), _MOVL.match(text)
+    move = joint or line
+    if move is None or int(move[1]) >= len(job.points) or _numbers(move) != (
+            move[1] if job.track else None, move[1] if job.station else None):
+        raise unreadable(where, f"the move {text!r} is not understood, or its position is not there")
+    value = float(move[4])
+    if value <= 0.0 or (joint and value > 100.0):
+        raise unreadable(where, f"the speed {move[4]} is none")
+    beside = job.track, job.station
+    if run.beside not in (None, beside) or run.axes not in (0, job.points.shape[1]):
+        raise unreadable(where, "moves with another track or station than before are mixed")
+    run.beside, run.axes = beside, job.points.shape[1]
+    kind = 0 if joint else 1
+    run.decimals[kind] = min(run.decimals[kind], len(move[5] or ""))
+    run.moves.extend((value, np.nan) if joint else (np.nan, value))
+    run.moves.extend((float(move[6]), job.tool))
+    run.moves.extend(job.points[int(move[1])].tolist())
+    run.deposit.append(run.on)
