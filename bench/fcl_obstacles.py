@@ -15,9 +15,10 @@ from typing import Any
 import fcl
 import numpy as np
 
-from freecad_am.core.collision.frustum import Array, Frustum, Index, Mask
+from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.obstacles import ALWAYS, Obstacles
 from freecad_am.core.geometry.frames import smallest_rotation
+from freecad_am.core.types import Array, Index, Mask
 
 SIDES = 64
 

@@ -12,7 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from .core.issues import ERROR, Issue
 from .core.kinematics.cell import Cell
@@ -25,9 +26,6 @@ from .read_back.events import event_issues
 from .read_back.planned import Planned
 from .read_back.times import time_issues
 from .read_back.ways import way_issues
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 STRAYS = "the path between two points leaves the straight line by {:.3g} mm, more than the chord error"
 WANDERS = "the way between two beads leaves the one that was checked by up to {:.3g} mm"

@@ -11,11 +11,12 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from freecad_am.core.types import Array, Index, Mask
+
 from ..core.geometry.mesh.refined import Edges
-from ..core.geometry.mesh.triangle_mesh import Index, Mask
 from ..core.geometry.told import place
 from ..core.geometry.walls.clad_faces import CladFaces
-from ..core.geometry.walls.patch_wall import Array, PatchWall
+from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.geometry.walls.surface import dot
 from ..core.issues import WARNING, InputError, Issue
 from .kernel.limits import told

@@ -10,7 +10,9 @@ import FreeCAD
 import numpy as np
 import Part
 
-from ..core.geometry.curves.bead_curves import Array, BeadCurve
+from freecad_am.core.types import Array
+
+from ..core.geometry.curves.bead_curves import BeadCurve
 from ..core.geometry.told import place
 from ..core.issues import InputError
 

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.walls.patch import Array
+from freecad_am.core.types import Array
+
 from ..core.issues import InputError
 from .walls.start_edges import sampled
 

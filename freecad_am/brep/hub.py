@@ -11,10 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
+from freecad_am.core.types import Array
+
 from ..core.geometry.developable import TURN, Developable
 from ..core.geometry.mesh.manifold import holes, told_apart
 from ..core.geometry.mesh.repair import Repaired, crossing_told, mended_issues, repaired
-from ..core.geometry.mesh.solid import Array, SolidMesh
+from ..core.geometry.mesh.solid import SolidMesh
 from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue

@@ -8,10 +8,11 @@ from typing import Any
 
 import Part
 
+from freecad_am.core.types import Array
+
 from .hub import SHARE
 from .kernel.process import beside
 from .shapes.fine_mesh import fine
-from .shapes.tessellate import Array
 from .walls.wall import faces_by_name
 
 

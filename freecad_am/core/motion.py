@@ -17,7 +17,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .types import Array
+
 Roles = NDArray[np.int64]
 
 # what the move that ends at a row is for: with deposit; away from the bead before; over to the next; onto its start

@@ -5,12 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
+from .types import Array, Mask
 
 ARC = "ARC"  # in place of the word of an output, where the deposit is switched by an arc instruction
 

@@ -22,8 +22,7 @@ from .geometry.curves.outline import Outline, estimated, outline
 from .geometry.fitted import Fitted
 from .geometry.surroundings import Body
 from .issues import Issue
-
-Array = NDArray[np.float64]
+from .types import Array
 
 FILLED = ("developable", "solid", "cladding")  # families whose beads fill solids, or layers on faces
 PREDICTED = ("width", "height")  # columns of a bead that a bead model gives

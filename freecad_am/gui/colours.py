@@ -7,11 +7,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ..objects.fields import preferences
-
-Array = NDArray[np.float64]
 
 STEPS = 256
 WRONG = "#c0182b"  # of text that tells what is wrong

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ..core.geometry.frames import smallest_rotation
 from ..core.motion import Motion
 from ..core.toolpath import Toolpath
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,13 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from freecad_am.core.types import Array
 
 from ..core.geometry import frames
 from ..core.kinematics.machines.machine import Machine
 
-Array = NDArray[np.float64]
 SOLVERS = ("nr", "lma")
 ITERATIONS = 100
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from freecad_am.core.types import Array
 
 LINE, STEP, DOTS, MARKED, OUTLINE = "line", "step", "dots", "marked", "outline"
 INF = float("inf")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .chart import Array
+from freecad_am.core.types import Array
 
 FEW = 4  # points to a column that are drawn as they are
 

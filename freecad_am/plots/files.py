@@ -14,7 +14,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from .chart import DOTS, Array, Picture
+from freecad_am.core.types import Array
+
+from .chart import DOTS, Picture
 from .look import VARIABLES
 
 KINDS = ("png", "svg", "pdf")

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ..core.kinematics.cell import Cell
-from .chart import INF, LINE, STEP, Array, Chart, Curve, Quantity
+from .chart import INF, LINE, STEP, Chart, Curve, Quantity
 from .rows import Rows
 from .source import Source
 

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ..core.layers.planes.slabs import outline
 from ..core.process.model import predicted
-from .chart import LINE, MARKED, OUTLINE, STEP, Array, Bars, Chart, Curve, Quantity
+from .chart import LINE, MARKED, OUTLINE, STEP, Bars, Chart, Curve, Quantity
 from .rows import Rows
 from .source import Source
 

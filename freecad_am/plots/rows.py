@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .chart import Array, Quantity
+from freecad_am.core.types import Array
+
+from .chart import Quantity
 from .source import Source
 
 TIME, PATH = "time", "path"

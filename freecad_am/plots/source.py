@@ -9,6 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ..core.geometry.on_hub import Group, SolidsOnHub
 from ..core.kinematics.cell import Cell
 from ..core.layers.planes.slabs import Slabs, group_of, slabs
@@ -23,7 +25,6 @@ from ..core.simulation.pace import Pace, pace
 from ..core.simulation.rates import Rates, rates
 from ..core.simulation.timeline import Timeline, timeline
 from ..core.toolpath import Toolpath
-from .chart import Array
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,8 @@ from collections import defaultdict
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from freecad_am.core.types import Array
 
 _DIGITS = str.maketrans("123456789", "000000000")
 _EXACT = 15  # digits of a whole number that a float always holds

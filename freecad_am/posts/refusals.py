@@ -7,13 +7,12 @@ import re
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ..core.issues import InputError
 from ..core.program import LINEAR_MOVE, Call, DepositOn, Moves, Program, Schedule, WaitBelow
 from .parts import place
-
-Array = NDArray[np.float64]
 
 CALL = "process.between_layers.call"
 

@@ -6,13 +6,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array, Mask
+
 from ..core.geometry import frames
 from ..core.kinematics.cell import Cell
 from .planned import Planned, pieces
 from .text_path import Joints, Path, tip_bounds
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 # of the way between two points, where the path is looked at
 BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0

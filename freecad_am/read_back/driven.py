@@ -8,16 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array, Index, Mask
+
 from ..core.kinematics.cell import Cell
 from ..core.motion import Motion
 from ..core.program import Program
 from ..core.read_moves import Event, ReadMoves
 from . import followed, text_path
 from .text_path import Path
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

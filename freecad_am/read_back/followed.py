@@ -5,7 +5,8 @@ next to where the machine stands."""
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Index, Mask
 
 from ..core.geometry import frames
 from ..core.issues import InputError
@@ -15,10 +16,6 @@ from ..core.kinematics.inverse.five_axis import FiveAxis
 from ..core.read_moves import ReadMoves
 from .planned import pieces
 from .text_path import Path
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 TURN = 2.0 * np.pi
 

@@ -6,11 +6,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Mask
+
 from ..core.issues import ERROR, Issue
 from ..core.motion import Motion
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 # what rounding in the computation itself may amount to: mm, and of unit vectors
 COMPUTED_MM, COMPUTED_AXIS = 1e-6, 1e-9

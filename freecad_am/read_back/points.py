@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Mask
 
 from ..core.geometry.columns import lengths
 from ..core.issues import NOTE, Issue
@@ -13,9 +14,6 @@ from ..core.read_moves import ReadMoves
 from ..kdl import chain as kdl_chain
 from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned, pieces
 from .text_path import Joints, Path, digits, told_by_position
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 def joint_issues(cell: Cell, planned: Planned, read: ReadMoves, endless: Mask) -> list[Issue]:

@@ -12,15 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array, Mask
+
 from ..core.geometry import frames
 from ..core.kinematics.cell import Cell
 from ..core.kinematics.chain import JointFrames
 from ..core.program import Program
 from ..core.read_moves import ReadMoves
 from .planned import COMPUTED_AXIS, COMPUTED_MM, pieces
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ..core.issues import Issue
 from ..core.kinematics.cell import Cell
@@ -12,9 +13,6 @@ from ..core.program import FIRST_SHARE, FIRST_TIME
 from ..core.read_moves import ReadMoves
 from .planned import COMPUTED_AXIS, Planned
 from .text_path import digits
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 # s: the step of a time in milliseconds and in tenths of a second, and where the second begins
 MILLISECOND, TENTH, LONGEST_MSEC = 0.001, 0.05, 32.0

@@ -5,7 +5,8 @@ which configuration of the arm; against how the program was planned."""
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Mask
 
 from ..core.issues import ERROR, Issue
 from ..core.kinematics.cell import Cell
@@ -13,9 +14,6 @@ from ..core.kinematics.inverse import opw
 from ..core.program import LINEAR_MOVE, Program
 from ..core.read_moves import Configuration, ReadMoves
 from .planned import COMPUTED_AXIS, Planned, pieces
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 # mm by which a distance that a text rounds to thousandths may be off
 THOUSANDTH = 0.0011

@@ -13,7 +13,8 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters
-from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.core.toolpath import Toolpath
+from freecad_am.core.types import Array
 
 if TYPE_CHECKING:  # slow to import, and jobs without a cell have none
     from freecad_am.core.preflight.promise import Promise

@@ -28,7 +28,8 @@ from freecad_am.core.process.model import predicted
 from freecad_am.core.simulation import class_figures, totals
 from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.strategies.families import family_of
-from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.core.toolpath import Toolpath
+from freecad_am.core.types import Array
 
 from . import scan_figures
 from .asked import Feature

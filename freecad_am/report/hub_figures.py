@@ -12,7 +12,8 @@ from freecad_am.core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
 from freecad_am.core.geometry.plane import Plane
 from freecad_am.core.layers.along.layer import between
 from freecad_am.core.process.model.bead_model import MINUTE
-from freecad_am.core.toolpath import Array, Bead, Layer, Toolpath
+from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.core.types import Array
 from freecad_am.plots.look import shade
 
 from . import svg

@@ -16,7 +16,8 @@ from freecad_am.core.process.deposit import spacing
 from freecad_am.core.simulation import deposit
 from freecad_am.core.simulation.margins import on_deposit
 from freecad_am.core.strategies.families import family_of
-from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.core.toolpath import Toolpath
+from freecad_am.core.types import Array
 
 from . import figures
 from .asked import Job, Results

@@ -6,9 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from freecad_am.core.types import Array
+
 if TYPE_CHECKING:  # slow to import, and a job of other families never needs it
     from freecad_am.core.strategies.walls.comparison import Compared, Refused
-    from freecad_am.core.toolpath import Array, Toolpath
+    from freecad_am.core.toolpath import Toolpath
 
 
 class OfFeature(NamedTuple):

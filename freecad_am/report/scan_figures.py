@@ -11,7 +11,7 @@ import numpy as np
 
 from freecad_am.core.geometry.fitted import Fitted
 from freecad_am.core.inspection.bands import band_of, bands
-from freecad_am.core.toolpath import Array
+from freecad_am.core.types import Array
 
 from .svg import Plot
 from .tables import grid_of

@@ -22,7 +22,8 @@ from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.process.deposit.layer_curve import SMOOTH
 from freecad_am.core.strategies.walls import comparison as wall_comparison
 from freecad_am.core.strategies.walls.comparison import METHODS, NORMAL, Compared, Refused
-from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.core.toolpath import Toolpath
+from freecad_am.core.types import Array
 from freecad_am.objects import user_machines
 from freecad_am.objects.planned.toolpaths import Given, planned
 

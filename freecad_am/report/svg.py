@@ -9,7 +9,7 @@ from html import escape
 
 import numpy as np
 
-from freecad_am.core.toolpath import Array
+from freecad_am.core.types import Array
 
 _MOST_COLUMNS = 700
 

@@ -9,7 +9,8 @@ from html import escape
 
 import numpy as np
 
-from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.core.toolpath import Toolpath
+from freecad_am.core.types import Array
 from freecad_am.plots.look import shade
 
 from . import svg

@@ -173,7 +173,7 @@ def test_a_process_that_has_left_does_not_take_freecad_along():
     script = "\n".join((
         "import signal",
         "import FreeCAD, Part",
-        "from freecad_am.brep import kernel_process",
+        "from freecad_am.brep.kernel import process as kernel_process",
         "from tests.brep.test_kernel_process import in_thread, pid_of",
         "kernel_process.FEW = 0",
         "signal.signal(signal.SIGPIPE, signal.SIG_DFL)",
@@ -281,7 +281,7 @@ def test_a_process_that_nobody_holds_any_more_is_ended(slow_part):
 
 
 def test_a_process_that_is_asked_nothing_leaves_from_the_beginning():
-    host = ("import sys; from freecad_am.brep import kernel_host; kernel_host.IDLE = 0.2; "
+    host = ("import sys; from freecad_am.brep.kernel import host as kernel_host; kernel_host.IDLE = 0.2; "
             "kernel_host.serve(sys.stdin.buffer, sys.stdout.buffer)")
     with subprocess.Popen([sys.executable, "-c", host], stdin=subprocess.PIPE, cwd=EXAMPLES.parent.parent) as process:
         assert process.wait(20) == 0

@@ -244,7 +244,7 @@ def test_without_a_window_preferences_count_for_nothing(person, clean, root, tmp
     App.saveParameter()
     code = (
         "import sys; sys.path.insert(0, sys.argv[1]); from freecad_am.batch import host; host.find_freecad();"
-        "import FreeCAD; from freecad_am.objects import preferences as p;"
+        "import FreeCAD; from freecad_am.objects.fields import preferences as p;"
         "print(FreeCAD.ParamGet(p.GROUP).GetString('Machine', ''), p.machine(), p.process())"
     )
     python = "/usr/bin/python3" if "freecad" in sys.executable.lower() else sys.executable

@@ -10,7 +10,7 @@ import numpy as np
 
 from freecad_am.core.inspection import table
 from freecad_am.core.inspection.bands import band_of, bands
-from freecad_am.core.toolpath import Array
+from freecad_am.core.types import Array
 from freecad_am.report.style import STYLE
 from freecad_am.report.svg import Plot
 

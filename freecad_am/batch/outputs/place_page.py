@@ -9,7 +9,7 @@ import numpy as np
 
 from freecad_am.core.placement.moved import outer
 from freecad_am.core.placement.place import Placed, ranked
-from freecad_am.core.toolpath import Array
+from freecad_am.core.types import Array
 from freecad_am.report.style import STYLE
 from freecad_am.report.svg import Plot
 

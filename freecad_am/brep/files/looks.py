@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.geometry.located import located
 from ...core.geometry.mesh.file_unit import MESHES
 from .apart import apart
 from .read import read_mesh, read_shape
-
-Array = NDArray[np.float64]
 
 # how far triangles may be off a shape's surface, as a share of its size
 FINENESS = 2e-3

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ...core.geometry.curves.profile import Array
+from freecad_am.core.types import Array
+
 from ..revolution.cylindrical import AxisFrame, pieces_of
 
 SAMPLES = 721

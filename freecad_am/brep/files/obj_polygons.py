@@ -7,11 +7,10 @@ import re
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.geometry.mesh.polygon import triangulated
-
-Array = NDArray[np.float64]
 
 VERTEX = re.compile(rb"^[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.MULTILINE)
 FACE = re.compile(rb"^[ \t]*f((?:[ \t]+-?\d\S*){3,})", re.MULTILINE)

@@ -15,12 +15,10 @@ from pathlib import Path
 from xml.parsers import expat
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Index
 
 from ...core.issues import InputError
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 UNITS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
 MODEL = "3D/3dmodel.model"  # where it is when the zip does not say

@@ -12,9 +12,9 @@ import numpy as np
 import Part
 from scipy.spatial import cKDTree
 
-from ...core.geometry.mesh.triangle_mesh import Index
+from freecad_am.core.types import Array, Index
+
 from ...core.geometry.told import place
-from ...core.geometry.walls.patch import Array
 from ...core.geometry.walls.surface import dot
 from ...core.issues import InputError
 

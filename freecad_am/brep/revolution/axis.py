@@ -10,7 +10,8 @@ import numpy as np
 import Part
 from numpy.typing import NDArray
 
-from ...core.geometry.curves.profile import Array
+from freecad_am.core.types import Array
+
 from .cylindrical import as_array, edge_points
 
 Axis = tuple[Array, Array]

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ...core.geometry.curves.profile import Array
+from freecad_am.core.types import Array
+
 from ...core.geometry.curves.sampling import Curve, sampled
 
 

@@ -10,8 +10,9 @@ import FreeCAD
 import numpy as np
 import Part
 
+from freecad_am.core.types import Array
+
 from ...core.geometry.curves.contour import Piece
-from ...core.geometry.curves.profile import Array
 from ...core.geometry.curves.sampling import Curve, arc, line
 from ..files.lost_pole import edges_of, has_lost_pole, restored
 from .cylindrical import AxisFrame, as_array, edge_points, flattened, pieces_of, smooth_pieces

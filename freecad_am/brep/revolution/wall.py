@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.geometry.curves import contour
 from ...core.geometry.curves.contour import Chain, Piece
-from ...core.geometry.curves.profile import Array, Meridian, RevolvedWall
+from ...core.geometry.curves.profile import Meridian, RevolvedWall
 from ...core.issues import NOTE, WARNING, InputError, Issue
 from ..files.lost_pole import has_lost_pole
 from .axis import candidates

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.issues import InputError
 from ..kernel.process import beside
-
-Array = NDArray[np.float64]
 
 FINEST, SHARE = 0.02, 2e-4  # mm, and of the extent: deflection of the triangles
 OFF = 4.0  # deflections between the two feet of a point on a bent face, beyond which it is past the edge of the face,

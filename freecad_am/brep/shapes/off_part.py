@@ -14,6 +14,8 @@ import numpy as np
 import Part
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.collision.inside import inside_of
 from ...core.geometry.mesh.repair import repaired
 from ...core.geometry.mesh.solid import Search, SolidMesh
@@ -21,8 +23,6 @@ from ...core.geometry.surroundings import Body
 from ...core.issues import InputError
 from ..kernel.process import beside
 from .tessellate import triangles_of
-
-Array = NDArray[np.float64]
 
 DEFLECTION, FINE = 0.05, 0.005  # mm
 LARGE = 1e-4  # and this share of the size of what is larger than half a metre: the kernel's time grows faster than its area

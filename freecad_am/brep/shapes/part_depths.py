@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import Part
 
+from freecad_am.core.types import Array
+
 from ...core.collision.depths import grain, measured
 from ...core.geometry.curves.profile import RevolvedWall
 from ...core.geometry.mesh.solid import spread
 from ...core.geometry.surroundings import Body
-from ...core.geometry.walls.part_depths import Array, PartDepths, Surface
+from ...core.geometry.walls.part_depths import PartDepths, Surface
 from ..kernel.limits import FAULTS
 from ..kernel.process import beside
 from .tessellate import tessellated

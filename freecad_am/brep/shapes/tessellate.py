@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from freecad_am.core.types import Array, Index
+
 from ...core.geometry.surroundings import Body
 from ...core.issues import InputError
 from ..kernel.process import beside
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 Corners = NDArray[np.intp]
 
 DEFLECTION = 0.1  # mm, largest distance of the triangles from a curved face

@@ -11,10 +11,10 @@ import numpy as np
 import Part
 from scipy.spatial import cKDTree
 
+from freecad_am.core.types import Array, Index, Mask
+
 from ...core.geometry.mesh.refined import Edges, boundary
-from ...core.geometry.mesh.triangle_mesh import Index, Mask
 from ...core.geometry.told import place
-from ...core.geometry.walls.patch import Array
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.rims import parts
 from ...core.geometry.walls.surface import dot, normals

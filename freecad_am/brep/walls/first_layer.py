@@ -11,9 +11,11 @@ import FreeCAD
 import numpy as np
 import Part
 
+from freecad_am.core.types import Array
+
 from ...core.geometry.told import deviation
 from ...core.geometry.walls.surface import dot
-from ...core.geometry.walls.surface_wall import TABLE, TORUS, Array, Placed, SurfaceWall
+from ...core.geometry.walls.surface_wall import TABLE, TORUS, Placed, SurfaceWall
 from ...core.issues import NOTE, InputError, Issue
 from .patch_wall import sound
 from .wall import Tube, tubes

@@ -10,15 +10,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from freecad_am.core.types import Array, Mask
+
 from ...core.geometry.mesh.edge_runs import CORNER, runs
 from ...core.geometry.mesh.refined import boundary
-from ...core.geometry.mesh.triangle_mesh import Mask
 from ...core.geometry.surroundings import Body
 from ...core.geometry.told import at_least, count, place
 from ...core.geometry.walls.contact import first_curves, levels, splined
 from ...core.geometry.walls.ground import PlaneGround
 from ...core.geometry.walls.mesh_wall import MOST, MeshWall, mesh_wall
-from ...core.geometry.walls.patch_wall import Array, FirstCurve
+from ...core.geometry.walls.patch_wall import FirstCurve
 from ...core.geometry.walls.rims import parts, rims_of, with_ends
 from ...core.geometry.walls.surface import dot
 from ...core.issues import NOTE, InputError, Issue

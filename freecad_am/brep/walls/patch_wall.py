@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import Part
 
-from ...core.geometry.mesh.triangle_mesh import Mask
+from freecad_am.core.types import Mask
+
 from ...core.geometry.told import at_least, count, deviation, place
 from ...core.geometry.walls import contact
 from ...core.geometry.walls.ground import nearest

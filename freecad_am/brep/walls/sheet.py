@@ -11,10 +11,11 @@ import FreeCAD  # noqa: F401  Part crashes the process when it is loaded before 
 import numpy as np
 import Part
 
+from freecad_am.core.types import Array, Index
+
 from ...core.geometry.mesh.collapsed import collapsed
 from ...core.geometry.mesh.refined import Edges, count_halved, flipped, refined
-from ...core.geometry.mesh.triangle_mesh import Index
-from ...core.geometry.walls.patch import Array, Patch
+from ...core.geometry.walls.patch import Patch
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface import dot
 from ...core.issues import InputError

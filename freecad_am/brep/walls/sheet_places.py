@@ -9,8 +9,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from ...core.geometry.mesh.triangle_mesh import Index, Mask
-from ...core.geometry.walls.patch import SPLINE, Array, Patch
+from freecad_am.core.types import Array, Index, Mask
+
+from ...core.geometry.walls.patch import SPLINE, Patch
 from ...core.geometry.walls.surface import dot
 
 STEPS = 8

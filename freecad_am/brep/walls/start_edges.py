@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import Part
 
+from freecad_am.core.types import Array
+
 from ...core.geometry.told import place
-from ...core.geometry.walls.patch import Array
 from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
 from ...core.issues import InputError
 

@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ...core.geometry.walls.surface_wall import CONE, TABLE, TORUS, Array, Placed, own_surface
+from freecad_am.core.types import Array
+
+from ...core.geometry.walls.surface_wall import CONE, TABLE, TORUS, Placed, own_surface
 from ...core.issues import InputError
 
 TURN = 2.0 * np.pi

@@ -14,8 +14,9 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from ..types import Array, Index, Mask
 from .deposit import of_beads
-from .frustum import Array, Index, Mask, beside_tip
+from .frustum import beside_tip
 from .nozzle import Nozzle, exempt_height, travelling
 from .obstacles import Obstacles
 from .tolerances import ABOVE_FACES, CHORD

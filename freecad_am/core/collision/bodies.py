@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.surroundings import Body
-from .frustum import Array, Frustum, Index, Mask
+from ..types import Array, Index, Mask
+from .frustum import Frustum
 from .inside import Inside, inside_of
 from .obstacles import Obstacles
 

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from ..geometry.columns import columns, lengths
-from .frustum import Array, Frustum, Index, Mask
+from ..types import Array, Index, Mask
+from .frustum import Frustum
 from .obstacles import Obstacles
 
 BENT = 0.2  # rad that joined pieces turn at most: so they are as near to the bead as its own chords

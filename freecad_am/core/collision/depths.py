@@ -6,17 +6,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.mesh.solid import spread
 from ..geometry.surroundings import Body
 from ..geometry.walls.part_depths import Surface
+from ..types import Array, Index
 from .inside import Inside, inside_of
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 MOST = 40_000  # parts that triangles are divided into, about
 PLACES = 800  # within the part

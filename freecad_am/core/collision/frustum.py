@@ -12,14 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.columns import dots, lengths
+from ..types import Array, Index, Mask
 from .tolerances import ALONG, ROUNDING
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 
 def beside_tip(radius: float, slope: float) -> float:

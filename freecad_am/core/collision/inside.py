@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.surroundings import Body
+from ..types import Array, Mask
 from . import tree
-from .frustum import Array, Mask
 
 # of all rays; along no edge or face that anyone draws, so that none runs through an edge but by chance
 RAY = np.array([0.5423261, 0.3190717, 0.7772039])

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .frustum import Array, Frustum, Index, beside_tip
+from ..types import Array, Index
+from .frustum import Frustum, beside_tip
 from .tolerances import ABOVE_FACES, CHORD, FACES, HALFWAY
 
 LEAST_UPRIGHT = 0.25  # mm that the lower side of a nozzle at least rises with a mm along its axis, where it leans

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.columns import columns, dots, lengths
+from ..types import Array, Index, Mask
 from . import own_layer, separation, tree
-from .frustum import Array, Frustum, Index, Mask
+from .frustum import Frustum
 from .tolerances import CONVERGED
 
 QUERIES = 16384  # worked on at once

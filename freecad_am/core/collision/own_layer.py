@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.columns import columns
-from .frustum import Array, Frustum, Index
+from ..types import Array, Index
+from .frustum import Frustum
 
 
 class Lines(NamedTuple):

@@ -20,9 +20,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.surroundings import Body
+from ..types import Array, Index, Mask
 from .bodies import Bodies, of_bodies
 from .deposit import InParts
-from .frustum import Array, Frustum, Index, Mask
+from .frustum import Frustum
 from .nozzle import Nozzle
 from .obstacles import Obstacles
 

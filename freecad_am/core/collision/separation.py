@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.columns import dots
-from .frustum import Array, Frustum, Index, Mask
+from ..types import Array, Index, Mask
+from .frustum import Frustum
 from .tolerances import CONVERGED, ROUNDING
 
 # of the edges from the newest point of a simplex of four: each, the sides of the simplex that they are, and its faces, by

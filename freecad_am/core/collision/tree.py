@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .frustum import Array, Index
+from ..types import Array, Index
 
 BRANCH = 8
 PAIRS = 50_000  # of queries and nodes looked at together: memory does not grow with either

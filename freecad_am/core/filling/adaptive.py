@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import Array, dense, nearest
+from ..geometry.curves.plane_curve import dense, nearest
 from ..geometry.regions.region import WIDTH, Region
+from ..types import Array
 from .curve import Beads, PlaneCurve
 
 MORE = 1.002  # of the thickness, beside what the measure of it may be short of: a contour in the middle is no thin loop

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import Array, length
+from ..geometry.curves.plane_curve import length
 from ..geometry.regions.medial import spine
 from ..geometry.regions.region import Region, along, simplified
 from ..issues import InfeasibleError
+from ..types import Array
 from .curve import Beads, PlaneCurve
 
 ROUNDS = 12  # of beads within one gap

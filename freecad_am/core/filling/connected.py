@@ -14,8 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.curves.plane_curve import Array, nearest
+from ..geometry.curves.plane_curve import nearest
 from ..geometry.regions.region import Region, along
+from ..types import Array
 from .contours import levels, middles
 from .curve import Beads, PlaneCurve, begun, long_enough
 from .rings import Beside, Ring, crossed, side_by_side

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import Array
 from ..geometry.regions.region import Region, along, regions
 from ..geometry.regions.strip import Strip
+from ..types import Array
 from .centre import thinned
 from .curve import Beads, PlaneCurve
 from .strip_closing import beside_windows

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import Array, begun_at, doubled_area, length, up_to
+from ..geometry.curves.plane_curve import begun_at, doubled_area, length, up_to
+from ..types import Array
 
 NEXT, OVER = 0.7548776662, 0.5698402910  # of a length: starts of the next contour, of the next layer (the sequence R2)
 LEVEL = 1e-9  # of a ring's extent; points less apart are equally far out

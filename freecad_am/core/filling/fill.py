@@ -6,10 +6,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..geometry.curves.plane_curve import Array
 from ..geometry.regions.region import Region, joined
 from ..geometry.regions.strip import Strip
 from ..issues import InputError
+from ..types import Array
 from .centre import left_open
 from .connected import connected
 from .contours import contours

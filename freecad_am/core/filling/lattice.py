@@ -11,8 +11,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import Array, turned
+from ..geometry.curves.plane_curve import turned
 from ..geometry.regions.region import Region, simplified
+from ..types import Array
 
 FAMILIES = {"lines": 1, "zigzag": 1, "grid": 2, "triangles": 3}  # of parallel lines, evenly turned
 GYROID_LENGTH = 15.449443  # of all sections of a unit gyroid (2 pi wide) in the mean, within its square of 4 pi^2

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import Array, length, turned
+from ..geometry.curves.plane_curve import length, turned
 from ..geometry.regions.region import Region
+from ..types import Array
 from .centre import closing, necks, outermost, single_beads
 from .curve import Beads, PlaneCurve, begun, long_enough
 from .lattice import crossings

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geometry.curves.plane_curve import Array, nearest, steps
+from ..geometry.curves.plane_curve import nearest, steps
+from ..types import Array
 
 MARK = 0.25  # of the reach, mm between the places of a ring that tell which others are near
 

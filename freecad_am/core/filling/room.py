@@ -8,11 +8,11 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geometry.curves.plane_curve import Array, steps
+from ..geometry.curves.plane_curve import steps
 from ..geometry.regions.telling import telling
+from ..types import Array, Index, Mask
 from .curve import Beads, PlaneCurve
 
 STEP = 0.2  # of the spacing, mm between places at which rooms are looked at
@@ -21,9 +21,6 @@ ALIKE = 0.04  # of the usual width; shares that a straight line tells as well ne
 FIRST = {"contour": 0, "connected": 0, "spiral": 0, "line": 1, "zigzag": 1}  # who keeps its room; all others come last
 LAST = 2
 ALONG = 0.02  # sine of the angle to the lines of a zigzag; what is turned more is a link
-
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 
 class _Edges(NamedTuple):

@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..geometry.curves.plane_curve import Array, length
+from ..geometry.curves.plane_curve import length
 from ..geometry.regions.region import Region
+from ..types import Array
 from .centre import centre_beads, left_open, single_beads
 from .curve import Beads, PlaneCurve, begun, long_enough
 from .lattice import families, gyroid, honeycomb

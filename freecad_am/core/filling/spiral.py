@@ -8,8 +8,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import Array, begun_at, doubled_area, length, nearest, up_to
+from ..geometry.curves.plane_curve import begun_at, doubled_area, length, nearest, up_to
 from ..geometry.regions.region import Region
+from ..types import Array
 from .centre import closing
 from .contours import levels, middles
 from .curve import Beads, PlaneCurve, long_enough

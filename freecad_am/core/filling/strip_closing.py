@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import Array
 from ..geometry.regions.region import Region, regions
 from ..geometry.regions.strip import Strip, Window
+from ..types import Array
 from .centre import centre_beads, left_open
 from .curve import Beads, PlaneCurve, long_enough
 

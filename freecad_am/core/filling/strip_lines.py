@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.curves.plane_curve import Array, dense
+from ..geometry.curves.plane_curve import dense
 from ..geometry.regions.region import Region, regions
 from ..geometry.regions.strip import Strip
+from ..types import Array
 from .curve import Beads, PlaneCurve, long_enough
 from .lines import levels_between
 from .strip_closing import strip_closing

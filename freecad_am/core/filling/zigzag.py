@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import Array, length, nearest
+from ..geometry.curves.plane_curve import length, nearest
 from ..geometry.regions.region import Region, simplified
+from ..types import Array
 from .centre import closing, single_beads
 from .curve import Beads, PlaneCurve, long_enough
 from .lines import frame, rows

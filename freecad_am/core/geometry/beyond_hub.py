@@ -11,10 +11,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..types import Array
 from .columns import dots
 from .developable import Developable
-
-Array = NDArray[np.float64]
 
 PLACES = 10_000  # of the solid's surface, if its triangles were squares
 

@@ -9,9 +9,8 @@ must lie in one piece: the same job then has the same bytes.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..types import Array
 
 MANY = 1000  # rows from which on columns are sooner done
 

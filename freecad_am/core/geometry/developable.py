@@ -16,11 +16,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..types import Array
 from .columns import columns
-
-Array = NDArray[np.float64]
 
 TURN = 2.0 * math.pi
 

@@ -8,9 +8,9 @@ are free everywhere, so that one call serves one pose and a hundred thousand.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from ..types import Array
 
 
 def pose(rotation: ArrayLike, origin: ArrayLike) -> Array:

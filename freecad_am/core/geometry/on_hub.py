@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..issues import Issue
+from ..types import Array
 from .columns import columns
 from .curves.guide import Guide
 from .developable import TURN, Developable
 from .plane import Plane
 from .surroundings import Body
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

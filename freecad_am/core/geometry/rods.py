@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..types import Array
 
 PIECES = 8  # a shape is cut into at most so many
 SHORT = 0.5  # pieces are no shorter than this share of the shape's width

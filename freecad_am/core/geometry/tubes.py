@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ..types import Array, Index
 
 TURN = np.radians(20.0)  # a section is kept wherever the course has turned by this since the last one
 _SHARPEST = 0.5  # of the cosine of half a turn: mitres grow no longer than twice the width

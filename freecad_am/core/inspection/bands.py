@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..types import Array
 
 STEPS = 3  # tolerances at which bands end
 _COLOURS = (

@@ -12,10 +12,9 @@ from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import Meridian
 from ..issues import InputError
+from ..types import Array
 from .planned import Planned
 from .roundness import Round, least, narrowest
-
-Array = NDArray[np.float64]
 
 BARS = 40  # of a histogram at most
 FEW = 600  # points from each end and from all over that a narrowest zone is begun with

@@ -20,10 +20,9 @@ from ..geometry.told import place
 from ..issues import NOTE, WARNING, InputError, Issue
 from ..parameters.scan import ScanParameters
 from ..toolpath import Bead, Layer, Toolpath
+from ..types import Array
 from .scan_heights import Scan
 from .scanned_beads import STEP, Off, Scanned, Ways, along_beads, moved
-
-Array = NDArray[np.float64]
 
 FAMILIES = ("solid", "surface")  # solids in plane layers, and walls
 RUN = 20  # steps over which a slope is told

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..issues import NOTE, WARNING, InputError, Issue
 from ..parameters.inspection import AXIS, BEST, BOTH, NONE, SHIFT, InspectionParameters
+from ..types import Array
 from . import figures
 from .figures import Ball, Circle, Spread, Thickness
 from .planned import Planned, sided
@@ -29,7 +30,6 @@ from .registration import (
     roughly,
 )
 
-Array = NDArray[np.float64]
 Report = Callable[[float, str], None]
 
 UNLIKE = 8.0  # times smaller than the part points are hardly of all of it; cm, inches and m are 10 times and more

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..issues import InputError
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 _PLY_TYPES = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",

@@ -14,9 +14,8 @@ from ..geometry.curves.profile import RevolvedWall
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.walls.surface import dot
 from ..parameters.inspection import BOTH, INNER
-from .registration import Mask, Surface
-
-Array = NDArray[np.float64]
+from ..types import Array, Mask
+from .registration import Surface
 
 PAST = 0.5  # mm past an edge that a point may be and still count
 FACETED = 0.03  # how much a turn of something round is felt at most where its surface is of facets

@@ -8,14 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.file_content import content
 from ..issues import NOTE, WARNING, InputError, Issue
 from ..parameters.inspection import AUTO, UNITS
+from ..types import Array
 from . import mesh_file
-
-Array = NDArray[np.float64]
 
 TABLES, MESHES = (".csv", ".txt", ".xyz", ".asc"), {".stl": mesh_file.stl, ".obj": mesh_file.obj, ".ply": mesh_file.ply}
 MOST = 200_000  # points that are kept of a larger scan, evenly

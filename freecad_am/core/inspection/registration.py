@@ -13,15 +13,13 @@ from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from ..geometry.frames import pose, rotation_about
 from ..issues import InfeasibleError, InputError
+from ..types import Array, Mask
 from .told import motion_told
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 # distance (n,) of points (n, 3), outside with a plus, and unit vectors (n, 3) along which it grows
 Surface = Callable[[Array], tuple[Array, Array]]
 

@@ -10,12 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares, linprog
 
 from ..issues import InputError
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 ROUNDS = 60
 FLAT = 1e-6  # of the largest extent: points that are all in a line, or a plane, have no centre

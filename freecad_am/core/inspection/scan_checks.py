@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.surroundings import Body
 from ..issues import InputError
 from ..parameters.inspection import UNITS
+from ..types import Array
 from .inspect import UNLIKE
-
-Array = NDArray[np.float64]
 
 LOOKED = 10_000  # points
 NEAR = 0.8  # share of the points of a scan that have to lie on what was scanned

@@ -11,11 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from ..types import Array, Mask
 
 AROUND = 64  # points that tell a patch
 LEAST = 12  # of them that have to count

@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.surroundings import Body
 from ..issues import AmError, InputError
+from ..types import Array
 from .planned import of_triangles
 from .registration import Surface, by_extents, mean_square, register, roughly
-
-Array = NDArray[np.float64]
 
 NEIGHBOURS = 8
 ALONE = 3.0  # times farther from its neighbours than points are as a rule: it is none of the surface

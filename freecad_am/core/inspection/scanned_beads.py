@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..toolpath import Bead
+from ..types import Array, Mask
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Ways = Callable[[Bead], Array]
 Off = Callable[[Array, Array], Array]  # points (n, 3) and directions (n, 3): mm (n,) along these
 

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from ..geometry.mesh.refined import refined
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.surroundings import Body
+from ..types import Array
 from .scan_heights import Scan
-
-Array = NDArray[np.float64]
 
 PARTS = 40  # along the longest side of the body, of its triangles once they are divided
 FINEST = 4.0  # mm

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
@@ -14,9 +13,8 @@ from ..geometry.walls.surface import dot
 from ..geometry.walls.surface_wall import SurfaceWall
 from ..issues import InputError
 from ..toolpath import Bead, Toolpath
+from ..types import Array
 from .planned import Planned, of_beads, of_revolution, of_triangles
-
-Array = NDArray[np.float64]
 
 ROWS, COLUMNS = 80, 240  # of the triangles by which points find their place on a wall of one surface
 PLAIN = 0.2  # of normals away from the middle of a loop: with less, which side is outside is told by its neighbour

@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.told import place
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 LITTLE = 1e-6  # rad per mm of shift: no turn
 

@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..geometry.columns import columns
@@ -22,6 +21,7 @@ from ..geometry.surroundings import Body
 from ..issues import InputError
 from ..parameters.cell import CellParameters, NozzleParameters
 from ..parameters.external import externals
+from ..types import Array
 from .arrangement import Arrangement, of_setup, planned_of
 from .external import ExternalAxes, coupled, upward
 from .inverse import opw
@@ -31,8 +31,6 @@ from .machines.machine import Machine
 from .pose_frames import PoseFrames
 from .torch import Torch
 from .work_offset import WorkOffset, of_cell
-
-Array = NDArray[np.float64]
 
 UP = (0.0, 0.0, 1.0)
 

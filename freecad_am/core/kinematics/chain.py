@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..geometry import frames
-from ..geometry.frames import Array
+from ..types import Array
 
 # poses done together: what they need stays in the processor's cache
 PIECE = 1024

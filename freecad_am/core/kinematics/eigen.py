@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.frames import Array
+from ..types import Array
 
 # fewer matrices than this are done faster one at a time
 MANY = 400

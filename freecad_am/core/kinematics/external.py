@@ -21,14 +21,13 @@ from numpy.typing import NDArray
 from ..geometry import frames
 from ..issues import InputError
 from ..parameters.external import PART, ROBOT, WHERE, External
+from ..types import Array
 from .chain import Chain, Piece, joined
 from .limits import Limits
 from .machines import machine as machines
 from .machines.machine import MAKER, Machine
 from .urdf import machine as urdf_machine
 from .urdf.reference import reference
-
-Array = NDArray[np.float64]
 
 MECHANISMS = machines.BUILT_IN / "mechanisms"
 

@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..geometry.frames import Array
+from ..types import Array
 from . import eigen
 from .chain import Chain
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..geometry.frames import Array
+from ..types import Array
 
 
 class Smallest(NamedTuple):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.frames import Array
+from ..types import Array
 
 
 @dataclass(frozen=True)

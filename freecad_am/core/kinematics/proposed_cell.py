@@ -18,12 +18,12 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..geometry.rods import Rod
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
+from ..types import Array
 from .arrangement import OF_ROBOTS, of_setup
 from .cell import Cell, resolve
 from .inverse import opw
@@ -31,8 +31,6 @@ from .limits import margins
 from .links import rods as link_rods
 from .links.contact import ArmContact
 from .machines import machine as machines
-
-Array = NDArray[np.float64]
 
 # what is found for the cell that most jobs have, so that it is not looked for with each of them
 USUAL_POINT, USUAL_BRANCH = (1562.0, 0.0, 691.0, 0.0, 0.0, 0.0), ("front", "down", "noflip")

@@ -17,8 +17,8 @@ from ..geometry.rods import Rod, about
 from ..geometry.surroundings import Body
 from ..issues import InputError
 from ..parameters.cell import NozzleParameters
+from ..types import Array
 
-Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 Piece = tuple[Array, Triangles]
 

@@ -11,16 +11,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..issues import InputError
 from ..parameters.cell import CellParameters
 from ..parameters.external import PART, externals
 from ..parameters.touched import WHERE, Touched, touched
+from ..types import Array
 from .arrangement import Arrangement
-
-Array = NDArray[np.float64]
 
 CODE = "TOUCHED"
 LEAST = 3

@@ -13,12 +13,13 @@ from ..geometry.surroundings import Body
 from ..parameters.filled import DevelopableParameters, FilledParameters, SolidParameters
 from ..slicing.solids.equidistant import Facets
 from ..slicing.solids.unrolled import cut
+from ..types import Array
 from .along import field as along
 from .curved import field as curved
 from .planes import field as planes
 from .planes.layer import PlaneLayer
 from .rotary import field as rotary
-from .surface import Array, Slice
+from .surface import Slice
 
 
 class Piece(NamedTuple):

@@ -7,14 +7,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.curves.guide import Guide
 from ..geometry.on_hub import Base
 from ..geometry.surroundings import Body
+from ..types import Array
 from .planes.stacking import facets
-
-Array = NDArray[np.float64]
 
 LEAST = 1e-9  # rad; what leans by less is a wall
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from ..geometry.regions.region import Region, joined, mended, regions
 from ..issues import Issue
-from .surface import Array
+from ..types import Array
 
 BORDER, ARCS = 0.05, 0.2  # shares of the chord error: of borders without needless points, of fillings
 

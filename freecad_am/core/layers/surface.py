@@ -9,15 +9,10 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..geometry.regions.region import Region
 from ..geometry.regions.strip import Period, Strip
 from ..issues import Issue
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ..types import Array, Index
 
 
 class Wrapped(NamedTuple):

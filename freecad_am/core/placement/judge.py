@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..collision.bead_ends import LINK_GRAIN, Beads
 from ..geometry.rods import Rod
@@ -33,7 +32,6 @@ from ..planning.sampled import Sampled, sampled
 from ..toolpath import Bead, Toolpath
 from .screen import alone, screened
 
-Array = NDArray[np.float64]
 Rods = tuple[tuple[Rod, ...], ...]
 
 TOGETHER = 2  # beads that follow each other, so that rapids are among what is planned

@@ -11,15 +11,13 @@ import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.place import CLEARANCE, MARGIN, POINT, POSITIONER, TIME, PlaceParameters
 from ..planning.plan import Progress
+from ..types import Array
 from . import moved
 from .judge import Job, Judge, Judged
-
-Array = NDArray[np.float64]
 
 JUDGING = 0.8  # of the time goes into all poses, the rest into planning the best ones whole
 

@@ -7,15 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..kinematics.cell import Cell
 from ..planning.plan import Progress
 from ..planning.points import TURN
 from ..planning.task import LimitRows, limit_rows
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 DIRECTIONS, TURNS = 32, 12  # unit vectors that are tried, and rotations about each
 PIECE = 60  # places done together

@@ -8,16 +8,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..kinematics.cell import Cell
 from ..parameters.joints import JointParameters
 from ..planning.points import TURN, Points
 from ..planning.task import FITS, Task
 from ..toolpath import Bead
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from ..types import Array, Mask
 
 TURNS = 72  # rotations about the tool that are looked at
 FINER = 9  # between two of these, about the best one of a point that none of them serves

@@ -6,18 +6,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..kinematics import jacobian as jac
 from ..kinematics.cell import Cell
 from ..kinematics.inverse import opw
 from ..parameters.joints import OBJECTIVES, JointParameters
+from ..types import Array
 from . import criteria
 from .joint_path import BeadPath, JointPath
 from .points import gather
 from .task import Task
-
-Array = NDArray[np.float64]
 
 
 def of_path(path: JointPath, cell: Cell, parameters: JointParameters) -> dict[str, object]:

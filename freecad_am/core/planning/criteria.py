@@ -13,10 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kinematics import jacobian as jac
+from ..types import Array
 from .points import Points, steps
 from .task import Task
-
-Array = NDArray[np.float64]
 
 # value (..., B) for joints (..., T, axes), condition left to the caller's need
 Values = Callable[[Task, Points, Array], Array]

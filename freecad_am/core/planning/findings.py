@@ -7,15 +7,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
 from .joint_path import BeadPath
 from .task import Task
-
-Array = NDArray[np.float64]
 
 # a limit met exactly is kept: closed form and turns leave a rounding error of this size, rad
 ROUNDING = 1e-9

@@ -6,13 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..issues import Issue, has_errors
 from ..motion import Motion
 from ..toolpath import Bead, Toolpath
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 
 @dataclass(frozen=True)

@@ -16,14 +16,13 @@ from ..motion import DEPOSIT, Motion
 from ..parameters.bead_classes import number_of
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
+from ..types import Array
 from . import nozzle_beside
 from .arm.kept import Rods
 from .joint_path import BeadPath, JointPath
 from .rapids.findings import findings
 from .rapids.retract_ways import Leg
 from .rapids.ways import RapidWays, Way
-
-Array = NDArray[np.float64]
 
 # share of an axis's largest speed a rapid move may ask for, and the shortest time of one
 RAPID_SHARE = 0.8

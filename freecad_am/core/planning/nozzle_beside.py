@@ -13,10 +13,8 @@ from ..geometry import frames
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
 from ..motion import Motion
+from ..types import Array, Index
 from .rapids.clearance import evenly
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 ON_BEADS, ON_RAPIDS = "CLEARANCE", "RAPID_COLLISION"
 # between two looks: of the joint that moves most, rad and mm, and of the way of the nozzle's ends in the world, mm

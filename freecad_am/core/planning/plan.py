@@ -8,7 +8,6 @@ import time
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..issues import ERROR, NOTE, WARNING, InputError, Issue, has_errors
 from ..kinematics.cell import Cell
@@ -36,7 +35,6 @@ from .rotation import given, search
 from .task import Task
 from .turns import unwrap as turns
 
-Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
 

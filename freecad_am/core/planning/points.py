@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from ..kinematics.cell import Cell
 from ..kinematics.pose_frames import PoseFrames
 from ..toolpath import Bead
+from ..types import Array
 
-Array = NDArray[np.float64]
 TURN = 2.0 * np.pi
 UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
 

@@ -15,12 +15,11 @@ from ..kinematics.cell import Cell
 from ..kinematics.inverse.serial_arm import SerialArm
 from ..kinematics.limits import Limits
 from ..parameters.joints import JointParameters
+from ..types import Array
 from .arm.kept import ArmKept
 from .points import TURN, Points, unwrapped
 from .reserve import RESERVE
 from .turns import configurations as following
-
-Array = NDArray[np.float64]
 
 PIECE = 4096  # points whose poses and Jacobians are held together
 

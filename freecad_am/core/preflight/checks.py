@@ -5,9 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..issues import Issue
 from ..kinematics.cell import Cell
 from ..motion import Motion
@@ -17,11 +14,10 @@ from ..simulation.arm import ArmTouches
 from ..simulation.rapid_look import RapidsLooked
 from ..strategies.clearance.look import Looked
 from ..toolpath import Toolpath
+from ..types import Array
 from . import clearance, deposit, joints, written
 from .promise import Promise
 from .written import ReadBack
-
-Array = NDArray[np.float64]
 
 OF_MOTION = (
     "Every axis stays within its limits", "The joints bring the tool to every point",

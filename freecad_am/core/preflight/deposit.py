@@ -14,7 +14,8 @@ from ..process.deposit import balance as deposit_balance
 from ..process.deposit import layer_heights, on_part, spacing, support
 from ..process.deposit.balance import MM3, Balance
 from ..process.model import wire, wire_taken
-from ..toolpath import Array, Toolpath
+from ..toolpath import Toolpath
+from ..types import Array
 from .promise import PERCENT, Place, Promise, issue_place, of_codes
 
 

@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..simulation.margins import speed_ratios
 from ..simulation.watch import shown_margins
+from ..types import Array
 from .promise import PERCENT, Promise, row_place
-
-Array = NDArray[np.float64]
 
 ROUNDING = 1e-7  # deg or mm beyond a limit, and share of a speed, that are rounding
 COMPUTED_MM = 1e-6  # mm by which two computations of one pose may differ

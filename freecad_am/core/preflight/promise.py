@@ -8,13 +8,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..issues import ERROR, Issue
 from ..motion import Motion
-
-Array = NDArray[np.float64]
 
 PERCENT = 100.0
 

@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..toolpath import Array, Bead, Layer
+from ..toolpath import Bead, Layer
+from ..types import Array
 
 
 class Laid(NamedTuple):

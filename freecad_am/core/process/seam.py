@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.curves.profile import Array
 from ..parameters.process import ProcessParameters
+from ..types import Array
 
 
 def rising(process: ProcessParameters, index: int, closed: bool) -> bool:

@@ -6,16 +6,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..collision.bead_ends import LINK_GRAIN, Beads
 from ..collision.obstacles import Obstacles
 from ..kinematics.links.contact import NONE, ArmContact
 from ..motion import Motion
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from ..types import Array, Index, Mask
 
 # joints are looked at whenever the fastest of them has turned by so many rad, or moved by so many mm, at so many places at
 # most: of longer motions at fewer places of each turn

@@ -4,14 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..motion import Motion
 from ..parameters.bead_classes import number_of
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 
 def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> Array:

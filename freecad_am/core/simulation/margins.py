@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..types import Array
 
 
 def speed_ratios(joints: Array, duration: Array, most: Array) -> Array:

@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..motion import Motion
+from ..types import Array
 from .margins import speed_ratios
-
-Array = NDArray[np.float64]
 
 # a share of an axis's speed that counts as more than it can do: what rounding leaves is none
 OVER = 1e-9

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..geometry.surroundings import Body
@@ -20,9 +19,8 @@ from ..kinematics.machines.machine import Machine
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
+from ..types import Array
 from .deposit import volumes
-
-Array = NDArray[np.float64]
 
 CODE = "PAYLOAD"
 KG = 1e-6  # of a mm3 at 1 g/cm3

@@ -9,13 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..geometry import frames
 from ..kinematics.cell import Cell
+from ..types import Array
 from .table_links import standing_link
-
-Array = NDArray[np.float64]
 
 # rotations about the nozzle that are looked at for a robot at rest
 _SPINS = 24

@@ -7,16 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..collision.bead_ends import Bead, BeadEnds, Beads, Size
 from ..collision.scene import scene
 from ..geometry.surroundings import Body, disc
 from ..kinematics.cell import Cell
 from ..motion import Motion
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ..types import Index
 
 # mm between two looks along the way of any point of the nozzle, at the least, and at how many shares a move is measured
 STEP, SHARES = 0.5, np.linspace(0.0, 1.0, 9)

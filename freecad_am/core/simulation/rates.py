@@ -6,11 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..motion import Motion
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 
 @dataclass(frozen=True)

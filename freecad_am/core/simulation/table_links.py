@@ -8,13 +8,11 @@ machine file tells; drawn are the table's bearings standing still, and a torch t
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..kinematics.chain import Chain
 from ..kinematics.links.solids import BRIGHT, DARK, Solid, box, capsule, cylinder
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 # mm: radius of the table where nothing lies on it, and of the head's joints
 RADIUS = 130.0

@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES
 from ..parameters.process import ProcessParameters
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 # rapid rows between beads that begin with the withdrawal from the bead before; fewer begin on it
 WITH_WITHDRAWAL = 3

@@ -6,15 +6,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
 from .deposit import fed, volumes
 from .timeline import Timeline
-
-Array = NDArray[np.float64]
 
 MM3_PER_CM3 = 1000.0
 

@@ -15,10 +15,9 @@ from ..issues import NOTE, Issue
 from ..kinematics.cell import Cell
 from ..kinematics.links.contact import NONE
 from ..motion import Motion
+from ..types import Array
 from .arm import ArmTouches
 from .pace import Pace
-
-Array = NDArray[np.float64]
 
 # nearer to a limit than this many degrees or mm counts as near
 NEAR = 0.5

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES
-from ..toolpath import Array
+from ..types import Array
 
 HEADER = "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm"
 WIRE = "wire_feed_mm_s"

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.curves.profile import Array, Meridian
+from ..geometry.curves.profile import Meridian
 from ..issues import InputError
+from ..types import Array
 
 
 def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:

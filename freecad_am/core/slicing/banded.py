@@ -8,11 +8,10 @@ from collections.abc import Callable
 from typing import Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags, identity
 from scipy.sparse.linalg import splu
 
-Array = NDArray[np.float64]
+from ..types import Array
 
 WEIGHTS = 10.0 ** np.arange(-2, 10)  # of smoothness against the exact distance
 HEAVY = 7  # from this weight on the turn is much less, or the band stops it: GAIN by IDLE more is what a search goes on for

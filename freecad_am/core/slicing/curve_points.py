@@ -5,14 +5,11 @@ is the curve."""
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.curves.outline import outline
 from ..geometry.curves.space_curve import SpaceCurve
 from ..geometry.walls.surface import dot
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ..types import Array, Index
 
 CLOSER = 4  # places per arc of the curve at which its curvature is taken
 BETWEEN = np.arange(1, 8) / 8.0  # places of a segment at which its distance from the curve is measured

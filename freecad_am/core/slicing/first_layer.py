@@ -4,16 +4,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ..geometry.implicit import Implicit
 from ..geometry.walls.surface import Surface, dot
 from ..issues import InputError
+from ..types import Array
 from .refinement import ROUNDS, finer_grid
 from .tubes.wall_layer import WallLayer
-
-Array = NDArray[np.float64]
 
 SCAN = 200  # places along each line v = const at which inside and outside are told apart
 HALVINGS = 60

@@ -3,12 +3,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..geometry.curves.space_curve import SpaceCurve
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 WITHIN = 1e-5  # mm; a tenth of the tolerance at the points, see interpolation_error for what it bounds
 SHORTEST = 1e-5  # of the period; no arc is halved below this

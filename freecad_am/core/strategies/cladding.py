@@ -18,7 +18,8 @@ from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.model.bead_model import BeadModel
 from ..process.order import Laid, ordered, waited
-from ..toolpath import Array, Toolpath
+from ..toolpath import Toolpath
+from ..types import Array
 from .progress import Progress, silent
 from .solids.beads import Rolled, classed, reversed_curve
 from .solids.filling import Filled, Pictures, bead_width, spaced

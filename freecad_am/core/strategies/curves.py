@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..geometry.curves.bead_curves import Array, BeadCurve, Curves
+from ..geometry.curves.bead_curves import BeadCurve, Curves
 from ..geometry.told import place
 from ..issues import InputError
 from ..parameters.build_direction import BuildDirectionParameters
@@ -16,6 +16,7 @@ from ..parameters.strategy import CurvesParameters
 from ..process import classes
 from ..slicing.directions.wall import held
 from ..toolpath import Bead, Layer, Toolpath
+from ..types import Array
 from .progress import Progress, silent
 
 TURN = 2.0 * np.pi

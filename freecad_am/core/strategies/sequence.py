@@ -7,13 +7,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.surroundings import Body
 from ..issues import InputError, Issue
-from ..toolpath import Array, Layer, Toolpath
-
-Index = NDArray[np.intp]
+from ..toolpath import Layer, Toolpath
+from ..types import Array, Index
 
 BY_FEATURE, BY_HEIGHT = "feature", "height"
 FLOATS = 0.9  # of the length of a first layer; with so much of it over nothing a feature floats

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.curves.profile import Array, RevolvedWall
+from ..geometry.curves.profile import RevolvedWall
 from ..geometry.on_hub import SolidsOnHub
 from ..geometry.surroundings import Body
 from ..geometry.told import at_least, count
@@ -21,6 +21,7 @@ from ..issues import NOTE, InputError, Issue
 from ..parameters.filled import CladdingParameters, FilledParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import MOST_LAYERS, LayerParameters, RevolutionParameters, SurfaceParameters
+from ..types import Array
 
 if TYPE_CHECKING:
     from ..geometry.walls.clad_faces import CladFaces

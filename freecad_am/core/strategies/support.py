@@ -8,16 +8,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.on_hub import Base
 from ..geometry.surroundings import Body
 from ..issues import Issue
 from ..process.deposit import support
-from ..toolpath import Array, Toolpath
-
-Mask = NDArray[np.bool_]
+from ..toolpath import Toolpath
+from ..types import Array, Mask
 
 STEPS = 7  # places on the way down at which a body is looked for
 ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is

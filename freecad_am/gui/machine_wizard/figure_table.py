@@ -8,13 +8,13 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide import QtCore, QtGui
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ..texts.translation import tr
 
-Array = NDArray[np.float64]
 BESIDE = 12  # pixels in a cell beside its text
 ROW_HEIGHT = 24
 MOST_SHOWN = 9  # rows that are to be seen at once

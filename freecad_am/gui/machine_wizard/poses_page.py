@@ -8,8 +8,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide import QtGui
+
+from freecad_am.core.types import Array
 
 from ...core.geometry import frames
 from ...core.issues import InputError
@@ -22,7 +23,6 @@ from ..texts.translation import tr
 from .figure_table import FigureTable, shown
 from .page import Page, axis_names, choice, heading, told
 
-Array = NDArray[np.float64]
 LEAST, FIRST = 3, 5  # poses that a machine needs, rows that are there at first
 RIGHT = "#1d7d32"
 

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from pivy import coin
 
+from freecad_am.core.types import Array
+
 from ...core.geometry import frames
 from ...core.issues import InputError
 from ...core.kinematics import cell as cells
@@ -25,7 +27,7 @@ from ...core.simulation.placing import at_rest, placing
 from ...core.toolpath import Toolpath
 from ...objects.shapes.cell_obstacles import torch_of
 from ...objects.shapes.link_meshes import meshes_of
-from .lines import Array, placed, turned
+from .lines import placed, turned
 from .machine_links import Links, MachineNodes, move, of_mesh, of_solid, plain_links
 from .wall import unpickable
 

@@ -8,11 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.geometry.curves.guide import Guide
 from ...core.geometry.on_hub import Base, Group, SolidsOnHub
 from ...core.geometry.plane import Plane
 from ...core.layers.field import footprints
-from .lines import Array, Lines
+from .lines import Lines
 from .wall import WallNodes, unpickable
 
 OUTLINE, TINT = (0.0, 0.45, 0.45), (0.1, 0.62, 0.6)

@@ -8,10 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 from pivy import coin
 
+from freecad_am.core.types import Array
+
 from ...core.planning.joint_path import BeadPath
 from ..path.colouring import UNREACHABLE, by_machine
 from ..path.legend import Legend
-from .lines import Array, Lines, Points
+from .lines import Lines, Points
 from .wall import unpickable
 
 _NOTHING = np.zeros((0, 3))

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pivy import coin
 
+from freecad_am.core.types import Array
+
 from ...core.issues import InputError
 from ...core.kinematics.links import robot as robot_links
 from ...core.kinematics.links.rods import Mesh
@@ -23,8 +25,6 @@ from ...objects.fields import preferences
 from ...objects.shapes.link_meshes import mesh_of
 from ..texts.translation import error_line
 from .lines import fill
-
-Array = NDArray[np.float64]
 
 TONES = {DARK: (0.24, 0.27, 0.31), BRIGHT: (0.66, 0.68, 0.71)}
 BAD = (0.86, 0.1, 0.12)

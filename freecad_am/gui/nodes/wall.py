@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 from pivy import coin
 
+from freecad_am.core.types import Array
+
 from ...core.issues import InputError
 from ...objects.shapes.bodies import Taken, taken
-from .lines import DASHED, Array, Faces, Lines
+from .lines import DASHED, Faces, Lines
 
 COLOUR = (0.96, 0.47, 0.0)
 TINT = (1.0, 0.62, 0.2)

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.issues import AmError, Issue
 from ...core.parameters.filled import DevelopableParameters
 from ...core.strategies import size
@@ -18,7 +20,6 @@ from ...objects.shapes.bodies import FIXTURES
 from ...objects.stage_parts import Link, Outcome
 from .. import recorded
 from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
-from ..nodes.lines import Array
 from ..picking import picking
 from ..picking.pick_field import PickField
 from ..texts.translation import marked, sentence, tr

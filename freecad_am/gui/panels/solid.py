@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
+from freecad_am.core.types import Array
+
 from ...core.issues import AmError
 from ...core.layers.along import field as along
 from ...core.layers.along import guide_edges
@@ -23,7 +25,7 @@ from ...objects.solid_feature import SolidFeature
 from ...objects.stage_parts import Link, Outcome
 from .. import recorded
 from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
-from ..nodes.lines import Array, Faces
+from ..nodes.lines import Faces
 from ..picking import picking
 from ..picking.pick_field import PickField
 from ..texts.translation import marked, sentence, tr

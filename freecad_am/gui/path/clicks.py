@@ -16,7 +16,7 @@ import numpy as np
 from pivy import coin
 from PySide import QtCore, QtGui
 
-from ..nodes.lines import Array
+from freecad_am.core.types import Array
 
 NEAR = 8.0  # px from the mouse
 STILL = 3  # px the mouse may move while the button is down

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.process.deposit.spacing import local_distances
 from ...core.toolpath import Bead, Toolpath
 from ...objects.fields import preferences
 from ..colours import ramp
-from ..nodes.lines import Array
 from ..texts.translation import marked, translated
 
 Colour = tuple[float, float, float]

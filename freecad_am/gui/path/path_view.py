@@ -10,9 +10,10 @@ from typing import Any, ClassVar
 import numpy as np
 from PySide import QtCore
 
+from freecad_am.core.types import Array
+
 from ...core.issues import InputError
 from ...objects.fields import preferences
-from ..nodes.lines import Array
 from ..texts.translation import marked
 from ..views.base import StageView
 from . import legend

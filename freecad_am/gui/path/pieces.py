@@ -15,8 +15,10 @@ from typing import Any
 import numpy as np
 from pivy import coin
 
-from ..nodes.lines import Array, fill, unshaded
-from .rows import Index, Rows
+from freecad_am.core.types import Array, Index
+
+from ..nodes.lines import fill, unshaded
+from .rows import Rows
 
 BLOCK = 128  # sections by which a piece of tubes grows: Coin reads all of it anew then
 _SHININESS = 0.2

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Index
 
 from ...core.geometry import tubes
 from ...core.toolpath import Bead
-from ..nodes.lines import Array
-
-Index = NDArray[np.intp]
 
 # sections of tubes in all, and their sides by the number of sections: what a computer draws in software without stutter
 SECTIONS, FINE, FINER = 50_000, 30_000, 12_000

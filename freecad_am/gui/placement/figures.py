@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.placement.judge import UNREACHED
 from ...core.placement.moved import outer
 from ...core.placement.place import Placed, ranked
 from ..colours import ramp
-from ..nodes.lines import Array
 from ..texts.translation import marked, tr, translated
 
 SHARE, MARGIN, TIME, CLEARANCE = "share", "margin", "time", "clearance"

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from pivy import coin
 
-from ..nodes.lines import Array, Lines, fill, unshaded
+from freecad_am.core.types import Array
+
+from ..nodes.lines import Lines, fill, unshaded
 from ..nodes.wall import unpickable
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)

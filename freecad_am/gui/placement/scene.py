@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from pivy import coin
 
+from freecad_am.core.types import Array
+
 from ...core.geometry import frames
 from ...core.kinematics import cell as cells
 from ...core.kinematics.arrangement import of_setup
@@ -22,7 +24,6 @@ from ...core.toolpath import Toolpath
 from ...objects import user_machines
 from ..colours import ramp
 from ..nodes.cell import CellNodes, resting_point, with_machine
-from ..nodes.lines import Array
 from .figures import Coloured
 from .marks import Cloud, Cubes
 

@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...objects.fields import preferences
-from ...plots.chart import Array, Bars, Chart, Picture, Quantity
+from ...plots.chart import Bars, Chart, Picture, Quantity
 
 TRAVEL = ("travel", "spread")  # pictures by name whose speeds are those of the deposition point
 

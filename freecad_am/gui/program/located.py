@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.motion import Motion
 from ...posts.lines import Lines, lines_of
-from ..nodes.lines import Array
 from ..path import dock as path_dock
 from ..texts.translation import tr
 

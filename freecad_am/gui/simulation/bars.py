@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide import QtCore, QtGui
 
-from ..nodes.lines import Array
+from freecad_am.core.types import Array
+
 from ..texts.translation import tr
 
 GOOD, BAD = QtGui.QColor(59, 111, 212), QtGui.QColor(206, 34, 44)

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.simulation.margins import speed_ratios
 from ...core.simulation.timeline import State
 from ...core.simulation.watch import Finding, bad_links, shown_margins
-from ..nodes.lines import Array
 from .run import Run
 
 _SAME = 1e-9  # s

@@ -16,13 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pivy import coin
 
+from freecad_am.core.types import Array
+
 from ...core.geometry import frames
 from ...core.kinematics.links.contact import NONE
 from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
 from ..nodes.cell import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
-from ..nodes.lines import Array, Lines, fill
+from ..nodes.lines import Lines, fill
 from ..nodes.machine_links import MachineNodes, move, plain_links
 from ..path.pieces import PathNodes
 from ..path.rows import Rows

@@ -8,11 +8,12 @@ import re
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.simulation import watch
 from ...core.simulation.totals import MM3_PER_CM3
 from ...core.simulation.watch import Finding
 from ...objects.fields import preferences
-from ..nodes.lines import Array
 from ..texts.touching import link_touches
 from ..texts.translation import tr, translated
 from .player import Moment

@@ -9,12 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.planning.joint_path import BeadPath
 from ...core.planning.redundancy import across as spin_across
 from ...core.planning.redundancy import map as spin_map
 from ...core.planning.redundancy.curve import Followed
 from ...core.planning.redundancy.map import RZ, Columns, Picture, SpinMap
-from ..nodes.lines import Array
 from ..texts.translation import tr
 from .draft import CONSTANT, Draft
 from .source import Source

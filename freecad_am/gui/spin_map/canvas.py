@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
-from ..nodes.lines import Array
+from freecad_am.core.types import Array
+
 from ..texts.translation import tr
 from .curves import Curve, Dragged, Handle
 from .painting import BOTTOM, LEFT, RIGHT, TOP, TURN, Painting

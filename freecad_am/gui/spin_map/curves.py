@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.planning.redundancy.curve import Compared, Followed
-from ..nodes.lines import Array
 from .board import Board
 from .draft import CONSTANT, Draft
 

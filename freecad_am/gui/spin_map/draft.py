@@ -11,6 +11,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
 from ...core.parameters.joints import OF_CELL, given_text
 from ...core.planning.joint_path import BeadPath
@@ -21,7 +23,6 @@ from ...core.planning.redundancy.curve import Followed
 from ...core.planning.redundancy.map import Columns, in_turns
 from ...core.planning.rotation.given import METHOD
 from ...core.planning.rotation.planned import rotation_along
-from ..nodes.lines import Array
 from .source import Source
 
 POLYNOMIALS, CONSTANT = "polynomials", "constant"

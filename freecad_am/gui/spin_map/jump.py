@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..nodes.lines import Array
+from freecad_am.core.types import Array
+
 from ..path import dock as path_dock
 from ..path.path_view import PathView
 from ..simulation import dock as simulation_dock

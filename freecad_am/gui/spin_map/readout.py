@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.kinematics.cell import Cell as Station
 from ...core.kinematics.machines.machine import Machine
-from ..nodes.lines import Array
 from ..texts.touching import link_touches
 from ..texts.translation import tr
 from .board import Cell

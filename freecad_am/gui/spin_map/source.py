@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.collision.bead_ends import LINK_GRAIN, Beads
 from ...core.issues import InputError
 from ...core.kinematics.cell import Cell
@@ -31,7 +33,6 @@ from ...objects.shapes.cell_obstacles import resolved
 from ...objects.shapes.link_meshes import meshes_of
 from ...objects.stage import stage_of
 from ...objects.staleness import UP_TO_DATE
-from ..nodes.lines import Array
 from ..texts.translation import tr, translated
 
 

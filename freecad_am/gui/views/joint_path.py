@@ -11,13 +11,15 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.issues import ERROR, InputError
 from ...core.kinematics.machines import machine as machines
 from ...core.parameters.strategy import RevolutionParameters
 from ...core.simulation.margins import from_next, speed_ratios
 from ...objects import user_machines
 from ...objects.results.findings import issues_of
-from ..nodes.lines import DASHED, Array, Lines, Points
+from ..nodes.lines import DASHED, Lines, Points
 from ..path.colouring import CONDITION, JOINT_KINDS, MARGIN, RATIO, UNREACHABLE, Scale, by_machine, coloured, unknown
 from ..path.path_view import OPTIONS, TUBES, PathView
 from ..path.rows import Rows

@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from freecad_am.core.types import Array
+
 from ...core.issues import Issue, has_errors
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters, NozzleParameters
@@ -19,7 +21,6 @@ from ...core.preflight.written import ReadBack
 from ...core.process.deposit import balance as deposit_balance
 from ...core.simulation import rapid_look
 from ...core.strategies.clearance import look as clearance_look
-from ...core.toolpath import Array
 from ...posts import catalogue
 from ...verify import Verification
 from .. import user_machines

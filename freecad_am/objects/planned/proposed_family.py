@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Mask
 
 from ...brep import hub as hubs
 from ...brep.kernel import limits as kernel
@@ -47,9 +48,6 @@ LYING = 0.95  # of its area; an open mesh of which more is less than STEEP from 
 WIDEST = 10000.0  # mm; the bound of `strategy.mend`
 ROUND = ("Part::GeomCylinder", "Part::GeomCone")
 UP = (0.0, 0.0, 1.0)
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

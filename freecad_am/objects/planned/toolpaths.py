@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from freecad_am.core.types import Array
+
 from ...core.geometry.surroundings import Body
 from ...core.issues import InputError, Issue
 from ...core.kinematics.cell import mounted
@@ -29,7 +31,6 @@ from ...core.strategies import support
 from ...core.strategies.clearance import look as clearance_look
 from ...core.strategies.families import family_of
 from ...core.strategies.revolution import platform
-from ...core.toolpath import Array
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..shapes.platforms import platforms
 from ..work import progress

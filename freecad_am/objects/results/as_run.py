@@ -8,6 +8,8 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.issues import Issue
 from ...core.kinematics.cell import Cell
 from ...core.motion import Motion
@@ -17,8 +19,6 @@ from ...core.planning.program import build as programs
 from ...core.simulation.margins import on_deposit
 from ...posts import catalogue
 from ..joint_path import Planned
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from freecad_am.core.types import Array
+
 Bits = NDArray[np.int64]
 
 PIECE = 8192  # numbers that have one order of differences, and are packed together

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from freecad_am.core.types import Array, Index
+
 Words = NDArray[np.uint64]
 
 SHORTEST = 64  # numbers in a stretch worth leaving out

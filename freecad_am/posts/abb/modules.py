@@ -9,11 +9,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
-
-Array = NDArray[np.float64]
 
 _DECLARED = re.compile(r"LOCAL (?:PERS (tooldata|wobjdata)|CONST (speeddata|zonedata)) (\w+):=(\[.*\]);$")
 _TRACK = re.compile(r"! eax_([a-f]) is the track in mm\b")

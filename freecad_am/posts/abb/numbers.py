@@ -11,15 +11,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Mask
 
 from ...core.issues import InputError
 from ...core.program import DEPOSIT, LINEAR_MOVE, Moves, Program, Six
 from ..parts import place
 from ..refusals import speeds_within
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS = 4, 3, 7
 # mm/s: the least that its three decimals tell well, and the largest of RAPID's own speeds (v7000)
@@ -105,7 +103,6 @@ class Words:
         if size <= 0.0:
             return STOP
         return self.zones.setdefault(size, f"{self._zone}{len(self.zones) + 1}")
-
 
 
 def _times(moves: Moves) -> Array:

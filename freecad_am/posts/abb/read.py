@@ -13,12 +13,11 @@ from array import array
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.read_moves import Event, ReadMoves
 from .modules import Frames, Module, modules, turned, unreadable
-
-Array = NDArray[np.float64]
 
 _N = r"-?\d+\.\d+"
 _AXES = rf"\[((?:(?:9E9|{_N}),){{5}}(?:9E9|{_N}))\]"

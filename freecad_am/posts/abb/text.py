@@ -7,12 +7,11 @@ import textwrap
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ..names import plain
 from .numbers import ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS, Pose
-
-Array = NDArray[np.float64]
 
 END_OF_LINE = "\r\n"
 WIDTH = 80  # of remarks

@@ -13,9 +13,8 @@ from collections.abc import Sequence
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from freecad_am.core.types import Array
 
 END_OF_LINE = "\r\n"
 REMARK_WIDTH = 32

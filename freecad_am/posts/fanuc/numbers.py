@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.program import RAPID, Moves
 from ..parts import place
 from ..refusals import speeds_within
-
-Array = NDArray[np.float64]
 
 # Ranges of the FANUC operator's manual (motion instruction, feed rate): 1 to 32000 msec, 0.1 to 3200 sec,
 # up to 2000 mm/sec.

@@ -9,14 +9,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Index, Mask
 
 from .. import alike
 from .records import Records, records_of, unreadable
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 _NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
 _TITLE = 1000  # bytes that hold the first line
 # what a unit of a move says: duration s, speed mm/s, share

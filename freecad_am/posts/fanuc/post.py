@@ -13,7 +13,6 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.controller import Controller
 from ...core.issues import InputError
@@ -51,7 +50,6 @@ from .read import read
 
 __all__ = ["read", "write"]
 
-Array = NDArray[np.float64]
 
 LAST_ANALOGUE = 25  # analogue inputs
 # why the speed of the wire cannot follow that of the torch
@@ -177,7 +175,6 @@ def _refuse_endless_steps(program: Program) -> None:
             f"axis {axes[axis] + 1} turns {turn:.1f} deg in one move; an axis of continuous turn goes less than 180 deg"
             " per move: add points, or limit the axis",
         )
-
 
 
 def _own_remarks(program: Program) -> Iterator[str]:

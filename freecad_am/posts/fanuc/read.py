@@ -13,14 +13,12 @@ from array import array
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Index
 
 from ...core.read_moves import ARC, Configuration, Event, ReadMoves
 from .parsed import UNITS, Listing, listing_of, name_of
 from .records import unreadable
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 _TOLD = np.array([(1.0, np.nan, np.nan), (0.001, np.nan, np.nan), (np.nan, 1.0, np.nan), (np.nan, np.nan, 0.01)])
 _SPEED, _SHARE = UNITS.index("mm/sec"), UNITS.index("%")

@@ -8,13 +8,11 @@ from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Index
 
 from ...core.issues import InputError
 from .. import alike
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 _RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
 _FRAMES = r"P\[(\d+)[^\]]*\]\{\s*GP1:\s*UF : (\d+|F), UT : (\d+|F),\s*"

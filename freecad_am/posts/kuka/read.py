@@ -12,12 +12,11 @@ from array import array
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.read_moves import Event, ReadMoves
-
-Array = NDArray[np.float64]
 
 _N = r"(-?\d+\.\d+)"
 _AXES, _PLACES = (",".join(f"{name} {_N}" for name in names.split()) for names in ("A1 A2 A3 A4 A5 A6", "X Y Z A B C"))

@@ -8,16 +8,14 @@ import textwrap
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array, Mask
 
 from ...core.issues import InputError
 from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 from ..names import plain
 from ..parts import place
 from ..refusals import speeds_within
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 END_OF_LINE = "\r\n"
 SCHEDULE, BITS = "am_schedule", 8  # what is set to its number, and of how many outputs

@@ -14,7 +14,6 @@ import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.controller import Controller
 from ...core.issues import InputError
@@ -42,7 +41,6 @@ from .read import read
 
 __all__ = ["read", "write"]
 
-Array = NDArray[np.float64]
 
 NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_")
 _NO_END = 10**9

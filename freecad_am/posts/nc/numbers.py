@@ -7,13 +7,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.program import LINEAR, LINEAR_MOVE, RAPID, Moves, Program, slide_feeds
 from ..parts import place
-
-Array = NDArray[np.float64]
 
 # of mm and deg; Siemens' manual on 5-axis machining asks for 5 of positions and 6 of direction vectors
 DECIMALS, VECTOR_DECIMALS = 5, 6

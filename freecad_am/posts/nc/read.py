@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.issues import InputError
 from ...core.read_moves import Event, ReadMoves
-
-Array = NDArray[np.float64]
 
 # feed as the time of the move; as the speed of the linear axes; as theirs, or that of the rotary axes where these alone
 # move; and as that of the tip in part coordinates

@@ -14,7 +14,8 @@ import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.controller import Controller
 from ...core.issues import InputError
@@ -42,7 +43,6 @@ from .read import read
 
 __all__ = ["read", "write"]
 
-Array = NDArray[np.float64]
 
 _NO_END = 10**9
 CONTROLLER = Controller()

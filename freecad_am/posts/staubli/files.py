@@ -9,11 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
-
-Array = NDArray[np.float64]
 
 _NAMESPACE = "{http://www.staubli.com/robotics/VAL3/"
 PROJECT, DATA, PROGRAM = (_NAMESPACE + space + "}" for space in ("Project/3", "Data/2", "Program/2"))

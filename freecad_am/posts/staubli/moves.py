@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.read_moves import ReadMoves
 from .files import AXES, POSE, Application, Data, numbers, poses, rotations, unreadable
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 _UNLIMITED = 99999.0

@@ -7,13 +7,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 from ..parts import place
-
-Array = NDArray[np.float64]
 
 ANGLE_DECIMALS, LENGTH_DECIMALS = 5, 4
 # what a descriptor does not limit: mm/s and deg/s no arm reaches

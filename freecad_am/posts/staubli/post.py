@@ -12,7 +12,6 @@ import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.controller import Controller
 from ...core.issues import InputError
@@ -33,7 +32,6 @@ from .read import read
 
 __all__ = ["read", "write"]
 
-Array = NDArray[np.float64]
 
 NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
 # why the speed of the wire cannot follow that of the torch
@@ -130,7 +128,6 @@ def _refuse(program: Program) -> None:
 
 
 _CALL = "process.between_layers.call"
-
 
 
 def _own_remarks(program: Program) -> Iterator[str]:

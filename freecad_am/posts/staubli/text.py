@@ -7,12 +7,9 @@ import textwrap
 import unicodedata
 from collections.abc import Iterable, Sequence
 
-import numpy as np
-from numpy.typing import NDArray
+from freecad_am.core.types import Array
 
 from .numbers import ANGLE_DECIMALS, LENGTH_DECIMALS
-
-Array = NDArray[np.float64]
 
 _HEAD = '<?xml version="1.0" encoding="utf-8"?>\n'
 _XSI = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'

@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.program import LINEAR_MOVE, RAPID, Moves, Program
 from ..parts import place
-
-Array = NDArray[np.float64]
 
 DECIMALS = 7  # of rad and m
 # of the shorter one of the ways before and after a point, at most: blends that overlap make the controller leave points out

@@ -12,7 +12,8 @@ import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.controller import Controller
 from ...core.issues import InputError
@@ -49,7 +50,6 @@ from .read import read
 
 __all__ = ["read", "write"]
 
-Array = NDArray[np.float64]
 
 AXES = 6
 # why the speed of the wire cannot follow that of the torch

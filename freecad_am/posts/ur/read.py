@@ -14,12 +14,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.read_moves import Event, ReadMoves
-
-Array = NDArray[np.float64]
 
 _N = r"-?\d+\.\d+"
 _SIX = rf"\[({_N}), ({_N}), ({_N}), ({_N}), ({_N}), ({_N})\]"

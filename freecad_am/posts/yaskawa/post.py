@@ -14,7 +14,8 @@ import textwrap
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.controller import Controller
 from ...core.issues import InputError
@@ -52,7 +53,6 @@ from .read import read
 from .text import AXES, BASE, job, pulses
 
 __all__ = ["read", "write"]
-Array = NDArray[np.float64]
 
 NO_ANALOGUE = "how a job waits for an analogue input differs with the controller's options, and the post yaskawa knows none"
 # why the speed of the wire cannot follow that of the torch

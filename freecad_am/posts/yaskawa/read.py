@@ -13,12 +13,11 @@ from array import array
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.read_moves import ARC, Event, ReadMoves
-
-Array = NDArray[np.float64]
 
 _NAME = re.compile(r"//NAME ([A-Z][A-Z0-9_]{0,31})$")
 _COUNT = re.compile(r"///NPOS (\d+),(\d+),(\d+),0,0,0$")

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.types import Array
+
 from ...core.program import LINEAR_MOVE, Program
 from ..parts import Piece, Run
-
-Array = NDArray[np.float64]
 
 AXES, BASE = "SLURBT", "BS1"  # of a robot, and the group of the track that carries it
 END_OF_LINE = "\r\n"

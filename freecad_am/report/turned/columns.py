@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from freecad_am.core.motion import Motion
 from freecad_am.core.simulation.margins import from_next, speed_ratios
-from freecad_am.core.toolpath import Array
+from freecad_am.core.types import Array
 from freecad_am.plots.source import Source
 
 MOST_ROWS = 200_000  # of a page; of longer motions every second row is shown, every third ..

@@ -14,7 +14,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...issues import InputError
-from .bead_curves import Array, BeadCurve
+from ...types import Array
+from .bead_curves import BeadCurve
 
 CODE = "BAD_ADA3DP"
 VARINT, DOUBLE, BYTES, FLOAT = 0, 1, 2, 5  # wire types

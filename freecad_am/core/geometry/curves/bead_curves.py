@@ -6,12 +6,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import Issue
+from ...types import Array
 from ..surroundings import Body
-
-Array = NDArray[np.float64]
 
 # endings of files that are laid as beads, and what they are
 POINT_FILES = {".csv": "csv", ".gcode": "gcode", ".gco": "gcode", ".g": "gcode", ".ada3dp": "ada3dp"}

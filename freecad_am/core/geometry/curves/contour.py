@@ -13,7 +13,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .profile import Array, Meridian, arc_lengths, turning
+from ...types import Array
+from .profile import Meridian, arc_lengths, turning
 
 JOIN = 1e-4  # mm; ends closer than this are one point
 BRIDGE = 0.2  # mm; wider gaps are not bridged

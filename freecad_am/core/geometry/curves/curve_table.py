@@ -9,7 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...issues import InputError
-from .bead_curves import Array, BeadCurve
+from ...types import Array
+from .bead_curves import BeadCurve
 
 COLUMNS = ("x", "y", "z", "i", "j", "k", "bead")
 BY_COUNT = {3: COLUMNS[:3], 4: (*COLUMNS[:3], "bead"), 6: COLUMNS[:6], 7: COLUMNS}

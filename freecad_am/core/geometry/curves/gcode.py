@@ -14,7 +14,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from ...issues import InputError
-from .bead_curves import Array, BeadCurve
+from ...types import Array
+from .bead_curves import BeadCurve
 
 CODE = "BAD_GCODE"
 WORD = re.compile(r"([A-Za-z])\s*([-+]?(?:\d+\.?\d*|\.\d+))")

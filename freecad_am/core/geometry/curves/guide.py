@@ -9,13 +9,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
+
+from ...types import Array
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicHermiteSpline
 
-Array = NDArray[np.float64]
 
 SEARCHED = 4  # places between two nodes at which the nearest one is looked for
 STEPS = 40  # of the search for a foot at most

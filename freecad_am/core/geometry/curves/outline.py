@@ -10,12 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index
 from ..columns import lengths
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 # a row of points that turns by more than this has a corner there, where nothing else is known, rad
 CORNER = np.radians(35.0)

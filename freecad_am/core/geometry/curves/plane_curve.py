@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ...types import Array, Index
 
 AT_ONCE = 4_000_000  # pairs of points and edges
 

@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...issues import Issue
+from ...types import Array
 from ..surroundings import Body
 from ..walls.part_depths import PartDepths
-
-Array = NDArray[np.float64]
 
 KINK = 1e-5  # rad; smaller turns between two pieces are a smooth join
 SAME_PLACE = 1e-9  # mm; the end of one piece and the start of the next closer than this are one point

@@ -9,9 +9,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...types import Array
 from .profile import arc_lengths
 
-Array = NDArray[np.float64]
 Curve = Callable[[Array], tuple[Array, Array]]
 
 TANGENT_TOLERANCE = 8e-9  # before the last halving, which brings it to 1e-9

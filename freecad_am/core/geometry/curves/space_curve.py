@@ -6,13 +6,10 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...types import Array, Index
 from ..walls.surface import dot
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 CORNER = 1e-5  # rad; smaller turns between two arcs are a smooth join
 CANDIDATES = 4  # nearest samples from which the nearest point is sought

@@ -4,13 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index, Mask
 from ..walls.surface import dot
 from .refined import Edges
-from .triangle_mesh import Index, Mask
-
-Array = NDArray[np.float64]
 
 ROUNDS = 4
 STRAIGHT = np.cos(np.radians(25.0))  # of a turn of a curve at a vertex that may go

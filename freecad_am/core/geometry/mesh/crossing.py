@@ -6,13 +6,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index, Mask
 from ..walls.surface import dot
 from .near_triangles import near_pairs
-from .triangle_mesh import Index, Mask
-
-Array = NDArray[np.float64]
 
 
 class Crossings(NamedTuple):

@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ...types import Array, Index, Mask
 from ..walls.surface import dot
-from .triangle_mesh import Index, Mask, chains
-
-Array = NDArray[np.float64]
+from .triangle_mesh import chains
 
 CORNER = np.radians(35.0)  # a curve turns less from edge to edge
 

@@ -10,15 +10,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from ...types import Array, Index, Mask
 from ..walls.surface import dot
 from .refined import Edges
-from .triangle_mesh import Index, Mask, chains
-
-Array = NDArray[np.float64]
+from .triangle_mesh import chains
 
 SEVERAL = 64  # triangles of one edge that are told apart; what has more is no solid
 

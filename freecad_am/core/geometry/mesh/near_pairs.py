@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from .triangle_mesh import Index
+from ...types import Index
 
 ALIKE = 1.5  # largest to smallest ball of a class in which they are looked for together
 BLOCK = 2_000_000  # pairs held at a time

@@ -7,12 +7,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index, Mask
 from ..columns import columns
-from .triangle_mesh import Index, Mask
-
-Array = NDArray[np.float64]
 
 BITS = 10  # of each coordinate in the order of the leaves
 MANY = 500_000  # pairs looked at together

@@ -8,11 +8,11 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from ...issues import InputError
+from ...types import Array, Index, Mask
 from ..told import place
 from ..walls.surface import dot
 from .refined import Edges
-from .solid import Array, SolidMesh
-from .triangle_mesh import Index, Mask
+from .solid import SolidMesh
 
 FLAT = 1e-9  # of the cube of its size; a closed piece of less volume encloses nothing
 

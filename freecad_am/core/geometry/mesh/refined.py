@@ -6,12 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index, Mask
 from ..walls.surface import dot
-from .triangle_mesh import Index, Mask
-
-Array = NDArray[np.float64]
 
 ROUNDS = 60
 NEEDLE = 0.5  # of the shortest to the longest side

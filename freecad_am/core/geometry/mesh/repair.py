@@ -14,13 +14,13 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...issues import NOTE, WARNING, InputError, Issue
+from ...types import Array, Index
 from ..told import place
 from .crossing import crossings
 from .manifold import filled, holes, told_apart
 from .orientation import alike_across, connected_pieces, solids_of, turned_alike
 from .refined import Edges
-from .solid import Array, SolidMesh
-from .triangle_mesh import Index
+from .solid import SolidMesh
 
 WELDS = (1e-5, 1e-4, 1e-3, 1e-2)  # mm; the first that closes the mesh
 MOST_TOLD = 8

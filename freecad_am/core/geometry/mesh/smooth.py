@@ -10,13 +10,10 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...types import Array, Index
 from ..walls.surface import dot
-from .triangle_mesh import Index
-
-Array = NDArray[np.float64]
 
 NEAREST = 28  # samples that count at a place
 REACH = 2.2  # typical distances of samples; farther ones do not count

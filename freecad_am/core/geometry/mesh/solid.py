@@ -12,14 +12,12 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...issues import InputError
+from ...types import Array, Index
 from ..told import place
 from ..walls.surface import dot
 from .crossing import crossings
 from .refined import Edges
-from .triangle_mesh import Index
 from .triangles import closest
-
-Array = NDArray[np.float64]
 
 NEAREST = 12
 SHARP = np.radians(20.0)  # facets that meet at more do not stand for something round

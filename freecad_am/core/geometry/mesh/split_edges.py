@@ -6,13 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index, Mask
 from .refined import Edges
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 
 def split(vertices: Array, triangles: Index, asked: Callable[[Index], Mask]) -> tuple[Array, Index, bool]:

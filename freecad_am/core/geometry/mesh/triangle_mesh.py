@@ -13,10 +13,7 @@ from scipy.sparse import coo_matrix, csgraph
 from scipy.spatial import cKDTree
 
 from ...issues import InputError
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
+from ...types import Array, Index, Mask
 
 
 class LevelLine(NamedTuple):

@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array
 from ..walls.surface import dot
-
-Array = NDArray[np.float64]
 
 
 def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:

@@ -7,14 +7,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index, Mask
 from .crossing import crossings
 from .manifold import Hole, filled, holes, told_apart
 from .refined import Edges
-from .triangle_mesh import Index, Mask
-
-Array = NDArray[np.float64]
 
 ROUNDS = 3  # each cuts out one ring of triangles more
 

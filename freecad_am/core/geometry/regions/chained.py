@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..curves.plane_curve import Array
+from ...types import Array
 
 NEAR = 1e-7  # of the period; cuts meet there
 

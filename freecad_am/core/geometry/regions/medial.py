@@ -12,15 +12,13 @@ from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import QhullError, Voronoi
 
-from ..curves.plane_curve import Array, winding
+from ...types import Array, Index
+from ..curves.plane_curve import winding
 from .region import Region
-
-Index = NDArray[np.intp]
 
 BETWEEN_WALLS, ANYWHERE = 0.75, 0.3  # least spread of an edge of the axis
 # places, beyond which they are moved by so much of the region's size: the diagram of many on parallel lines or a circle,

@@ -14,13 +14,11 @@ from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import NOTE, InputError, Issue
-from ..curves.plane_curve import Array, doubled_area, nearest_of, winding
+from ...types import Array, Mask
+from ..curves.plane_curve import doubled_area, nearest_of, winding
 from ..curves.polyline import turn_segments
-
-Mask = NDArray[np.bool_]
 
 SAME = 1e-12  # of the extent; points nearer together are one
 SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated

@@ -17,8 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...types import Array
 from ..columns import columns
-from ..curves.plane_curve import Array, doubled_area, winding
+from ..curves.plane_curve import doubled_area, winding
 from .chained import NEAR, chained
 from .region import Region, regions
 

@@ -4,12 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..curves.plane_curve import Array
+from ...types import Array, Mask
 from .region import simplified
 
-Mask = NDArray[np.bool_]
 FLAT = 1e-3  # slope of a curve of values, so that they count and their places do not
 
 

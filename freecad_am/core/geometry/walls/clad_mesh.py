@@ -9,10 +9,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...issues import InputError
-from ..mesh.triangle_mesh import Index, Mesh
+from ...types import Array, Index
+from ..mesh.triangle_mesh import Mesh
 from .clad_faces import CladFaces
 from .mesh_wall import MeshWall, mesh_wall
-from .patch_wall import Array
 from .surface import dot
 
 OF_SPACING = 0.5  # edges, of the bead spacing

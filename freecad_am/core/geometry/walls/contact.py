@@ -4,17 +4,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ...types import Array, Index, Mask
 from ..mesh.refined import boundary
 from ..mesh.solid import SHARP
-from ..mesh.triangle_mesh import Index, LevelLine, Mask, thinned
+from ..mesh.triangle_mesh import LevelLine, thinned
 from .ground import Ground, distances
 from .patch_wall import FirstCurve, PatchWall, Rim
 from .surface import dot
-
-Array = NDArray[np.float64]
 
 TOUCH = 0.05  # mm; a wall that ends this short of its substrate stands on it
 STEPS = 40

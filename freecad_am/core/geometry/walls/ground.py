@@ -6,14 +6,11 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index
 from ..mesh.solid import SolidMesh
-from ..mesh.triangle_mesh import Index
 from .patch import Patch
 from .surface import dot
-
-Array = NDArray[np.float64]
 
 
 class Ground(Protocol):

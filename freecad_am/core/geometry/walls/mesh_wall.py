@@ -12,16 +12,16 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from ...issues import NOTE, InputError, Issue
+from ...types import Array, Index, Mask
 from ..mesh.collapsed import collapsed
 from ..mesh.crossing import crossings
 from ..mesh.refined import Edges, flipped, refined
 from ..mesh.repair import WELDS, connected_triangles, mended_issues
 from ..mesh.smooth import SmoothMesh
 from ..mesh.solid import Search, SolidMesh
-from ..mesh.triangle_mesh import Index, Mask
 from ..mesh.uncrossed import uncrossed
 from ..told import deviation, place
-from .patch_wall import Array, PatchWall
+from .patch_wall import PatchWall
 from .rims import outward_volume
 from .surface import dot
 

@@ -5,10 +5,8 @@ algorithms A2.2 and A3.6). Beyond their knots they go on straight, so that a poi
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ...types import Array, Index
 
 
 def derivatives(knots: tuple[Array, Array], poles: Array, u: Array, v: Array) -> tuple[Array, Array, Array]:

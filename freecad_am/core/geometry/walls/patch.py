@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...types import Array
 from ..columns import columns
 from . import nurbs
 from .surface import dot
-
-Array = NDArray[np.float64]
 
 PLANE, CYLINDER, CONE, SPHERE, TORUS, SPLINE = "plane", "cylinder", "cone", "sphere", "torus", "spline"
 TURN = 2.0 * np.pi

@@ -8,21 +8,18 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...issues import Issue
+from ...types import Array, Index, Mask
 from ..curves.space_curve import SpaceCurve
 from ..mesh.edge_runs import tangents
-from ..mesh.triangle_mesh import Index, Mesh
+from ..mesh.triangle_mesh import Mesh
 from ..mesh.triangles import closest
 from ..surroundings import Body
 from .part_depths import PartDepths
 from .patch import Patch
 from .surface import dot
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 NEAREST = 8  # triangles, by their middles, among which the nearest one of a point is sought
 

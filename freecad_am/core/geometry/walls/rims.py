@@ -6,18 +6,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
+from ...types import Array, Index, Mask
 from ..mesh.edge_runs import runs
 from ..mesh.refined import Edges, boundary
-from ..mesh.triangle_mesh import Index, Mask
 from .patch_wall import FirstCurve, PatchWall, Rim
 from .surface import dot
-
-Array = NDArray[np.float64]
 
 REACHED = 0.75  # share of an end's length along which the wall comes up to it
 

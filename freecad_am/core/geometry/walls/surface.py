@@ -11,11 +11,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array
 from ..columns import columns
-
-Array = NDArray[np.float64]
 
 TURN = 2.0 * np.pi
 

@@ -6,15 +6,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import Issue
+from ...types import Array
 from ..surroundings import Body
 from .part_depths import PartDepths
 from .surface import Cone, Surface, Torus
 from .tabulated import Tabulated
-
-Array = NDArray[np.float64]
 
 TORUS, CONE, TABLE = "torus", "cone", "table"
 

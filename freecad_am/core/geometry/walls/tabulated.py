@@ -7,13 +7,11 @@ For faces whose exact evaluation is slow, and for walls put together from severa
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 from scipy.spatial import cKDTree
 
+from ...types import Array
 from .surface import dot
-
-Array = NDArray[np.float64]
 
 WRAPPED = 6  # columns repeated on either side of a periodic table; the influence of a spline's end falls by 3.7 per knot
 ITERATIONS = 30

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...geometry.frames import Array
+from ...types import Array
 from ..chain import Chain
 from ..jacobian import jacobian
 from .serial_arm import SerialArm

@@ -12,13 +12,10 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...geometry.frames import Array
+from ...types import Array, Mask
 from ..chain import Chain
 from . import rotary_pair
-
-Mask = NDArray[np.bool_]
 
 SLIDING, TURNING = 3, 2  # axes
 

@@ -10,12 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...geometry.frames import Array
-from .offset_wrist_plane import TINY, Curves, Index
-
-Mask = NDArray[np.bool_]
+from ...types import Array, Index, Mask
+from .offset_wrist_plane import TINY, Curves
 
 TURN = 2.0 * math.pi
 NEWTON = 3

@@ -15,13 +15,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...geometry import frames
-from ...geometry.frames import Array
+from ...types import Array, Mask
 from ..chain import Chain
 from . import offset_wrist_search as search
 from .offset_wrist_plane import Curves, geometry
 from .offset_wrist_search import Zeros
-
-Mask = NDArray[np.bool_]
 
 CHUNK = 2048
 MOST = 16  # solutions of six revolute joints

@@ -8,11 +8,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...geometry.frames import Array
-
-Index = NDArray[np.intp]
+from ...types import Array, Index
 
 TINY = 1e-150
 

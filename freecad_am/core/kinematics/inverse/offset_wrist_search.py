@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.frames import Array
+from ...types import Array, Index
 from . import offset_shoulder_loops
-from .offset_wrist_plane import TINY, Curves, Index, Spot, geometry, plane_of, spot_of
+from .offset_wrist_plane import TINY, Curves, Spot, geometry, plane_of, spot_of
 
 SAMPLES = 36
 BESIDE = 0.37  # of a step: no sample where the arm is stretched or folded, at which a zero of it would have either sign

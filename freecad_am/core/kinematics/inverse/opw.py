@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.columns import columns
-from ...geometry.frames import Array
+from ...types import Array
 from .opw_inverse import solve
 
 SHOULDERS, ELBOWS, WRISTS = ("front", "back"), ("up", "down"), ("noflip", "flip")

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...geometry.frames import Array
+from ...types import Array
 
 if TYPE_CHECKING:
     from .opw import OpwArm

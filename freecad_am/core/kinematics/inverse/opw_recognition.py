@@ -13,8 +13,8 @@ import math
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.frames import Array
 from ...issues import InputError
+from ...types import Array
 from ..chain import Chain, JointFrames
 from .opw import OpwArm
 

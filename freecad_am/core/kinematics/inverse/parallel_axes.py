@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...geometry import frames
 from ...geometry.columns import columns
-from ...geometry.frames import Array
+from ...types import Array
 
 CHUNK = 2048
 # how far rounding may take a pose that is reached past a stretched arm (as 1 - cos^2 of the elbow), and past `beside` (mm)

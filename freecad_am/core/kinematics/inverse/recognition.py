@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.frames import Array
 from ...issues import InputError
+from ...types import Array
 from ..chain import Chain
 from . import opw_recognition
 from .offset_wrist import OffsetWristArm

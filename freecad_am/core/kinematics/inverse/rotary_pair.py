@@ -13,13 +13,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import frames
 from ...geometry.columns import columns
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from ...types import Array, Mask
 
 POLE = 1e-9  # sine of the angle to an axis below which a turn about it is free
 ROUNDING = 1e-12  # a square that is negative by no more than this is zero

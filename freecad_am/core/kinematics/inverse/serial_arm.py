@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...geometry.frames import Array
+from ...types import Array
 
 
 class SerialArm(Protocol):

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...collision.bodies import of_bodies
 from ...collision.frustum import Frustum
@@ -28,11 +28,8 @@ from ...collision.tolerances import ABOUT_FACES
 from ...geometry import frames
 from ...geometry.rods import Rod, about, row
 from ...geometry.surroundings import Body, disc
+from ...types import Array, Index, Mask
 from ..cell import Cell
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 NOZZLE, PLATFORM, DEPOSIT, PART, TORCH = "nozzle", "platform", "deposit", "part", "torch"
 WORLD = "world"

@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...geometry import frames
+from ...types import Array, Index
 from .contact import NOZZLE, ArmContact, Group, Solid
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 FIRST = 8  # joint vectors looked at before the others: what is known of these leaves most of the rest out
 

@@ -10,13 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import frames
+from ...types import Array
 from ..chain import Chain
 from .solids import BRIGHT, DARK, Solid, capsule, cylinder, rod, turned
-
-Array = NDArray[np.float64]
 
 # radii of the first and the last joint as shares of the arm's whole length, tapering between; the last such that flanges of
 # robots from 0.7 to 3 m are about as wide as the plates of ISO 9409-1 are: 40 to 125 mm

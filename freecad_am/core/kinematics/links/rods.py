@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.rods import Array, Rod, about, needed, row
+from ...geometry.rods import Rod, about, needed, row
+from ...types import Array
 from ..chain import Chain
 from . import robot as robot_links
 from .solids import Solid

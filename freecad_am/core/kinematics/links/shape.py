@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...geometry.frames import Array
+from ...types import Array
 from ..machines.file import Node
 
 BASE = "base"

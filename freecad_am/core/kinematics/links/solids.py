@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...geometry import frames
-
-Array = NDArray[np.float64]
+from ...types import Array
 
 BODY, DARK, BRIGHT = "body", "dark", "bright"
 SIDES = 40

@@ -17,9 +17,9 @@ import numpy as np
 
 from ...geometry import frames
 from ...geometry.file_content import content
-from ...geometry.frames import Array
 from ...geometry.located import is_there
 from ...issues import InputError
+from ...types import Array
 from ..chain import Chain
 
 LARGEST = 1  # MB

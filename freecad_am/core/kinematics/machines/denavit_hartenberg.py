@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.frames import Array
 from ...issues import InputError
+from ...types import Array
 from ..chain import Chain
 
 # two axes closer to parallel than this, rad, count as parallel: their common normal would be nowhere

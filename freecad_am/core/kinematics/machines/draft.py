@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.frames import Array
 from ...issues import InputError
+from ...types import Array
 from ..chain import Chain
 from ..inverse.opw import OpwArm
 from ..inverse.serial_arm import SerialArm

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
-from ...geometry.frames import Array
 from ...issues import InputError
+from ...types import Array
 from ..chain import Chain
 from ..inverse import recognition
 from ..inverse.five_axis import is_five_axis

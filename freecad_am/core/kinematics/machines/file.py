@@ -16,8 +16,8 @@ import numpy as np
 
 from ...geometry import frames
 from ...geometry.file_content import content
-from ...geometry.frames import Array
 from ...issues import InputError
+from ...types import Array
 
 LARGEST = 16  # MB
 LARGEST_NUMBER = 1e300

@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...geometry.frames import Array
 from ...geometry.located import is_there, located
 from ...issues import InputError
+from ...types import Array
 from ..arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement
 from ..chain import Chain
 from ..inverse.calibrated import CalibratedArm

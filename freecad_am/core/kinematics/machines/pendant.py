@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.frames import Array
+from ...types import Array
 from ..chain import Chain
 
 NONE, HORIZONTAL = "none", "horizontal"  # what axis 3 is shown against: link 2, or the base

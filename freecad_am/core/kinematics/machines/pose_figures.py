@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.frames import Array
+from ...types import Array
 
 FANUC, KUKA, STAUBLI, ZYZ, QUATERNION = "W P R", "A B C", "RX RY RZ", "O A T", "q1 q2 q3 q4"
 # how a pose's rotation is written -> its figures, and who writes it so

@@ -14,10 +14,10 @@ from typing import NoReturn
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.frames import Array
 from ...geometry.located import is_there
 from ...issues import InputError
 from ...parameters.external import MORE, PART, ROBOT, WHERE, External, Pose
+from ...types import Array
 from .elements import CODE
 from .machine import WHOLE
 from .read import FIXED, TIPS, Urdf

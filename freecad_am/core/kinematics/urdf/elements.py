@@ -13,8 +13,8 @@ import numpy as np
 
 from ...geometry import frames
 from ...geometry.file_content import content
-from ...geometry.frames import Array
 from ...issues import InputError
+from ...types import Array
 
 CODE = "BAD_URDF"
 LARGEST = 64  # MB

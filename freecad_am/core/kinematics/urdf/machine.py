@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ...geometry.frames import Array
 from ...geometry.located import is_there
 from ...issues import InputError
 from ...parameters.external import WHERE
+from ...types import Array
 from ..chain import Chain
 from ..inverse import opw_recognition, recognition
 from ..inverse.five_axis import is_five_axis

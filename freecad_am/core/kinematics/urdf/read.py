@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.frames import Array
 from ...geometry.located import is_there, located
 from ...issues import InputError
+from ...types import Array
 from ..chain import Chain
 from ..links.shape import FORMATS, LinkShape
 from . import elements as urdf_xml

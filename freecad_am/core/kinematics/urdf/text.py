@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.frames import Array
+from ...types import Array
 from ..chain import Chain
 from ..machines.machine import Machine
 

@@ -17,7 +17,7 @@ from ...geometry.mesh.refined import Edges
 from ...geometry.mesh.solid import SolidMesh
 from ...geometry.surroundings import Body
 from ...issues import InputError
-from ..surface import Array, Index
+from ...types import Array, Index
 from .guide_edges import Nodes
 
 PACE = 0.25  # of the size of a section, from one to the next

@@ -22,11 +22,12 @@ from ...geometry.told import place
 from ...issues import ERROR, InfeasibleError, InputError, Issue
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
+from ...types import Array, Index
 from ..curved.covered import with_covered
 from ..margins import grown, within_margin
 from ..overhang import with_overhangs
 from ..planes import field as planes
-from ..surface import Array, Index, Slice
+from ..surface import Slice
 from .layer import AlongLayer, between
 
 BENDS = np.cos(np.radians(10.0))  # between the planes of the ends of an edge; edges that see more of a bend are halved

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...geometry.told import place
 from ...issues import InputError
-from ..surface import Array
+from ...types import Array
 
 TOUCHING = 1e-3  # mm between the ends of edges that meet
 CORNER = np.radians(1.0)

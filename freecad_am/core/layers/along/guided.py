@@ -13,8 +13,8 @@ from ...geometry.surroundings import Body
 from ...geometry.told import place
 from ...issues import NOTE, Issue
 from ...parameters.filled import SolidParameters
+from ...types import Array
 from ..planes.stacking import stacked
-from ..surface import Array
 from .centre_line import centre_line
 from .guide_edges import Nodes, chained
 

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry.curves.guide import Guide
+from ...types import Array
 from ..planes.flat import Flat
-from ..surface import Array, Wrapped
+from ..surface import Wrapped
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.mesh.triangle_mesh import Mesh
-from ..curved.voxels import Array, Index, Mask
+from ...types import Array, Index, Mask
 
 CELL = 1.5  # typical edges; side of the squares that triangles are sorted into
 OUTSIDE = -1e-6  # least share of a corner for a place that is in a triangle

@@ -9,7 +9,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..surface import Array, Index, Wrapped
+from ...types import Array, Index
+from ..surface import Wrapped
 from .chart import Chart, Place
 
 STEEP = 0.9  # of 1; a normal nearer to X than that takes Y for what its first direction follows

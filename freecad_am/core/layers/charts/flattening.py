@@ -14,7 +14,7 @@ from scipy.sparse import coo_matrix, csc_matrix
 from scipy.sparse.linalg import splu
 
 from ...geometry.mesh.triangle_mesh import Mesh
-from ..curved.voxels import Array
+from ...types import Array
 
 FLAT = 1e-6  # of the extent; what lies so near to a plane is moved onto it
 ENOUGH = 2e-3  # stretch that no bead tells; made no better

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...types import Array
 from ..curved.geodesic import GeodesicField
-from ..surface import Array
 from .chart import Place
 from .charted import Charted
 

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from ...geometry.curves.plane_curve import doubled_area
 from ...geometry.mesh.triangle_mesh import Mesh, chains
 from ...geometry.regions.region import regions
-from ..curved.voxels import Array, Index, Mask
+from ...types import Array, Index, Mask
 from .flattening import Flattened, flattened
 
 OUTER = 0.02  # share of the area whose stretch does not count: slivers, and the very corners of fans

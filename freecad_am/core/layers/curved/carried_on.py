@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...types import Array, Mask
 from .eikonal import Links, links
-from .voxels import Array, Mask, Voxels
+from .voxels import Voxels
 
 LAYERS = 2  # of nodes past the surface
 

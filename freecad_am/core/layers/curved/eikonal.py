@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .voxels import Array, Index, Mask, Voxels
+from ...types import Array, Index, Mask
+from .voxels import Voxels
 
 SETTLED = 1e-9  # of a step; a node that comes no nearer than that is done
 BAND = 0.5  # of a step; nodes whose distances differ by less depend on one another

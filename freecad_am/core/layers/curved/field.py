@@ -13,9 +13,10 @@ from ...geometry.on_hub import Group
 from ...geometry.surroundings import Body
 from ...issues import NOTE, WARNING, InputError, Issue
 from ...parameters.filled import SolidParameters
+from ...types import Array
 from ..charts.layer import ChartLayer
 from ..margins import BORDER
-from ..surface import Array, Slice
+from ..surface import Slice
 from .geodesic import GeodesicField, Piece, field
 
 FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most

@@ -15,13 +15,14 @@ from ...geometry.curves.plane_curve import doubled_area
 from ...geometry.mesh.solid import Search, SolidMesh
 from ...geometry.mesh.triangle_mesh import Mesh
 from ...geometry.regions.region import Region, regions
+from ...types import Array, Index, Mask
 from ..charts.chart import Chart
 from ..charts.flattening import flattened, turned
 from ..charts.parted import OVERLAID, stretch_of
 from .carried_on import carried_on, gradients
 from .eikonal import Links, arrival, links
 from .level import Cubes
-from .voxels import Array, Index, Mask, Voxels, voxels
+from .voxels import Voxels, voxels
 
 NEAR = 2.5  # steps; nodes so near to the start know their distance from its triangles
 DEEP = 3  # nodes; farther inside nothing asks how far the surface is

@@ -9,7 +9,7 @@ from itertools import permutations
 import numpy as np
 
 from ...geometry.mesh.triangle_mesh import Mesh
-from .voxels import Array, Index, Mask
+from ...types import Array, Index, Mask
 
 NEAR = 0.08  # share of an edge; a surface that crosses it nearer to an end crosses it there: no triangle is all sliver
 

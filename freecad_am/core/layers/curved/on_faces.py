@@ -21,12 +21,13 @@ from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...issues import InputError
 from ...parameters.filled import CladdingParameters
+from ...types import Array
 from ..charts.chart import Chart, Place
 from ..charts.charted import Charted, axes
 from ..charts.flattening import flattened
 from ..charts.parted import borders, parted, stretch_of
 from ..margins import BORDER
-from ..surface import Array, Slice
+from ..surface import Slice
 
 FOLDED = 0.05  # share of its area that a triangle keeps in a layer that does not fold
 PROBE = 0.15  # of the extent of a picture, about the middle of it, along which its direction is told

@@ -7,11 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
+from ...types import Array, Index, Mask
 
 RIM = 3  # nodes about the solid's box, for fields that are carried on a little past its surface
 # of a step; columns of nodes stand aside of round coordinates by that, so that they run along no edge that anyone draws

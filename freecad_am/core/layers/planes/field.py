@@ -15,10 +15,11 @@ from ...geometry.told import place
 from ...issues import InputError
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
+from ...types import Array
 from ..curved.covered import with_covered
 from ..margins import grown, within_margin
 from ..overhang import with_overhangs
-from ..surface import Array, Slice
+from ..surface import Slice
 from .layer import PlaneLayer
 
 ASIDE = 0.02  # of the chord error, mm, at least; a plane keeps that far from faces that lie in it

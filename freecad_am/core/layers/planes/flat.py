@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..surface import Array, Index
+from ...types import Array, Index
 
 
 class Flat:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..surface import Array, Wrapped
+from ...types import Array
+from ..surface import Wrapped
 from .flat import Flat
 
 

@@ -7,14 +7,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.on_hub import Group, SolidsOnHub
 from ...geometry.plane import Plane
 from ...slicing.solids.plane_sections import PlaneCuts
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ...types import Array, Index
 
 EXACT = 1e-6  # of a layer
 

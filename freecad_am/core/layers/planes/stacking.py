@@ -16,8 +16,7 @@ from ...geometry.plane import Plane
 from ...geometry.surroundings import Body
 from ...issues import NOTE, Issue
 from ...parameters.filled import SolidParameters
-
-Array = NDArray[np.float64]
+from ...types import Array
 
 AXES = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64)
 LARGEST = 12  # flat faces that the part may be laid on, beside the axes

@@ -11,7 +11,8 @@ import numpy as np
 from ...geometry.columns import columns
 from ...geometry.developable import TURN, Developable
 from ...geometry.regions.strip import Period
-from ..surface import Array, Index, Wrapped
+from ...types import Array, Index
+from ..surface import Wrapped
 
 
 @dataclass(frozen=True)

@@ -10,19 +10,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import Issue
 from ...kinematics.links.contact import NONE
 from ...toolpath import Bead
+from ...types import Array, Mask
 from ..joint_path import BeadPath
 from ..points import TURN, Points, gather
 from ..rotation.search import Found
 from ..task import FITS, UNREACHABLE, Task, condition_margin
 from .kept import ArmKept, clearance_issue
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Place = tuple[int, int]
 
 FEW, TURNS = 4, 72  # candidates of a bead looked at before there is a map, and rotations of that

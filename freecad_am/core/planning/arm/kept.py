@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...collision.bead_ends import LINK_GRAIN, Beads
 from ...geometry.rods import Rod
@@ -16,12 +15,10 @@ from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...kinematics.links.contact import NOZZLE, PART, TORCH, ArmContact, Touches
 from ...toolpath import Bead, Toolpath
+from ...types import Array, Index, Mask
 from ..points import Points
 from ..rapids.clearance import evenly
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 Place = tuple[int, int]
 Rods = Sequence[Sequence[Rod]]
 

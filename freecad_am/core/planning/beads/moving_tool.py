@@ -19,9 +19,9 @@ from ...geometry import frames
 from ...kinematics.cell import Cell
 from ...motion import Motion
 from ...toolpath import Bead
+from ...types import Array
 from ..turns import configurations as following
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 

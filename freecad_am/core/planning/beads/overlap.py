@@ -6,13 +6,11 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array
 from ..joint_path import BeadPath
 from ..points import TURN
 from ..task import Task
-
-Array = NDArray[np.float64]
 
 
 def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:

@@ -18,9 +18,9 @@ from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...motion import AT_END, AT_START, MIDDLE
 from ...toolpath import Bead
+from ...types import Array
 from ..joint_path import BeadPath
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 STEPS = 4  # of which each leaves a small share of what was off before

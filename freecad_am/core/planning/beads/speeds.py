@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from ...issues import ERROR, WARNING, Issue
 from ...kinematics.cell import Cell
 from ...toolpath import Bead, SpeedLaw
+from ...types import Array
 from ..joint_path import BeadPath
-
-Array = NDArray[np.float64]
 
 SLOWED = "SLOWED"
 JUST = 1.0 - 1e-9  # of what an axis can do

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from ...controller import Controller
 from ...motion import Motion
+from ...types import Array, Mask
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Rows = NDArray[np.intp]
 
 OFF = 0.4  # of the chord error, that points left out may lie off

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from ...issues import ERROR, Issue
 from ...toolpath import Bead
+from ...types import Array
 from ..joint_path import BeadPath
 from ..task import Task
-
-Array = NDArray[np.float64]
 
 INSIDE = np.array([0.25, 0.5, 0.75])
 MORE = np.array([1.0, 2.0, 4.0, 5.0]) / 6.0  # of segments that use up more than half of the chord error

@@ -18,9 +18,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import NOTE, Issue
+from ...types import Array, Index
 from ..joint_path import BeadPath
 from ..points import TURN, Points, gather, steps
 from ..task import Task
@@ -28,9 +28,6 @@ from . import chain_optimum
 from .cells import CELLS, PARTS, Cells, cells_of, divided, whole_turn
 from .point_bounds import point_bound
 from .step_bounds import least_steps
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 CLOSE = 0.005  # share of the objective at which a bound is near enough
 LEVELS = 7  # times that cells are divided

@@ -9,11 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kinematics import jacobian as jac
+from ...types import Array, Index
 from ..points import TURN, Points
 from ..task import Task
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 CELLS, PARTS = 36, 3  # in a turn at first, and of a cell when it is divided
 

@@ -6,13 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index
 from ..points import TURN, Points
 from ..task import Task
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 STEPS = 15
 APART = 1e-5  # rad, between the rotations of which a slope is taken

@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...kinematics import jacobian as jac
+from ...types import Array, Index
 from ..points import TURN, Points
 from ..task import Task
 from .cells import CELLS, cells_of, divided, whole_turn
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 LEVELS = 4
 CLOSE = 1e-3  # share of a point's value at which its bound is near enough

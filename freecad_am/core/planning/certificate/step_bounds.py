@@ -4,12 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array
 from ..points import TURN
 from .cells import Cells
-
-Array = NDArray[np.float64]
 
 LEAST_SHARE, MOST_SHARE = 1e-5, 1.0
 

@@ -7,12 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index
 from .freedom import Bound, Freedom
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 ROUNDS = 4  # each with the constraints added that the one before came close to
 NEAR = 0.1  # rows with so much more margin than asked for are not told to the optimiser at first

@@ -13,17 +13,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import frames
 from ...kinematics import jacobian as jac
 from ...kinematics.cell import Cell
 from ...kinematics.external import ExternalAxes
+from ...types import Array
 from .. import criteria
 from ..points import Points
 from ..task import Task
-
-Array = NDArray[np.float64]
 
 FAR = 0.75  # a margin to the condition that nobody asks for: its derivatives are not told
 STEEP = 0.9  # of its largest speed, what an external axis may be asked for

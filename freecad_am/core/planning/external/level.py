@@ -13,19 +13,17 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...kinematics.external import ExternalAxes, tilt_from
 from ...kinematics.inverse import rotary_pair
 from ...toolpath import Bead, Toolpath
+from ...types import Array
 from ..joint_path import BeadPath, JointPath
 from ..points import TURN
 from ..reserve import RESERVE
 from ..turns.rotary_courses import continuous, kept
-
-Array = NDArray[np.float64]
 
 ROUNDING = 1e-9
 # rad; a direction this near to the turning axis counts as on it, or the axis would race round to meet it

@@ -15,9 +15,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...kinematics.external import tilt_from
+from ...types import Array
 from ..joint_path import BeadPath
 from ..points import Points, gather, thinned
 from ..rotation import basis, refine, search
@@ -26,8 +26,6 @@ from ..rotation.given import GIVEN
 from ..task import Task
 from .descent import largest_margin, least_objective
 from .freedom import Freedom, moved
-
-Array = NDArray[np.float64]
 
 OPTIMISED = "rotation and external axes together"
 POINTS_PER_BEAD = 40

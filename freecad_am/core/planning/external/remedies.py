@@ -10,7 +10,6 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import frames
 from ...kinematics import external
@@ -20,8 +19,8 @@ from ...kinematics.machines.machine import Machine
 from ...parameters.cell import CellParameters
 from ...parameters.external import MORE, PART, ROBOT, WHERE, External, Pose, externals
 from ...toolpath import Toolpath
+from ...types import Array
 
-Array = NDArray[np.float64]
 Cells = Iterator[tuple[str, CellParameters]]
 
 # of the arm's reach, how far the face is ahead of the shoulder, and, mm, higher than it is

@@ -13,14 +13,12 @@ import dataclasses
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import frames
 from ...kinematics.cell import Cell
 from ...toolpath import Bead
+from ...types import Array
 from ..reserve import RESERVE
-
-Array = NDArray[np.float64]
 
 # shares of the arm's reach: the window, and how far the robot stands before or behind the deposit along the track
 WINDOWS = (0.6, 0.3, 0.0)

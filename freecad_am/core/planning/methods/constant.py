@@ -6,18 +6,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.ties import first_most
 from ...issues import NOTE, Issue
 from ...toolpath import Bead
+from ...types import Array
 from .. import criteria
 from ..joint_path import BeadPath
 from ..points import TURN, Points, gather
 from ..rotation import search
 from ..task import Task, condition_margin
 
-Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 TRIED, FINE = 360, 21

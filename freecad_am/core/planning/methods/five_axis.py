@@ -20,13 +20,13 @@ from ...kinematics.cell import Cell
 from ...kinematics.inverse.five_axis import FiveAxis
 from ...parameters.joints import JointParameters
 from ...toolpath import Bead, Toolpath
+from ...types import Array
 from ..joint_path import BeadPath
 from ..reserve import RESERVE
 from ..turns import fit_five_axis as table_room
 from ..turns.rotary_courses import continuous, kept
 from ..turns.unwrap import seam_note, split_note
 
-Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 METHOD = "five-axis"

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import Issue
 from ...toolpath import Bead
+from ...types import Array
 from ..arm import clear as arm_clear
 from ..joint_path import BeadPath
 from ..points import gather
@@ -21,7 +21,6 @@ from ..rotation.evaluation import judged
 from ..task import FITS, Task
 from ..turns import fit as room
 
-Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
 

@@ -11,17 +11,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.ties import first_least, first_most
 from ...issues import Issue
 from ...toolpath import Bead
+from ...types import Array
 from ..joint_path import BeadPath
 from ..points import TURN, Points, gather, unwrapped
 from ..task import Task, condition_margin
 from .constant import bead_paths
 
-Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 CANDIDATES = 180

@@ -6,14 +6,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import frames
 from ...kinematics.cell import Cell
 from ...parameters.program import ProgramParameters
 from ...program import DEPOSIT, Moves, Six
-
-Array = NDArray[np.float64]
+from ...types import Array
 
 
 def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:

@@ -13,7 +13,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...collision.bead_ends import BeadEnds, Beads, Size
 from ...collision.bodies import Bodies
@@ -21,10 +20,7 @@ from ...collision.nozzle import Nozzle
 from ...collision.scene import scene
 from ...geometry.surroundings import Body, disc
 from ...kinematics.cell import Cell
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
+from ...types import Array, Index, Mask
 
 # largest turn of an axis between two looks, rad, and way of one that slides, mm
 STEP = np.radians(5.0)

@@ -9,12 +9,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index
 from ..joint_path import BeadPath
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 LIMIT, UNREACHABLE, SINGULAR = "LIMIT", "UNREACHABLE", "SINGULAR"
 

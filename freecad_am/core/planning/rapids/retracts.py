@@ -15,13 +15,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...kinematics import jacobian as jac
 from ...kinematics.cell import Cell
 from ...kinematics.inverse import opw
 from ...kinematics.inverse.five_axis import FiveAxis
 from ...parameters.joints import JointParameters
+from ...types import Array, Index, Mask
 from ..reserve import RESERVE
 from ..task import CONDITION_FLOOR
 from ..turns import configurations as following
@@ -39,10 +39,6 @@ from .retract_ways import (
     Ways,
     groups,
 )
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 TURN = 2.0 * np.pi
 # how far the tip may stray from the straight way, mm: a twentieth of what is usual beside a wall

@@ -16,13 +16,12 @@ from ...issues import Issue
 from ...kinematics.cell import Cell
 from ...motion import APPROACH, RETRACT, TRAVEL
 from ...parameters.joints import JointParameters
+from ...types import Array
 from ..arm.kept import Rods, clearance_issue, contact_of, on_moves
 from ..joint_path import BeadPath, JointPath
 from .clearance import Moves, Surroundings
 from .retract_ways import DIRECTIONS, Ends, Failure, Leg
 from .retracts import STRAY_MM, Retracts, branch_of
-
-Array = NDArray[np.float64]
 
 # largest turn of an endless axis in one rapid move, rad: such an axis takes the shorter way, so half a turn is in doubt
 LARGEST_TURN = np.radians(170.0)

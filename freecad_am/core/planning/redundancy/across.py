@@ -6,14 +6,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...kinematics.cell import Cell
 from ...toolpath import Bead
+from ...types import Array
 from ..task import Task
 from .map import Columns, alone, planned_external
-
-Array = NDArray[np.float64]
 
 
 def across(beads: Sequence[Bead], cell: Cell, at: tuple[int, int], axis: int, values: Array) -> Columns:

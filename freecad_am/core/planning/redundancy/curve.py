@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ...issues import Issue, has_errors
 from ...toolpath import Bead
+from ...types import Array, Mask
 from .. import criteria
 from ..findings import ROUNDING, findings
 from ..joint_path import BeadPath
@@ -20,8 +21,6 @@ from ..points import TURN, Points, gather, steps
 from ..rotation import basis
 from ..task import Task
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Progress = Callable[[float, str], None]
 
 

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...collision import nozzle as nozzles
 from ...collision.scene import scene
@@ -22,13 +21,10 @@ from ...geometry.surroundings import Body, disc
 from ...kinematics.cell import Cell
 from ...kinematics.links.contact import ArmContact
 from ...toolpath import Bead
+from ...types import Array, Index, Mask
 from ..findings import ROUNDING
 from ..points import TURN, Points
 from ..task import UNREACHABLE, LimitRows, Task, beside
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 RZ, ROTATION = "rz", "rotation"
 ROWS, MOST = 181, 300

@@ -9,12 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
-from numpy.typing import NDArray
 
+from ...types import Array
 from ..points import Points
 from ..task import Task
-
-Array = NDArray[np.float64]
 
 
 def changes(task: Task, points: Points, degree: int) -> Array:

@@ -6,16 +6,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...toolpath import Bead
+from ...types import Array
 from .. import criteria
 from ..joint_path import BeadPath
 from ..points import Points
 from ..task import Task, condition_margin
 from . import refine
 
-Array = NDArray[np.float64]
 Place = tuple[int, int]
 
 

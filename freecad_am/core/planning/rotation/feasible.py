@@ -11,9 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...types import Array
 
 # values (r,) of the constraints at all points, kept where >= 0, and their derivatives (r, k); None where unreachable
 Constraints = Callable[[Array], "tuple[Array, Array] | None"]

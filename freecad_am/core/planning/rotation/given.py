@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import WARNING, Issue
 from ...parameters.joints import JointParameters, given_polynomials
@@ -17,7 +16,6 @@ from ..task import Task
 from . import refine
 from .evaluation import judged
 
-Array = NDArray[np.float64]
 Place = tuple[int, int]
 
 METHOD, GIVEN = "layer-by-layer", "given"

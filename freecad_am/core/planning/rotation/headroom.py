@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kinematics.limits import Limits
+from ...types import Array
 from ..joint_path import BeadPath
 from ..redundancy.curve import durations
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

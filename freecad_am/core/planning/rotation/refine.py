@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 
 from ...geometry.ties import alike
 from ...kinematics import jacobian as jac
+from ...types import Array
 from ..points import Points
 from ..task import Task
 from . import basis, feasible
 from .refine_state import State, slopes_of, state_of, values_of
-
-Array = NDArray[np.float64]
 
 # by how little a constraint may be violated and count as kept: limits and condition have reserves many times as wide
 KEPT = 4e-7

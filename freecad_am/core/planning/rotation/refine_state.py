@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kinematics import jacobian as jac
+from ...types import Array
 from .. import criteria
 from ..points import Points
 from ..task import Task, in_pieces
 from . import basis
 
-Array = NDArray[np.float64]
 # share by which the condition stays above its threshold, so that an optimum on it does not fall below between the points
 CONDITION_RESERVE = 1e-3
 

@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from ...geometry.ties import first_least, first_most
 from ...kinematics import jacobian as jac
+from ...types import Array
 from .. import criteria
 from ..points import Points, steps
 from ..task import UNREACHABLE, Task, condition_margin
-
-Array = NDArray[np.float64]
 
 POINTS_PER_BEAD = 10
 OFFSETS = 24

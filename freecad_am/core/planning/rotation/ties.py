@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.ties import alike, first_least, first_most
+from ...types import Array
 from ..points import TURN, Points
 from ..task import Task
 from . import search
-
-Array = NDArray[np.float64]
 
 COARSE, FINE = 72, 15
 # two peaks of the margin are different ones when they lie this far apart, in coarse steps (30 deg)

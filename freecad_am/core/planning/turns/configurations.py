@@ -7,12 +7,10 @@ Only solutions of the words wanted are looked at, and of these the nearest.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...kinematics.inverse.serial_arm import SerialArm
+from ...types import Array
 from ..points import TURN, Points
-
-Array = NDArray[np.float64]
 
 
 def along_beads(arm: SerialArm, flange: Array, branch: int, points: Points) -> Array:

@@ -7,11 +7,11 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...toolpath import Bead
+from ...types import Array
 from ..joint_path import BeadPath
 from ..points import gather
 from ..rotation import refine, search, ties
@@ -19,7 +19,6 @@ from ..rotation.evaluation import judged
 from ..task import FITS, Task
 from . import unwrap as turns
 
-Array = NDArray[np.float64]
 Place = tuple[int, int]
 
 OFFSETS = 72

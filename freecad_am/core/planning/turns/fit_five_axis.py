@@ -6,12 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...kinematics.limits import Limits
 from ...toolpath import Bead
-
-Array = NDArray[np.float64]
+from ...types import Array
 
 TURN = 2.0 * np.pi
 MOST_PIECES = 4

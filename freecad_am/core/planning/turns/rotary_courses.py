@@ -6,9 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...types import Array
 from ..points import TURN
-
-Array = NDArray[np.float64]
 
 
 def continuous(turned: Array) -> list[Array]:

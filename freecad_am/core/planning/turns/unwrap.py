@@ -12,16 +12,14 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.ties import first_least
 from ...issues import NOTE, WARNING, Issue
 from ...toolpath import Bead
+from ...types import Array
 from ..joint_path import BeadPath
 from ..points import TURN
 from ..task import Task
-
-Array = NDArray[np.float64]
 
 # an axis that moves this much between two beads is said to turn back, rad
 TURNS_BACK = 1.5 * math.pi

@@ -18,10 +18,8 @@ from numpy.typing import NDArray
 
 from ...geometry.columns import lengths
 from ...geometry.curves.outline import derivatives
-from ...toolpath import Array
+from ...types import Array, Index, Mask
 
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 CORNER = np.radians(50.0)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
 SLIGHT = np.radians(10.0)  # a lesser turn is a corner too where it is more than SUDDEN times the turns beside it
 SUDDEN = 3.0

@@ -10,7 +10,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.columns import dots, lengths
-from ...toolpath import Array, Layer, Toolpath
+from ...toolpath import Layer, Toolpath
+from ...types import Array
 
 STEP = 0.5  # of a layer height, between two places on the beads below that are asked
 

@@ -7,13 +7,11 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.told import place
 from ...issues import ERROR, Issue
-from ...toolpath import Array, Toolpath
-
-Index = NDArray[np.intp]
+from ...toolpath import Toolpath
+from ...types import Array, Index
 
 CODE = "OFF_PART"
 MOST = 20_000  # places looked at, where beads are not more

@@ -6,13 +6,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.columns import lengths
-from ...toolpath import Array, Toolpath
-
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
+from ...toolpath import Toolpath
+from ...types import Array, Index, Mask
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,8 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from ...toolpath import Array, Bead, Layer, Toolpath
+from ...toolpath import Bead, Layer, Toolpath
+from ...types import Array
 from .layer_curve import Curve, columns_of, distance
 
 LEVEL = 1e-6  # mm; a layer whose points differ no more in height is a plane

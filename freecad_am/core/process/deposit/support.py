@@ -14,16 +14,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...geometry.columns import lengths
 from ...issues import WARNING, Issue
-from ...toolpath import Array, Toolpath
+from ...toolpath import Toolpath
+from ...types import Array, Index, Mask
 from .pieces import Pieces, cut
 
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 Ground = Callable[[Array, Array], Mask]
 
 CODE = "UNSUPPORTED"

@@ -9,16 +9,12 @@ beads that cross at an angle that comes to their widths over its sine, which is 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...geometry.columns import dots, lengths
 from ...toolpath import Toolpath
+from ...types import Array, Index, Mask
 from .pieces import Pieces, cut, joined
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 PIECE = 0.125  # of a bead's width
 LEVEL = 0.5  # layer heights above or below; what is farther is of another turn of a spiral

@@ -14,13 +14,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import InputError
 from ...toolpath import SpeedLaw
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from ...types import Array, Mask
 
 MINUTE = 60.0
 FEWEST = 4  # rows; three coefficients and one that says how well they fit

@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.columns import columns, dots, lengths
-
-Array = NDArray[np.float64]
+from ...types import Array
 
 STRAIGHT = 1e-9  # rad of turn over the window; less is none
 

@@ -16,7 +16,8 @@ import numpy as np
 from ...geometry.file_content import content
 from ...issues import InputError
 from ...parameters.process import ProcessParameters
-from .bead_model import MINUTE, Array, BeadModel, fit, row_name
+from ...types import Array
+from .bead_model import MINUTE, BeadModel, fit, row_name
 from .wire import with_model
 
 BUILT_IN = {"csw": "dai-2020.csv", "li-2025": "li-2025.csv"}

@@ -7,16 +7,14 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...parameters.process import ProcessParameters
-from ...toolpath import Array, Bead, Toolpath
+from ...toolpath import Bead, Toolpath
+from ...types import Array, Mask
 from .bead_model import BeadModel
 from .bead_speed import followed, radii_beside
 from .notes import of_model
 from .wire import with_model
-
-Mask = NDArray[np.bool_]
 
 
 class AtSpeed(NamedTuple):

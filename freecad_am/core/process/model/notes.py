@@ -7,16 +7,14 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import NOTE, WARNING, Issue
 from ...parameters.process import ProcessParameters
-from ...toolpath import Array, Bead
+from ...toolpath import Bead
+from ...types import Array, Mask
 from .bead_model import MINUTE, BeadModel
 from .predicted import heights_told
 from .wire import with_model
-
-Mask = NDArray[np.bool_]
 
 CLAMPED = 0.05  # of the length
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ...issues import NOTE, WARNING, Issue
 from ...parameters.process import ProcessParameters
-from ...toolpath import Array, Bead, Toolpath
+from ...toolpath import Bead, Toolpath
+from ...types import Array
 from .bead_model import MINUTE, BeadModel
 from .wire import with_model
 

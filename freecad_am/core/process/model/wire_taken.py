@@ -9,7 +9,8 @@ import numpy as np
 
 from ...motion import AT_END, AT_START, MIDDLE
 from ...parameters.process import ProcessParameters
-from ...toolpath import Array, Bead, Toolpath
+from ...toolpath import Bead, Toolpath
+from ...types import Array
 
 _KEYS = {MIDDLE: "", AT_START: ".start", AT_END: ".end"}
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.columns import columns
-from ...geometry.curves.profile import Array
+from ...types import Array
 
 SCAN = 48  # tilts tried before the first good one is refined
 AT_ONCE, PARTS = 8, 4  # of these tried together, and parts that the place of the first good one is narrowed to at once

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from ...geometry.columns import columns
 from ...geometry.walls.surface import dot
 from ...issues import InputError
-
-Array = NDArray[np.float64]
+from ...types import Array
 
 LEAST = 1e-6  # a direction shorter than this after projection points nowhere
 HALVINGS = 30  # of the width over which directions are spread

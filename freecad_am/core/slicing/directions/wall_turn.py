@@ -4,12 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface import dot
-
-Array = NDArray[np.float64]
+from ...types import Array
 
 
 def turns_in_wall(curve: SpaceCurve, normal: Array) -> Array:

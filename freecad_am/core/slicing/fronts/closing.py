@@ -12,7 +12,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -20,12 +19,9 @@ from scipy.spatial import cKDTree
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.mesh.triangle_mesh import LevelLine, Mesh, chains
 from ...geometry.walls.surface import dot
+from ...types import Array, Index, Mask
 from .curve import Feet, Wall, feet
 from .gap_middle import finer, middle, samples, shares
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 COVERED = 0.594  # of the height; no point is to be farther from a bead, and is found to less than the rest to 0.6
 LEVELS = (0.5, 0.42, 0.34)  # of the height; how deep the border of what is closed lies, for a bead that is long enough

@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface import dot
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ...types import Array, Index
 
 STEPS = 12
 ROUNDS = 12

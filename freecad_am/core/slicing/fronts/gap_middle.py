@@ -4,19 +4,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.mesh.triangle_mesh import Mesh
 from ...geometry.walls.surface import dot
+from ...types import Array, Index
 from .curve import Wall
 from .even_line import even, rounded
 from .on_wall import on_wall
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 STRAIGHT = 1.2  # of the height; shorter beads are
 ROUND = 0.8  # of the height; standard deviation of the mean that rounds a bead
 ALIKE = 6  # decimals of mm to which vertices of the fine mesh are told apart

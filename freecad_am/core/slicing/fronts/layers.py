@@ -19,22 +19,18 @@ from itertools import chain
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.mesh.triangle_mesh import Mesh, thinned
 from ...geometry.walls.patch_wall import FirstCurve, Rim
 from ...geometry.walls.surface import dot
+from ...types import Array, Index, Mask
 from ..backstop import refuse_endless
 from ..banded import HEAVY
 from .closing import closing
 from .curve import exact, feet
 from .rims import Rims, cut_at_rims
 from .smooth import SmoothFront, Smoothing, smoothed
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 SHORTEST = 0.2  # of the layer height; shorter fronts are no bead
 SLIVER, OFF = 10.0, 5e-4  # layer heights; mm. Fronts shorter than this may be off by no more between their nodes

@@ -9,7 +9,6 @@ from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
@@ -17,11 +16,8 @@ from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.mesh.triangle_mesh import LevelLine
 from ...geometry.walls.patch_wall import Rim
 from ...geometry.walls.surface import dot
+from ...types import Array, Index, Mask
 from .curve import feet
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 FINER = 2  # places per arc of a rim at which the distance from the fronts is taken
 HALVINGS = 8  # of the stretches between them in which a rim may come and go

@@ -12,20 +12,17 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface import dot
+from ...types import Array, Mask
 from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest
 from ..directions.wall_turn import turns_in_wall
 from .curve import Wall, feet
 from .even_line import even, rounded
 from .on_wall import on_wall
 from .rims import ON_RIM, Rims
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 PLACES = 8  # per layer height along a front
 FEWEST = 48  # of a front

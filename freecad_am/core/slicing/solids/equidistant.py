@@ -20,10 +20,8 @@ from ...geometry.columns import columns
 from ...geometry.developable import TURN, Developable
 from ...geometry.mesh.triangle_mesh import chains
 from ...issues import InputError
+from ...types import Array, Index, Mask
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 Edges = NDArray[np.int32]
 
 NEWTON = 60

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...geometry.mesh.solid import Array, Search, SolidMesh, spread
+from ...geometry.mesh.solid import Search, SolidMesh, spread
 from ...geometry.on_hub import Base, Group
 from ...geometry.surroundings import Body
 from ...geometry.told import place
 from ...issues import InputError
+from ...types import Array
 
 STEP = 2.0  # mm between the places looked at on the surface of a solid
 DEEP = 5.0  # times the chord error of the meshes, that solids may reach into one another: touching ones do

@@ -15,9 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.mesh.triangle_mesh import chains
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ...types import Array, Index
 
 MOST_SIDES = 16  # pairs of triangles that meet in an edge
 AT_ONCE = 1_000_000  # crossings of planes worked on together; bounds the memory

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.developable import Array
 from ...geometry.on_hub import Group, Seat, SolidsOnHub, downwards, middle_azimuth
 from ...geometry.surroundings import Body
 from ...geometry.told import place
 from ...issues import InputError, Issue
+from ...types import Array
 from .equidistant import Facets
 from .overlap import refuse_overlaps
 from .unrolled import cut

@@ -15,8 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.curves.plane_curve import doubled_area, winding
-from ...geometry.developable import TURN, Array, Developable
+from ...geometry.developable import TURN, Developable
 from ...issues import InputError
+from ...types import Array
 from .equidistant import Facets, Loop
 
 STEP = math.radians(11.0)

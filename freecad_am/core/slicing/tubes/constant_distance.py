@@ -11,17 +11,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.walls.surface import Surface
 from ...issues import InputError
+from ...types import Array
 from ..backstop import refuse_endless
 from ..refinement import ROUNDS, finer_grid
 from .offset import Offset, Places
 from .wall_layer import WallLayer
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 SAME = 1e-9  # of the period; a grid point this near to a corner is the corner
 ABOVE = 1e-9  # of u: a third branch that overtops a crossing by more means that it is not the corner

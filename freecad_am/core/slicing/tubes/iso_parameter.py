@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.walls.surface import Surface, dot
 from ...issues import InputError
+from ...types import Array
 from ..backstop import refuse_endless
 from ..refinement import ROUNDS, finer_grid
 from .wall_layer import WallLayer
-
-Array = NDArray[np.float64]
 
 STEPS = 40
 

@@ -11,15 +11,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...geometry.walls.surface import Surface, dot
 from ...issues import InputError
+from ...types import Array
 from ..backstop import refuse_endless
 from .wall_layer import WallLayer
-
-Array = NDArray[np.float64]
 
 SECTIONS, AROUND = 401, 256  # sections of the wall from whose middles the centreline is taken, and points of each
 BEYOND = 0.5  # of the wall's length, how far past its end the centreline is followed

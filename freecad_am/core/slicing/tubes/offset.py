@@ -18,9 +18,7 @@ from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface import Surface, dot
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from ...types import Array, Index
 
 STEPS = 25
 CONVERGED = 1e-11  # of the layer height

@@ -12,17 +12,15 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...geometry.walls.surface import Surface, normals
 from ...issues import InputError
+from ...types import Array
 from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest
 from ..directions import wall_turn
 from .offset import Offset
 from .wall_layer import WallLayer, local_distances
-
-Array = NDArray[np.float64]
 
 FINER = 4  # places per arc at which the result is measured
 

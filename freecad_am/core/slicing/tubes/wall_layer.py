@@ -6,12 +6,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface import Surface, dot
-
-Array = NDArray[np.float64]
+from ...types import Array
 
 
 @dataclass(frozen=True)

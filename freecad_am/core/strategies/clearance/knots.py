@@ -10,13 +10,9 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...types import Array, Index, Mask
 from .places import Room
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 MOST = 2500  # points of a bead at which tilts are searched
 

@@ -4,13 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.ties import alike, first_least
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
+from ...types import Array, Index, Mask
 
 BARRED = 1e9  # cost of a state that is not allowed; finite, so that a chain without a way through has a least bad one
 AT_ONCE = 1_000_000  # pairs of states worked on at once

@@ -4,13 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...issues import ERROR, NOTE, WARNING, Issue
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
+from ...types import Array, Index, Mask
 
 
 def place(places: list[tuple[int, int]], begin: Index, row: int) -> tuple[tuple[int, int], int]:

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...collision import deposit
 from ...collision.nozzle import Nozzle, depositing
@@ -22,10 +21,7 @@ from ...geometry.surroundings import Body
 from ...geometry.walls.surface import dot
 from ...parameters.cell import NozzleParameters
 from ...toolpath import Bead, Toolpath
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
+from ...types import Array, Index, Mask
 
 CAP = 1e-9  # rad
 SEAM = 1e-6  # rad that a closed bead's end may be past a turn

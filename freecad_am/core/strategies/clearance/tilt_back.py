@@ -18,7 +18,6 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.surroundings import Body
 from ...geometry.walls.surface import dot
@@ -27,14 +26,11 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
 from ...slicing.directions.wall import limited, turn_rates
 from ...toolpath import Bead, Toolpath
+from ...types import Array, Index, Mask
 from . import knots as clearance_knots
 from .notes import tilt_issues, turn_issues
 from .places import Room, beads_of, halved, room_of, touched_between
 from .tilt_search import SPREAD, TiltSearch
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 SLOWER = 6  # times that a bead is tilted anew where it turns too fast
 ROUNDING = 1e-9

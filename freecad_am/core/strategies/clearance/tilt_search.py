@@ -10,16 +10,12 @@ way found follow, level by level.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import frames
 from ...geometry.ties import first_least
+from ...types import Array, Index, Mask
 from .least_turn import least
 from .places import CAP, Room
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and candidates on each
 LARGEST = np.radians(90.0)  # tilt that is tried

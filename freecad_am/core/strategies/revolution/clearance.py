@@ -15,7 +15,6 @@ import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...collision import deposit
 from ...collision.bodies import Bodies, of_bodies
@@ -24,13 +23,10 @@ from ...collision.obstacles import Obstacles
 from ...collision.scene import Scene
 from ...geometry.columns import columns
 from ...geometry.curves.polyline import turn_segments
-from ...geometry.curves.profile import Array
 from ...geometry.surroundings import disc
 from ...parameters.cell import NozzleParameters
+from ...types import Array, Index, Mask
 from .platform import Platform
-
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 
 CHORD = 0.01  # mm; beads are looked at to this chord error, or their own where that is larger
 SETTLED = 0.01  # mm that the nozzle moves at most where directions are not settled to the last digit

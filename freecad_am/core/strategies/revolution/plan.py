@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.curves.polyline import turn_segments
-from ...geometry.curves.profile import Array, RevolvedWall
+from ...geometry.curves.profile import RevolvedWall
 from ...issues import NOTE, WARNING, InputError, Issue
 from ...parameters.bead_classes import FIRST_LAYER, WALL
 from ...parameters.build_direction import BuildDirectionParameters
@@ -20,6 +20,7 @@ from ...parameters.strategy import RevolutionParameters
 from ...process import classes, seam
 from ...slicing import arc_length, iso_height
 from ...toolpath import Bead, Layer, Toolpath
+from ...types import Array
 from .. import size
 from ..progress import Progress, silent
 from . import platform, spiral

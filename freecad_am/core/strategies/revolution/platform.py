@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.curves.profile import Array, RevolvedWall
+from ...geometry.curves.profile import RevolvedWall
 from ...geometry.mesh.solid import spread
 from ...geometry.on_hub import SolidsOnHub
 from ...geometry.told import place
 from ...issues import WARNING, InputError, Issue
+from ...types import Array
 
 UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
 TOUCH = 1e-6  # mm

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.curves.polyline import largest_step
-from ...geometry.curves.profile import Array, Meridian, RevolvedWall
+from ...geometry.curves.profile import Meridian, RevolvedWall
 from ...issues import InputError, Issue
 from ...parameters.bead_classes import WALL
 from ...parameters.process import ProcessParameters
@@ -18,6 +18,7 @@ from ...parameters.strategy import RevolutionParameters
 from ...process import seam
 from ...slicing import arc_length
 from ...toolpath import Bead, Layer
+from ...types import Array
 from ..clearance.places import SEAM
 from .clearance import Deposit, Tips
 from .tilt import Tilting

@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.scene import Scene
-from ...geometry.curves.profile import Array, RevolvedWall
+from ...geometry.curves.profile import RevolvedWall
 from ...issues import ERROR, NOTE, Issue
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
 from ...parameters.strategy import RevolutionParameters
 from ...slicing.directions import revolution as directions
-from .clearance import CHORD, SETTLED, Clearance, Deposit, Index, Tips, around, of_nozzle
+from ...types import Array, Index
+from .clearance import CHORD, SETTLED, Clearance, Deposit, Tips, around, of_nozzle
 from .platform import Platform
 
 LOOKS = 12  # places of an arc at which the nozzle is looked at, before it is at all

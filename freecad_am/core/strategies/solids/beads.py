@@ -7,10 +7,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...filling.curve import PlaneCurve
-from ...geometry.developable import TURN, Array
+from ...geometry.developable import TURN
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import simplified
 from ...geometry.regions.telling import telling
@@ -23,11 +22,10 @@ from ...process.model.bead_model import BeadModel
 from ...process.model.bead_speed import followed, radii
 from ...process.model.held_width import at_speed, of_segments
 from ...toolpath import Bead
+from ...types import Array, Mask
 from .filling import bead_width
 from .lean import Course, Lean, Turned, held
 from .outlines import leaning
-
-Mask = NDArray[np.bool_]
 
 ROLLED = 0.5  # share of the chord error between a bead's chords and the surface
 GRID = 6  # decimals of mm that decide between points

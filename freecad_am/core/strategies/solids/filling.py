@@ -17,7 +17,6 @@ from ...filling.fill import fill, open_at_slits, open_places
 from ...filling.room import thinned
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest, steps
-from ...geometry.developable import Array
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import Region
 from ...geometry.regions.strip import Strip
@@ -28,6 +27,7 @@ from ...layers.surface import Slice
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
+from ...types import Array
 
 Same = TypeVar("Same", bound=FilledParameters)
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...toolpath import Array, Bead
+from ...toolpath import Bead
+from ...types import Array
 
 
 def island_by_island(beads: Sequence[Bead], islands: Sequence[int], at: Array | None) -> list[int]:

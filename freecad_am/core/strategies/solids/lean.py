@@ -14,17 +14,15 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.columns import columns
-from ...geometry.developable import TURN, Array
+from ...geometry.developable import TURN
 from ...geometry.regions.region import simplified
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
 from ...slicing.directions.wall import turn_rates
+from ...types import Array, Mask
 from .spread import Line, Zones, means, too_fast
-
-Mask = NDArray[np.bool_]
 
 OF_NORMAL = 1.5  # a torch that leans may turn faster than the normals by that, whatever is asked
 WITHIN = 0.98  # of the turn asked for, so that points added later keep to it too

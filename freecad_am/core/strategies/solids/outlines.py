@@ -8,11 +8,12 @@ import math
 import numpy as np
 
 from ...filling.curve import PlaneCurve
-from ...geometry.curves.plane_curve import Array, nearest, steps
+from ...geometry.curves.plane_curve import nearest, steps
 from ...geometry.regions.region import Region
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
+from ...types import Array
 from .lean import Lean
 
 NEAR = 0.55  # of the bead spacing; beads along an outline are half a spacing inside of it, the next are farther

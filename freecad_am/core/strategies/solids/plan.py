@@ -10,7 +10,6 @@ import numpy as np
 
 from ...filling.cover import Cover
 from ...filling.curve import PlaneCurve
-from ...geometry.developable import Array
 from ...geometry.on_hub import Base, SolidsOnHub, downwards, upright
 from ...issues import InfeasibleError, InputError, Issue
 from ...layers.field import Piece, pieces, upwards
@@ -21,6 +20,7 @@ from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
 from ...process.order import Laid, ordered, waited
 from ...toolpath import Toolpath
+from ...types import Array
 from .. import size
 from ..progress import Progress, silent
 from .beads import Rolled, classed, reversed_curve

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...types import Array
 
 SLOPE = 0.75  # of half a stretch: the wider of the two boxes that make the trapezoid; a jump's ramp is steepest over it
 BLOCK = 128  # places worked on at once: their integrals begin nearby and keep their digits

@@ -6,16 +6,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...issues import NOTE, WARNING, Issue
 from ...parameters.strategy import SurfaceParameters
 from ...slicing.directions.wall import local
 from ...toolpath import Bead
+from ...types import Array
 from .directions import Along, Directions
-
-Array = NDArray[np.float64]
 
 TURN = 2.0 * np.pi
 NEAREST = 1e-3  # mm; nearer points of a bead are one: no controller tells the time between them

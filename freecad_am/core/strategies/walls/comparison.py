@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...geometry.walls.surface_wall import Array, Placed, SurfaceWall
+from ...geometry.walls.surface_wall import Placed, SurfaceWall
 from ...issues import InputError
 from ...parameters.strategy import SurfaceParameters
 from ...slicing.first_layer import on_polyline
 from ...slicing.tubes import normal_layers
 from ...slicing.tubes.smooth_spacing import turns_in_wall
 from ...slicing.tubes.wall_layer import WallLayer, local_distances
+from ...types import Array
 from .plan import sliced
 
 NORMAL = "centreline-normal"

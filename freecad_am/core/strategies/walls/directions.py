@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.walls.patch_wall import PatchWall
-from ...geometry.walls.surface_wall import Array, SurfaceWall
+from ...geometry.walls.surface_wall import SurfaceWall
 from ...issues import NOTE, InputError, Issue
 from ...parameters.build_direction import BuildDirectionParameters
 from ...slicing.directions.wall import LEAST, capped, held, in_plane, limited
+from ...types import Array
 
 UP = np.array([0.0, 0.0, 1.0])
 SAME = 1e-9  # rad

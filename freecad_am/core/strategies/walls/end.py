@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
-from ...geometry.walls.surface_wall import Array, Placed
+from ...geometry.walls.surface_wall import Placed
 from ...slicing.tubes.wall_layer import WallLayer
+from ...types import Array
 
 SAME_END = 1e-6  # mm; what is above the end by no more than this lies on it
 FINER = 8  # places per arc at which above and below are told apart

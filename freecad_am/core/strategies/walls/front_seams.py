@@ -6,12 +6,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.walls.surface import dot
+from ...types import Array
 from .front_tree import Piece
-
-Array = NDArray[np.float64]
 
 FINER = 4  # places per arc of a front at which its angle is taken
 HALVINGS = 40

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.patch_wall import PatchWall
@@ -26,14 +25,13 @@ from ...slicing.fronts.curve import feet
 from ...slicing.fronts.rims import Rims
 from ...slicing.fronts.smooth import Smoothing, turn
 from ...toolpath import Bead, Layer, Toolpath
+from ...types import Array
 from .. import size
 from ..progress import Progress, silent
 from . import directions as surface_directions
 from .beads import along, bead, corner_notes, short_note, spacing_issues, traced, turn_notes
 from .front_seams import Middle, seam
 from .front_tree import Piece, events, shorn, tree, whole
-
-Array = NDArray[np.float64]
 
 FINER = 4  # places per arc of a front at which its distance from the layer below is measured
 

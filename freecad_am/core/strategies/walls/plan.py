@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface import dot
-from ...geometry.walls.surface_wall import Array, Placed, SurfaceWall
+from ...geometry.walls.surface_wall import Placed, SurfaceWall
 from ...issues import NOTE, InputError, Issue
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
@@ -20,6 +20,7 @@ from ...slicing.first_layer import on_polyline
 from ...slicing.tubes import constant_distance, iso_parameter, smooth_spacing
 from ...slicing.tubes.wall_layer import WallLayer, local_distances
 from ...toolpath import Layer, Toolpath
+from ...types import Array
 from .. import size
 from ..progress import Progress, silent
 from . import directions as surface_directions
