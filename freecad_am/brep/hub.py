@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
+from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array
 
-from ..core.geometry.developable import TURN, Developable
+from ..core.geometry.developable import Developable
 from ..core.geometry.mesh.manifold import holes, told_apart
 from ..core.geometry.mesh.repair import Repaired, crossing_told, mended_issues, repaired
 from ..core.geometry.mesh.solid import SolidMesh

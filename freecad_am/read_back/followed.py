@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array, Index, Mask
 
 from ..core.geometry import frames
@@ -16,8 +17,6 @@ from ..core.kinematics.inverse.five_axis import FiveAxis
 from ..core.read_moves import ReadMoves
 from .planned import pieces
 from .text_path import Path
-
-TURN = 2.0 * np.pi
 
 
 def by_robot(cell: Cell, read: ReadMoves, asked: Array) -> Array:

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import Part
 
+from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array
 
-from ...core.geometry.walls.patch import CONE, CYLINDER, PLANE, SPHERE, SPLINE, TORUS, TURN, Patch
+from ...core.geometry.walls.patch import CONE, CYLINDER, PLANE, SPHERE, SPLINE, TORUS, Patch
 from ...core.issues import InputError
 
 ERROR = 5e-5  # mm that a patch may be off its face

@@ -18,9 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..types import Array
+from .angles import TURN
 from .columns import columns
-
-TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True)

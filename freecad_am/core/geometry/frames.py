@@ -140,3 +140,9 @@ def _reflection(normals: Array) -> Array:
             entry = (1.0 if row == column else 0.0) - twice[..., row] * normals[..., column]
             result[..., row, column] = result[..., column, row] = entry
     return result
+
+
+def unit(vectors: Array) -> Array:
+    """The vectors (..., 3) at unit length; a vector of no length stays."""
+    result: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
+    return result

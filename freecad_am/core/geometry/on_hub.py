@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from ..issues import Issue
 from ..types import Array
+from .angles import TURN
 from .columns import columns
 from .curves.guide import Guide
-from .developable import TURN, Developable
+from .developable import Developable
 from .plane import Plane
 from .surroundings import Body
 

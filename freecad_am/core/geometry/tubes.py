@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..types import Array, Index
+from .frames import unit
 
 TURN = np.radians(20.0)  # a section is kept wherever the course has turned by this since the last one
 _SHARPEST = 0.5  # of the cosine of half a turn: mitres grow no longer than twice the width
@@ -57,8 +58,8 @@ def frames(points: Array, build: Array, starts: Index, closed: NDArray[np.bool_]
     along = before + after
     cosine = np.linalg.norm(along, axis=1)
     along = np.where(cosine[:, None] > 1e-6, along, before)  # the course goes back where it came from
-    side = _unit(np.cross(build, along))
-    up = _unit(np.cross(along, side))
+    side = unit(np.cross(build, along))
+    up = unit(np.cross(along, side))
     turn = np.arccos(np.clip(np.einsum("ij,ij->i", before, after), -1.0, 1.0))
     return Frames(side, up, 1.0 / np.maximum(0.5 * cosine, _SHARPEST), turn)
 
@@ -84,7 +85,7 @@ def mesh(points: Array, across: Frames, width: Array, height: Array, ends: NDArr
     centre = points + half_height[:, None] * across.up
     corners = centre[:, None] + beside * half_width[:, None, None] + above * half_height[:, None, None]
     normals = beside / np.maximum(half_width, 1e-9)[:, None, None] + above / np.maximum(half_height, 1e-9)[:, None, None]
-    return Mesh(corners.reshape(-1, 3), _unit(normals).reshape(-1, 3), _triangles(ends, sides))
+    return Mesh(corners.reshape(-1, 3), unit(normals).reshape(-1, 3), _triangles(ends, sides))
 
 
 def _triangles(ends: NDArray[np.bool_], sides: int) -> NDArray[np.int32]:
@@ -100,9 +101,3 @@ def _triangles(ends: NDArray[np.bool_], sides: int) -> NDArray[np.int32]:
     back = (last[:, None, None] * sides + fan).reshape(-1, 3)
     triangles: NDArray[np.int32] = np.concatenate([skin, front, back]).astype(np.int32)
     return triangles
-
-
-def _unit(vectors: Array) -> Array:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    unit: Array = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0)
-    return unit

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry import frames
+from ..geometry.angles import TURN
 from ..kinematics.cell import Cell
 from ..planning.plan import Progress
-from ..planning.points import TURN
 from ..planning.task import LimitRows, limit_rows
 from ..types import Array
 

@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.angles import TURN
 from ..kinematics.cell import Cell
 from ..parameters.joints import JointParameters
-from ..planning.points import TURN, Points
+from ..planning.points import Points
 from ..planning.task import FITS, Task
 from ..toolpath import Bead
 from ..types import Array, Mask

@@ -10,12 +10,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.angles import TURN, shortest
 from ..kinematics.cell import Cell
 from ..kinematics.pose_frames import PoseFrames
 from ..toolpath import Bead
 from ..types import Array
 
-TURN = 2.0 * np.pi
 UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
 
 
@@ -142,7 +142,7 @@ def steps(joints: Array, points: Points) -> Array:
     if points.sliding is not None:
         long &= ~points.sliding
     if long.any():
-        step[long] -= TURN * np.round(step[long] / TURN)
+        step[long] = shortest(step[long])
     step[..., points.starts, :] = 0.0
     return step
 

@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.angles import TURN
 from ..parameters.joints import given_polynomials
 from ..toolpath import Bead, Toolpath
 
 PER_TURN = 16  # points of a turn that are kept, about
 FEWEST_PER_TURN = 5  # where beads of many turns are too few to leave some out: all sides are seen, axes still counted on
 LEAST = 8  # segments of a bead that are kept where it has so many
-TURN = 2.0 * np.pi
 
 Place = tuple[int, int]
 

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.angles import TURN
 from ..kinematics import jacobian as jac
 from ..kinematics.cell import Cell
 from ..kinematics.inverse.serial_arm import SerialArm
@@ -17,7 +18,7 @@ from ..kinematics.limits import Limits
 from ..parameters.joints import JointParameters
 from ..types import Array
 from .arm.kept import ArmKept
-from .points import TURN, Points, unwrapped
+from .points import Points, unwrapped
 from .reserve import RESERVE
 from .turns import configurations as following
 

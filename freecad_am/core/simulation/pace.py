@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..geometry.ramps import below
 from ..motion import Motion
 from ..types import Array
 from .margins import speed_ratios
@@ -153,10 +154,8 @@ class _Way:
         """(m + 1,) the largest p^2 below a ceiling that rises and falls no steeper than it leaves room for."""
         # p^2 never exceeds 1
         total = np.concatenate([[0.0], np.cumsum(np.minimum(self.gain(ceiling)[0], 1.0))])
-        rising = np.minimum.accumulate(ceiling - total) + total
-        falling = np.minimum.accumulate((ceiling + total)[::-1])[::-1] - total
-        below: Array = np.maximum(np.minimum(np.minimum(rising, falling), ceiling), 0.0)
-        return below
+        lower: Array = np.maximum(np.minimum(below(ceiling, total), ceiling), 0.0)
+        return lower
 
     def gain(self, ceiling: Array) -> tuple[Array, NDArray[np.intp]]:
         """(m,) by how much p^2 may change over each segment while it is below the ceiling, and the axis that bounds it."""

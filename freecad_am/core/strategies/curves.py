@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..geometry.angles import TURN
 from ..geometry.curves.bead_curves import BeadCurve, Curves
 from ..geometry.told import place
 from ..issues import InputError
@@ -19,7 +20,6 @@ from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array
 from .progress import Progress, silent
 
-TURN = 2.0 * np.pi
 ALONG = np.cos(np.radians(5.0))  # a bead runs along the direction in which it is laid if the angle between them is less
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array
 
 from ...core.planning.joint_path import BeadPath
@@ -20,7 +21,6 @@ from ..texts.translation import tr
 from .draft import CONSTANT, Draft
 from .source import Source
 
-TURN = 2.0 * np.pi
 MOST_LABELS = 14
 ACROSS = 121  # columns of the values of an external axis
 

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
+from freecad_am.core.geometry.angles import TURN, shortest
 from freecad_am.core.types import Array
 
 from ..texts.translation import tr
 from .curves import Curve, Dragged, Handle
-from .painting import BOTTOM, LEFT, RIGHT, TOP, TURN, Painting
+from .painting import BOTTOM, LEFT, RIGHT, TOP, Painting
 from .picture import Painted
 
 NEAR_CURVE, NEAR_HANDLE = 7.0, 10.0
@@ -161,7 +162,7 @@ class Canvas(QtGui.QWidget):
         """Values where they are drawn: as they are, or brought into the turn that is shown."""
         if self.high - self.low > TURN + 1e-9 or (values.min() >= self.low and values.max() <= self.high):
             return values
-        return values - TURN * np.round(values / TURN)
+        return shortest(values)
 
     # ---- painting
 

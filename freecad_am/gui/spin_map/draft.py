@@ -11,12 +11,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array
 
 from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
 from ...core.parameters.joints import OF_CELL, given_text
 from ...core.planning.joint_path import BeadPath
-from ...core.planning.points import TURN, Points
+from ...core.planning.points import Points
 from ...core.planning.redundancy import curve as spin_curve
 from ...core.planning.redundancy import map as spin_map
 from ...core.planning.redundancy.curve import Followed

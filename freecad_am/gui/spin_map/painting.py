@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
+from freecad_am.core.geometry.angles import TURN
+
 from ..colours import ramp
 from ..path.colouring import round_numbers
 from ..texts.translation import tr
@@ -17,7 +19,6 @@ from .picture import enlarged
 LEFT, RIGHT, TOP, BOTTOM = 52, 12, 30, 34  # pixels about the map
 HATCH = 7  # pixels between lines
 HANDLE = 5.0
-TURN = 2.0 * np.pi
 MOST_SEAMS = 120
 TO_TICKS = 6
 ROW = 14.0  # pixels from one row of the legend to the next

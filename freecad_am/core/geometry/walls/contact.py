@@ -7,6 +7,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ...types import Array, Index, Mask
+from ..frames import unit
 from ..mesh.refined import boundary
 from ..mesh.solid import SHARP
 from ..mesh.triangle_mesh import LevelLine, thinned
@@ -66,7 +67,7 @@ def _curve(wall: PatchWall, ground: Ground, line: LevelLine, rims: tuple[Rim, ..
         return None, 0.0
     points, before, after, edge = _with_corners(wall, ground, points, piece, line.closed)
     normal = wall.project(points)[1]
-    into, out = (_unit(np.cross(normal, ground.on(which, points)[1])) for which in (before, after))
+    into, out = (unit(np.cross(normal, ground.on(which, points)[1])) for which in (before, after))
     chord = np.roll(points, -1, axis=0) - points
     if dot(out, chord)[: len(points) if line.closed else -1].sum() < 0.0:
         into, out = -into, -out
@@ -89,7 +90,7 @@ def _refined(wall: PatchWall, ground: Ground, first: FirstCurve) -> tuple[FirstC
             break
         middle, along, _ = curve.at(curve.w[bad] + 0.5 * curve.span[bad])
         points, piece = _settled(wall, ground, middle)
-        slope = _unit(np.cross(wall.project(points)[1], ground.on(piece, points)[1]))
+        slope = unit(np.cross(wall.project(points)[1], ground.on(piece, points)[1]))
         slope *= np.where(dot(slope, along) < 0.0, -1.0, 1.0)[:, None]
         sound = np.abs(dot(points - ground.on(piece, points)[0], ground.on(piece, points)[1])) < 1e-6
         sound &= np.linalg.norm(points - middle, axis=1) < 0.5 * curve.span[bad]
@@ -289,9 +290,4 @@ def splined(points: Array, sharp: Mask, closed: bool) -> tuple[Array, Array, Arr
             out[low:high], into[low + 1 : high + 1] = slope[:-1], slope[1:]
         into[0], out[-1] = (into[-1], out[0]) if closed else (out[0], into[-1])
     count = len(points)
-    return points, _unit(into[:count]), _unit(out[:count])
-
-
-def _unit(vectors: Array) -> Array:
-    unit: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
-    return unit
+    return points, unit(into[:count]), unit(out[:count])

@@ -15,7 +15,6 @@ from . import nurbs
 from .surface import dot
 
 PLANE, CYLINDER, CONE, SPHERE, TORUS, SPLINE = "plane", "cylinder", "cone", "sphere", "torus", "spline"
-TURN = 2.0 * np.pi
 STEPS = 40
 STILL = 1e-10  # mm; a step that is shorter ends the search of a nearest point
 SAMPLES = 6  # per span of knots, for the start of that search

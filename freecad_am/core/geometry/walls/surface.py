@@ -13,9 +13,8 @@ from typing import Protocol
 import numpy as np
 
 from ...types import Array
+from ..angles import TURN
 from ..columns import columns
-
-TURN = 2.0 * np.pi
 
 
 class Surface(Protocol):

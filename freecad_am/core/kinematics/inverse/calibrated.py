@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...geometry.angles import shortest
 from ...types import Array
 from ..chain import Chain
 from ..jacobian import jacobian
@@ -25,7 +26,6 @@ LENGTH = 500.0  # mm that count as one rad
 SETTLED = 1e-11  # of the error as an angle, 5e-9 mm; one more step is not worth its time
 NEAR = 2e-10  # left by rounding beside a singularity
 DAMPING = 1e-14
-TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ class CalibratedArm:
         for first in range(0, len(reached), CHUNK):
             rows = reached[first : first + CHUNK]
             result[rows] = self._newton(start[rows].copy(), poses[rows])
-        result -= TURN * np.round(result / TURN)
+        result = shortest(result)
         result[self.near.branch_of(np.nan_to_num(result)) != words] = np.nan
         return result
 

@@ -7,14 +7,12 @@ arm is stretched or folded are the zeros of a trigonometric polynomial of degree
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...types import Array, Index, Mask
 from .offset_wrist_plane import TINY, Curves
 
-TURN = 2.0 * math.pi
 NEWTON = 3
 LONGEST_STEP_RAD = 1e-3
 ENDS = 1e-12  # of the squared length: what an angle may leave of being stretched or folded to be an end

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...geometry import frames
+from ...geometry.angles import TURN
 from ...types import Array, Mask
 from ..chain import Chain
 from . import offset_wrist_search as search
@@ -23,7 +24,6 @@ from .offset_wrist_search import Zeros
 
 CHUNK = 2048
 MOST = 16  # solutions of six revolute joints
-TURN = 2.0 * math.pi
 STEP_RAD = 1e-5  # of axis 6, by which the slope is taken
 
 

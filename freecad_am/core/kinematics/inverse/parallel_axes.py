@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...geometry import frames
+from ...geometry.angles import TURN
 from ...geometry.columns import columns
 from ...types import Array
 
@@ -24,7 +25,6 @@ STRETCH, TOUCH = 4e-12, 1e-9
 # added where a direction may vanish: gives an angle and is lost in any other number
 HINT = 1e-150
 PARALLEL = 1e-10  # rad: nearer to the normal of the arm's plane, the direction of axis 6 says nothing of axis 5
-TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True, eq=False)

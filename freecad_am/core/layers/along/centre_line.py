@@ -12,7 +12,7 @@ from scipy.sparse import coo_matrix, diags, identity
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
-from ...geometry.developable import TURN
+from ...geometry.angles import TURN
 from ...geometry.mesh.refined import Edges
 from ...geometry.mesh.solid import SolidMesh
 from ...geometry.surroundings import Body

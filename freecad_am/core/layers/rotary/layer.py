@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...geometry.columns import columns
-from ...geometry.developable import TURN, Developable
+from ...geometry.developable import Developable
 from ...geometry.regions.strip import Period
 from ...types import Array, Index
 from ..surface import Wrapped

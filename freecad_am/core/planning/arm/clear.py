@@ -11,12 +11,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...issues import Issue
 from ...kinematics.links.contact import NONE
 from ...toolpath import Bead
 from ...types import Array, Mask
 from ..joint_path import BeadPath
-from ..points import TURN, Points, gather
+from ..points import Points, gather
 from ..rotation.search import Found
 from ..task import FITS, UNREACHABLE, Task, condition_margin
 from .kept import ArmKept, clearance_issue

@@ -7,9 +7,9 @@ import dataclasses
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...types import Array
 from ..joint_path import BeadPath
-from ..points import TURN
 from ..task import Task
 
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.ramps import below
 from ...issues import ERROR, WARNING, Issue
 from ...kinematics.cell import Cell
 from ...toolpath import Bead, SpeedLaw
@@ -130,10 +131,7 @@ def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None)
     if law is None or (share == 1.0).all():
         return np.asarray(speed * share)
     square = np.where(share < 1.0, speed * share, np.inf) ** 2
-    slope = 2.0 * law.acceleration * middle
-    rising = np.minimum.accumulate(square - slope) + slope
-    falling = np.minimum.accumulate((square + slope)[::-1])[::-1] - slope
-    return np.minimum(np.sqrt(np.minimum(rising, falling)), speed * share)
+    return np.minimum(np.sqrt(below(np.asarray(square, float), 2.0 * law.acceleration * middle)), speed * share)
 
 
 def _runs(chosen: NDArray[np.bool_]) -> list[list[int]]:

@@ -19,10 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...geometry.angles import TURN, shortest
 from ...issues import NOTE, Issue
 from ...types import Array, Index
 from ..joint_path import BeadPath
-from ..points import TURN, Points, gather, steps
+from ..points import Points, gather, steps
 from ..task import Task
 from . import chain_optimum
 from .cells import CELLS, PARTS, Cells, cells_of, divided, whole_turn
@@ -203,5 +204,5 @@ def _divided(
 
 
 def _short(angle: Array) -> Array:
-    shortest: Array = angle - TURN * np.round(angle / TURN)
-    return shortest
+    short: Array = shortest(angle)
+    return short

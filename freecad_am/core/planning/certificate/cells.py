@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.angles import shortest
 from ...kinematics import jacobian as jac
 from ...types import Array, Index
-from ..points import TURN, Points
+from ..points import Points
 from ..task import Task
 
 CELLS, PARTS = 36, 3  # in a turn at first, and of a cell when it is divided
@@ -94,5 +95,5 @@ def _condition(task: Task, points: Points, phi: Array, joints: Array, rows: Inde
 
 
 def _short(angle: Array) -> Array:
-    shortest: Array = angle - TURN * np.round(angle / TURN)
-    return shortest
+    short: Array = shortest(angle)
+    return short

@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ...geometry.angles import shortest
 from ...types import Array, Index
-from ..points import TURN, Points
+from ..points import Points
 from ..task import Task
 
 STEPS = 15
@@ -76,11 +77,11 @@ def _newton(moved: Array, slope: Array, scale: Array) -> Array:
 
 def _slopes(joints: Callable[[Array], Array], phi: Array) -> Array:
     difference = joints(phi + APART) - joints(phi - APART)
-    slope: Array = (difference - TURN * np.round(difference / TURN)) / (2.0 * APART)
+    slope: Array = shortest(difference) / (2.0 * APART)
     return slope
 
 
 def _steps(joints: Array) -> Array:
     moved = np.diff(joints, axis=0)
-    short: Array = moved - TURN * np.round(moved / TURN)
+    short: Array = shortest(moved)
     return short

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...geometry.angles import shortest
 from ...kinematics import jacobian as jac
 from ...types import Array, Index
-from ..points import TURN, Points
+from ..points import Points
 from ..task import Task
 from .cells import CELLS, cells_of, divided, whole_turn
 
@@ -50,7 +51,7 @@ def _values(task: Task, points: Points, index: Index, phi: Array) -> Array:
     joints = task.raw_joints(chosen, phi)
     if name not in ("manipulability", "condition"):
         near = joints - task.middle
-        offset = np.abs(task.given_rows.offset(task.middle + near - TURN * np.round(near / TURN)))
+        offset = np.abs(task.given_rows.offset(task.middle + shortest(near)))
         if name == "limits-klein":
             return np.asarray(0.5 * offset.max(axis=1))
         return np.asarray((offset**2).sum(axis=1) * (0.25 if name == "limits-fournier" else 1.0))

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...geometry.angles import shortest
 from ...types import Array
-from ..points import TURN
 from .cells import Cells
 
 LEAST_SHARE, MOST_SHARE = 1e-5, 1.0
@@ -16,7 +16,7 @@ def least_steps(weights: Array, start: Cells, end: Cells, multiplier: tuple[floa
     """(n,) what sum over axes of weight (q_end - q_start)^2 + multiplier[0] s - multiplier[1] t cannot go below, for all
     rotations s of `start` and t of `end` within their cells, each from its middle; weights (axes,), n pairs of cells."""
     between = end.middle - start.middle
-    between -= TURN * np.round(between / TURN)
+    between = shortest(between)
     off = start.off + end.off
     apart = np.maximum(0.0, np.abs(between) - start.half * np.abs(start.slope) - end.half * np.abs(end.slope) - off)
     alone = (apart * apart) @ weights - start.half * abs(multiplier[0]) - end.half * abs(multiplier[1])

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...kinematics.external import ExternalAxes, tilt_from
@@ -21,7 +22,6 @@ from ...kinematics.inverse import rotary_pair
 from ...toolpath import Bead, Toolpath
 from ...types import Array
 from ..joint_path import BeadPath, JointPath
-from ..points import TURN
 from ..reserve import RESERVE
 from ..turns.rotary_courses import continuous, kept
 

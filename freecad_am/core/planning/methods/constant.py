@@ -7,13 +7,14 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from ...geometry.angles import TURN, shortest
 from ...geometry.ties import first_most
 from ...issues import NOTE, Issue
 from ...toolpath import Bead
 from ...types import Array
 from .. import criteria
 from ..joint_path import BeadPath
-from ..points import TURN, Points, gather
+from ..points import Points, gather
 from ..rotation import search
 from ..task import Task, condition_margin
 
@@ -95,7 +96,7 @@ def bead_paths(
 
 def _counted_on(phi: Array, points: Points) -> Array:
     step = np.diff(phi, prepend=phi[:1])
-    step -= TURN * np.round(step / TURN)
+    step = shortest(step)
     step[points.first] = 0.0
     rising = np.cumsum(step)
     return np.asarray(rising + (phi[points.first] - rising[points.first])[points.bead])

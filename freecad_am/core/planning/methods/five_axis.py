@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.angles import TURN
 from ...issues import ERROR, NOTE, Issue, has_errors
 from ...kinematics.cell import Cell
 from ...kinematics.inverse.five_axis import FiveAxis
@@ -30,7 +31,6 @@ from ..turns.unwrap import seam_note, split_note
 Progress = Callable[[float, str], None]
 
 METHOD = "five-axis"
-TURN = 2.0 * np.pi
 BETWEEN = np.array([0.25, 0.5, 0.75])
 MORE = np.array([1.0, 2.0, 4.0, 5.0]) / 6.0  # of segments that use up more than half of the chord error
 ROUNDS = 10

@@ -12,12 +12,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...geometry.ties import first_least, first_most
 from ...issues import Issue
 from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath
-from ..points import TURN, Points, gather, unwrapped
+from ..points import Points, gather, unwrapped
 from ..task import Task, condition_margin
 from .constant import bead_paths
 

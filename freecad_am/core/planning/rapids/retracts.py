@@ -16,6 +16,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...kinematics import jacobian as jac
 from ...kinematics.cell import Cell
 from ...kinematics.inverse import opw
@@ -40,7 +41,6 @@ from .retract_ways import (
     groups,
 )
 
-TURN = 2.0 * np.pi
 # how far the tip may stray from the straight way, mm: a twentieth of what is usual beside a wall
 STRAY_MM = 0.5
 # the most moves that a way is cut into, and the largest turn about the tool axis in one of them, rad

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.angles import TURN
 from ...issues import Issue, has_errors
 from ...toolpath import Bead
 from ...types import Array, Mask
@@ -17,7 +18,7 @@ from .. import criteria
 from ..findings import ROUNDING, findings
 from ..joint_path import BeadPath
 from ..plan import METHODS
-from ..points import TURN, Points, gather, steps
+from ..points import Points, gather, steps
 from ..rotation import basis
 from ..task import Task
 

@@ -17,13 +17,14 @@ import numpy as np
 from ...collision import nozzle as nozzles
 from ...collision.scene import scene
 from ...geometry import frames
+from ...geometry.angles import TURN, shortest
 from ...geometry.surroundings import Body, disc
 from ...kinematics.cell import Cell
 from ...kinematics.links.contact import ArmContact
 from ...toolpath import Bead
 from ...types import Array, Index, Mask
 from ..findings import ROUNDING
-from ..points import TURN, Points
+from ..points import Points
 from ..task import UNREACHABLE, LimitRows, Task, beside
 
 RZ, ROTATION = "rz", "rotation"
@@ -221,11 +222,11 @@ def value_of(cell: Cell, tool: Array, phi: Array, axis: str) -> Array:
 def in_turns(values: Array, starts: Mask) -> Array:
     """Values (C,) rad counted on along each bead from where it starts, which is within half a turn of 0."""
     step = np.diff(values, prepend=values[:1])
-    step -= TURN * np.round(step / TURN)
+    step = shortest(step)
     step[starts] = 0.0
     rising = np.cumsum(step)
     first = np.flatnonzero(starts)
-    begin = values[first] - TURN * np.round(values[first] / TURN)
+    begin = shortest(values[first])
     number = np.cumsum(starts) - 1
     return np.asarray(rising - rising[first][number] + begin[number])
 

@@ -8,10 +8,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath
-from ..points import TURN
 
 PARTED = 0.75  # of a turn, from where a step is one between pieces
 NEAR = 1e-6  # mm, of a piece's ends to points of the bead it was cut from

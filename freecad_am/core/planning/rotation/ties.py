@@ -11,9 +11,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...geometry.angles import TURN, shortest
 from ...geometry.ties import alike, first_least, first_most
 from ...types import Array
-from ..points import TURN, Points
+from ..points import Points
 from ..task import Task
 from . import search
 
@@ -78,7 +79,7 @@ def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) 
             chosen[bead] = first_most(margin[:, bead])
             continue
         step = start[:, bead] - end[chosen[bead - 1], bead - 1]
-        step -= TURN * np.round(step / TURN)
+        step = shortest(step)
         chosen[bead] = first_least(np.where(close, (step * step) @ task.weights, np.inf))
     return chosen
 

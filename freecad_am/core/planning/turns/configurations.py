@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...geometry.angles import shortest
 from ...kinematics.inverse.serial_arm import SerialArm
 from ...types import Array
-from ..points import TURN, Points
+from ..points import Points
 
 
 def along_beads(arm: SerialArm, flange: Array, branch: int, points: Points) -> Array:
@@ -62,7 +63,7 @@ def _nearest(found: Array, before: Array) -> Array:
     """Of joints (solutions, ..., axes) those nearest to the joints before (..., axes), whole turns aside; the first where
     that is not known."""
     step = found - before
-    step -= TURN * np.round(step / TURN)
+    step = shortest(step)
     away = (step * step).sum(axis=-1)
     best = np.argmin(np.where(np.isnan(away), np.inf, away), axis=0)
     return np.asarray(np.take_along_axis(found, best[None, ..., None], axis=0)[0])

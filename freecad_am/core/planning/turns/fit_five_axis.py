@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ...geometry.angles import shortest
 from ...kinematics.limits import Limits
 from ...toolpath import Bead
 from ...types import Array
 
-TURN = 2.0 * np.pi
 MOST_PIECES = 4
 FEWEST_POINTS = 3  # of a piece
 
@@ -48,7 +48,7 @@ def _start(angles: Array, low: float, high: float) -> int:
     windows = np.lib.stride_tricks.sliding_window_view(twice, n + 1)[:n]
     least, most = windows.min(axis=1), windows.max(axis=1)
     off = 0.5 * (least + most) - 0.5 * (low + high)
-    off -= TURN * np.round(off / TURN)
+    off = shortest(off)
     over = np.maximum(np.abs(off) + 0.5 * (most - least) - 0.5 * (high - low), 0.0)
     # rounded, so that the same point is taken everywhere; of those that fit, the nearest to the seam
     fits = np.flatnonzero(over <= 0.0)

@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.angles import TURN
 from ...types import Array
-from ..points import TURN
 
 
 def continuous(turned: Array) -> list[Array]:

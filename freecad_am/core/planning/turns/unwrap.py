@@ -13,12 +13,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...geometry.angles import TURN, shortest
 from ...geometry.ties import first_least
 from ...issues import NOTE, WARNING, Issue
 from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath
-from ..points import TURN
 from ..task import Task
 
 # an axis that moves this much between two beads is said to turn back, rad
@@ -79,7 +79,7 @@ def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
     centre = 0.5 * (limits.lower[axis] + limits.upper[axis])
     turn = joints[-1, axis] - joints[0, axis]
     off = joints[:-1, axis] + 0.5 * turn - centre
-    off -= TURN * np.round(off / TURN)
+    off = shortest(off)
     index = int(first_least(np.abs(off)))
     return bead.started_at(index), index
 

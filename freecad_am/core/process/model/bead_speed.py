@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...geometry.columns import columns, dots, lengths
+from ...geometry.ramps import below
 from ...types import Array
 
 STRAIGHT = 1e-9  # rad of turn over the window; less is none
@@ -71,10 +72,7 @@ def followed(points: Array, speed: Array, closed: bool, acceleration: float) -> 
     if closed:
         s = np.r_[s[:-1] - s[-1], s, s[1:] + s[-1]]
         square = np.r_[square[:-1], square, square[1:]]
-    slope = 2.0 * acceleration * s
-    rising = np.minimum.accumulate(square - slope) + slope
-    falling = np.minimum.accumulate((square + slope)[::-1])[::-1] - slope
-    limited = np.sqrt(np.minimum(rising, falling))
+    limited = np.sqrt(below(square, 2.0 * acceleration * s))
     n = len(points)
     kept: Array = limited[n - 1 : 2 * n - 1] if closed else limited
     return np.minimum(kept, speed)

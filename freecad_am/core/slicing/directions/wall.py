@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.columns import columns
+from ...geometry.frames import unit
 from ...geometry.walls.surface import dot
 from ...issues import InputError
 from ...types import Array
@@ -37,7 +38,7 @@ def local(normal: Array, into: Array, out: Array, up: Array) -> Array:
     """
     sides = [np.cross(normal, side / np.linalg.norm(side, axis=1, keepdims=True)) for side in (into, out)]
     upright = [side * np.where(dot(side, up) < 0.0, -1.0, 1.0)[:, None] for side in sides]
-    return _unit(_unit(upright[0]) + _unit(upright[1]))
+    return unit(unit(upright[0]) + unit(upright[1]))
 
 
 def in_plane(directions: Array, plane: Array, label: str = "build_direction") -> Array:
@@ -52,7 +53,7 @@ def in_plane(directions: Array, plane: Array, label: str = "build_direction") ->
             "NO_DIRECTION", "build_direction.mode",
             f"a build direction of {label} is normal to its plane of symmetry; use local",
         )
-    return _unit(flat)
+    return unit(flat)
 
 
 def held(build: Array, forward: Array, outside: Array, lead: float, tilt: float) -> Array:
@@ -62,11 +63,11 @@ def held(build: Array, forward: Array, outside: Array, lead: float, tilt: float)
     """
     if lead == 0.0 and tilt == 0.0:
         return build
-    forward = _unit(forward - dot(forward, build)[:, None] * build)
+    forward = unit(forward - dot(forward, build)[:, None] * build)
     out = np.cross(build, forward)
     out *= np.sign(dot(out, outside))[:, None]
     leaning = np.cos(lead) * build + np.sin(lead) * forward
-    return _unit(np.cos(tilt) * leaning + np.sin(tilt) * out)
+    return unit(np.cos(tilt) * leaning + np.sin(tilt) * out)
 
 
 def capped(vectors: Array, most: float) -> tuple[Array, float]:
@@ -163,7 +164,7 @@ def _spread(s: Array, directions: Array, closed: bool, half: Array) -> Array | N
     mean = np.where(wide[:, None], (integral(high) - integral(low)) / np.where(wide, width, 1.0)[:, None], directions)
     if np.linalg.norm(mean, axis=1).min() < 1e-6:
         return None
-    return _unit(mean)
+    return unit(mean)
 
 
 def _distance_along(s: Array, fast: NDArray[np.bool_], closed: bool) -> Array:
@@ -174,8 +175,3 @@ def _distance_along(s: Array, fast: NDArray[np.bool_], closed: bool) -> Array:
     i = np.clip(np.searchsorted(ends, s), 1, len(ends) - 1)
     distance: Array = np.minimum(np.abs(s - ends[i - 1]), np.abs(s - ends[i]))
     return distance
-
-
-def _unit(vectors: Array) -> Array:
-    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return unit

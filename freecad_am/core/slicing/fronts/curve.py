@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.frames import unit
 from ...geometry.walls.surface import dot
 from ...types import Array, Index
 
@@ -87,7 +88,7 @@ def exact(
         return []
     points, normal = points[sound], normal[sound]
     below = _those(below, sound)
-    tangent = _unit(np.cross(below.away, normal))
+    tangent = unit(np.cross(below.away, normal))
     chord = np.diff(np.vstack([points, points[:1]]), axis=0)[: len(points) if closed else -1]
     nodes = _Nodes(points, tangent, tangent, below)
     if dot(tangent[: len(chord)], chord).sum() < 0.0:
@@ -108,7 +109,7 @@ def exact(
         sound = np.abs(spot_below.distance - height) < SETTLED * height
         rest, spot, spot_normal = rest[sound], spot[sound], spot_normal[sound]
         spot_below = _those(spot_below, sound)
-        along = _unit(np.cross(spot_below.away, spot_normal))
+        along = unit(np.cross(spot_below.away, spot_normal))
         nodes = _inserted(nodes, [corner, (rest, _Nodes(spot, along, along, spot_below))])
     return _without(curve, bad)
 
@@ -187,7 +188,7 @@ def _corners(
         known = dot(nodes.into[end], nodes.out[end]) < SMOOTH
         right &= ~known | (np.linalg.norm(point - nodes.points[end], axis=1) > SAME_PLACE)
     right[right] = np.abs(feet(fronts, point[right]).distance - height) < 1e-7
-    into, out = (_unit(np.cross(one.away, normal)) for one in both)
+    into, out = (unit(np.cross(one.away, normal)) for one in both)
     return arcs[right], _Nodes(point[right], into[right], out[right], _those(both[0], right))
 
 
@@ -247,8 +248,3 @@ def _curve(nodes: _Nodes, closed: bool) -> SpaceCurve:
         points, into, out = (np.vstack([column, column[:1]]) for column in (points, into, out))
     w = np.r_[0.0, np.cumsum(np.maximum(np.linalg.norm(np.diff(points, axis=0), axis=1), 1e-12))]
     return SpaceCurve(w, points, into, out, closed)
-
-
-def _unit(vectors: Array) -> Array:
-    unit: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
-    return unit

@@ -14,8 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...geometry.curves.plane_curve import doubled_area, winding
-from ...geometry.developable import TURN, Developable
+from ...geometry.developable import Developable
 from ...issues import InputError
 from ...types import Array
 from .equidistant import Facets, Loop

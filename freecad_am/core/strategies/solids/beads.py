@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...filling.curve import PlaneCurve
-from ...geometry.developable import TURN
+from ...geometry.angles import TURN
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import simplified
 from ...geometry.regions.telling import telling

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...geometry.columns import columns
-from ...geometry.developable import TURN
 from ...geometry.regions.region import simplified
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters

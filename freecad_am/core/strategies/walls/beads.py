@@ -7,7 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...geometry.angles import TURN
 from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.frames import unit
 from ...issues import NOTE, WARNING, Issue
 from ...parameters.strategy import SurfaceParameters
 from ...slicing.directions.wall import local
@@ -15,7 +17,6 @@ from ...toolpath import Bead
 from ...types import Array
 from .directions import Along, Directions
 
-TURN = 2.0 * np.pi
 NEAREST = 1e-3  # mm; nearer points of a bead are one: no controller tells the time between them
 
 
@@ -45,7 +46,7 @@ def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
     points, arriving, leaving = _apart(points, arriving, leaving)
     if not closed:
         arriving[0], leaving[-1] = leaving[0], arriving[-1]
-    return Traced(points, _unit(np.stack([arriving, leaving], axis=1)))
+    return Traced(points, unit(np.stack([arriving, leaving], axis=1)))
 
 
 def _apart(points: Array, arriving: Array, leaving: Array) -> tuple[Array, Array, Array]:
@@ -71,7 +72,7 @@ def along(bead: Traced, normal: Array, up: Array) -> Along:
     normal: (n, 3) out of the wall. up: (n, 3) any vectors away from the layer below that are not along the bead.
     """
     arriving, leaving = bead.tangents[:, 0], bead.tangents[:, 1]
-    return Along(_unit(arriving + leaving), local(normal, arriving, leaving, up), normal)
+    return Along(unit(arriving + leaving), local(normal, arriving, leaving, up), normal)
 
 
 def bead(line: Traced, found: Directions, closed: bool, speed: float, name: str, closing: bool = False) -> Bead:
@@ -142,8 +143,3 @@ def short_note(dropped: int) -> list[Issue]:
     if not dropped:
         return []
     return [Issue(NOTE, "SHORT_BEADS", f"{dropped} bead(s) at the end shorter than half a layer height are left out")]
-
-
-def _unit(vectors: Array) -> Array:
-    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return unit

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.frames import unit
 from ...geometry.walls.surface import dot
 from ...geometry.walls.surface_wall import Placed, SurfaceWall
 from ...issues import NOTE, InputError, Issue
@@ -147,7 +148,7 @@ def _outside(surface: Placed, piece: Stretch) -> _Side:
 def _along(surface: Placed, line: Traced, side: _Side) -> Along:
     u, v = surface.inverse(line.points)
     _, rise, turn = surface.derivatives(u, v)
-    return along(line, _unit(np.cross(rise, turn)) * side.sign, rise)
+    return along(line, unit(np.cross(rise, turn)) * side.sign, rise)
 
 
 def _backwards(
@@ -178,8 +179,3 @@ def _corners(curve: SpaceCurve, pieces: list[Stretch]) -> Array:
     on = [np.mod(w - piece.low, curve.period) <= piece.high - piece.low for piece in pieces]
     turns: Array = curve.turns[curve.corners][np.any(on, axis=0)] if pieces else np.empty(0)
     return turns
-
-
-def _unit(vectors: Array) -> Array:
-    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return unit
