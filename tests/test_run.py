@@ -74,7 +74,7 @@ def test_tests_are_counted_without_a_summary_too(text, counted):
 
 
 def test_options_of_pytest_are_its_own(windows):
-    """With -x the first run is no whole one."""
+    """With -x the first run is not a whole one."""
     waiting, asked = windows
     waiting.append((1, ENDED.format(1, 3), ["a"]))
     assert run.run_window_tests(["-x", "tests/gui"])[0] == 1 and len(asked) == 1

@@ -182,22 +182,23 @@ def upper(template: str) -> str:
 
 
 def test_figures_and_names_stay_as_they_are():
-    phrases = Phrases(["{0} is a mesh; use {1}", "a number such as {0}", "it has {0} faces", "wall", "{{x}} is no key {0}"])
+    phrases = Phrases(
+        ["{0} is a mesh; use {1}", "a number such as {0}", "it has {0} faces", "wall", "{{x}} is not a key {0}"])
     told = phrases.translated("Box 2 is a mesh; use a number such as 1.50", upper)
     assert told == "Box 2 IS A MESH; USE A NUMBER SUCH AS 1.50"
     assert phrases.translated("Cone: it has 12 faces", upper) == "Cone: IT HAS 12 FACES"
     assert phrases.translated("wall", upper) == "WALL"
-    assert phrases.translated("{x} is no key y", upper) == "{x} IS NO KEY y"
+    assert phrases.translated("{x} is not a key y", upper) == "{x} IS NOT A KEY y"
     assert phrases.translated("of none of these", upper) == "of none of these"
-    phrases = Phrases(["{0} is no {1}", "cell", "joint", "; up to {0} mm off"], ["cell"])
-    assert phrases.translated("<joint> is no joint", upper) == "<joint> IS NO joint"  # a word of a file
-    assert phrases.translated("Box is no cell", upper) == "Box IS NO CELL"
+    phrases = Phrases(["{0} is not a {1}", "cell", "joint", "; up to {0} mm off"], ["cell"])
+    assert phrases.translated("<joint> is not a joint", upper) == "<joint> IS NOT A joint"  # a word of a file
+    assert phrases.translated("Box is not a cell", upper) == "Box IS NOT A CELL"
     assert phrases.translated("Box; up to 2.5 mm off", upper) == "Box; UP TO 2.5 MM OFF"
 
 
 def test_a_message_that_begins_with_a_name_is_known():
-    phrases = Phrases(["{0} is a mesh; use {1}", "it has {0} faces", "{0}; use {1}", "cell", "{0} is no wall"], ["cell"])
-    for text in ("tube-on-pipe is a mesh; use a shape", "tube-on-pipe: it has 12 faces", "pipe is no wall; use another"):
+    phrases = Phrases(["{0} is a mesh; use {1}", "it has {0} faces", "{0}; use {1}", "cell", "{0} is not a wall"], ["cell"])
+    for text in ("tube-on-pipe is a mesh; use a shape", "tube-on-pipe: it has 12 faces", "pipe is not a wall; use another"):
         assert phrases.names_first(text), text
     for text in ("it has 12 faces", "cell is a mesh; use a shape", "it has 12 faces; use another", "of none of these", ""):
         assert not phrases.names_first(text), text
@@ -211,7 +212,7 @@ def test_a_message_that_begins_with_a_name_is_known():
         ("raise process.between_layers.lift", "raise “Between layers, lift”"),
         ("joints.given is of no effect; use process.seam.", "“Given polynomials” is of no effect; use “Seam”."),
         ("my/process.bead_model.csv and strategy.nothing", "my/process.bead_model.csv and strategy.nothing"),
-        ("cell.machine.json is no file", "cell.machine.json is no file"),
+        ("cell.machine.json is not a file", "cell.machine.json is not a file"),
         ("C:\\cell.machine and cell.machine\\a", "C:\\cell.machine and cell.machine\\a"),
     ],
 )
@@ -352,7 +353,7 @@ def test_a_missing_input_is_told_in_french(stages, told):
 
 
 def written_out(text: ast.expr) -> str:
-    """A literal text, with a name for each thing put in; '' for what is no literal."""
+    """A literal text, with a name for each thing put in; '' for what is not a literal."""
     parts = text.values if isinstance(text, ast.JoinedStr) else [text]
     words = [part.value if isinstance(part, ast.Constant) else "Ab" for part in parts]
     return "".join(words) if isinstance(text, (ast.Constant, ast.JoinedStr)) else ""

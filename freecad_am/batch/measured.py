@@ -51,7 +51,7 @@ def _values(settings: tuple[str, ...]) -> dict[str, str]:
     for text in settings:
         key, sign, value = text.partition("=")
         if not sign or key.strip() in _KEPT:
-            raise InputError("USAGE", "freecad-am inspect", f"{text!r} is no setting; give such as --set tolerance=0.3")
+            raise InputError("USAGE", "freecad-am inspect", f"{text!r} is not a setting; give such as --set tolerance=0.3")
         found[key.strip()] = value.strip()
     return found
 

@@ -147,7 +147,7 @@ def _seat(name: str, face: Any, chosen: bool) -> Seat | None:
     if round_one is None:
         if chosen:
             raise InputError(
-                "NOT_DEVELOPABLE", name, "it is no cylinder and no cone; choose another face, or give strategy.base"
+                "NOT_DEVELOPABLE", name, "it is not a cylinder and no cone; choose another face, or give strategy.base"
             )
         return None
     origin, z, radius, taper = round_one

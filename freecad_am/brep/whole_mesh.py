@@ -13,7 +13,7 @@ from .shapes.fine_mesh import fine
 from .shapes.tessellate import Tessellation
 
 FINER = (1.0, 0.8, 1.2, 0.5)  # of the deflection asked for, in the order in which they are tried
-MOST = 1.5  # deflections between triangles and shape, on average over its area, that are no fault
+MOST = 1.5  # deflections between triangles and shape, on average over its area, that are not fault
 
 
 def whole(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Issue, ...]]:

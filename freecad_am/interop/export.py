@@ -67,12 +67,12 @@ def write_page(path: str, page: Callable[[], str], title: str) -> str:
 def write_cell(obj: Any, path: str) -> str:
     """Write a cell as the file that jobs name; the path. The file appears whole or not at all.
 
-    Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE, and for what is no cell.
+    Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE, and for what is not a cell.
     """
     if os.path.splitext(path)[1].lower() not in CELL:
         raise InputError("UNSUPPORTED_FILE", path, "cells are written as .yaml; end the name with it")
     if getattr(getattr(obj, "Proxy", None), "kind", "") != "cell":
-        raise InputError("WRONG_KIND", obj.Label, "this is no cell; choose one")
+        raise InputError("WRONG_KIND", obj.Label, "this is not a cell; choose one")
     saved = cell_file.text(obj.Proxy.parameters(obj, CellParameters), os.path.dirname(os.path.abspath(path)))
 
     def write(unfinished: str) -> None:

@@ -86,7 +86,7 @@ def make_solid_feature(
 ) -> Any:
     """Any solids, or closed meshes, deposited in plane layers. `am.make_solid_feature(doc, doc.Bracket, layer_height=2)`
 
-    further: more objects to deposit; substrate: what they stand on, where that is no platform; guide: of layers="along", an
+    further: more objects to deposit; substrate: what they stand on, if not a platform; guide: of layers="along", an
     object or (object, ["Edge1"]); start_faces: of layers="geodesic" and "offset", names of the source's faces, or (object,
     ["Face1"]), that the first layer lies on; fixtures: objects, solids or meshes, that the nozzle must not touch either.
     """
@@ -118,7 +118,7 @@ def make_cladding_feature(
     fixtures: Sequence[Any] = (), strategy: CladdingParameters | None = None,
     build_direction: BuildDirectionParameters | None = None, **values: Any,
 ) -> Any:
-    """Faces of an object, all of one that is no solid, covered with layers of beads along their normals.
+    """Faces of an object, all of one that is not a solid, covered with layers of beads along their normals.
 
     `am.make_cladding_feature(doc, doc.Die, ["Face3"], layers=2, layer_height=2, bead_spacing=4)`; substrate, fixtures: what
     else the nozzle must not touch.

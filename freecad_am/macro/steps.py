@@ -52,7 +52,7 @@ def checked_stage(obj: Any) -> stages.Stage:
     """The proxy of a stage. InputError BAD_INPUT for any other object."""
     proxy = stages.stage_of(obj)
     if proxy is None:
-        raise InputError("BAD_INPUT", getattr(obj, "Label", repr(obj)), "it is no stage of this workbench; choose one")
+        raise InputError("BAD_INPUT", getattr(obj, "Label", repr(obj)), "it is not a stage of this workbench; choose one")
     return proxy
 
 

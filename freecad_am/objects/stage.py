@@ -290,7 +290,8 @@ def _checked(obj: Any, link: Link, linked: Any) -> Any:
         return None
     stage = stage_of(linked)
     if stage is None or stage.kind != link.kind:
-        raise InputError("BAD_INPUT", f"{obj.Label}.{link.name}", f"{linked.Label} is no {link.kind}; choose one")
+        article = "an" if link.kind[0] in "aeiou" else "a"
+        raise InputError("BAD_INPUT", f"{obj.Label}.{link.name}", f"{linked.Label} is not {article} {link.kind}; choose one")
     if linked.Status == INFEASIBLE:
         why = f"{linked.Label} cannot be carried out: {linked.Message}"
         raise InfeasibleError("INPUT_INFEASIBLE", obj.Label, why, issues_of(linked))

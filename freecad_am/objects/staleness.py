@@ -10,7 +10,7 @@ import FreeCAD as App
 UP_TO_DATE, STALE, FAILED, INFEASIBLE = "up to date", "stale", "failed", "infeasible"
 STATUSES = (UP_TO_DATE, STALE, FAILED, INFEASIBLE)
 
-# properties that are no inputs
+# properties that are not inputs
 RESULTS = frozenset({
     "Status", "Message", "Issues", "Key", "Seconds", "ResultData", "ResultLayout", "SchemaVersion", "Proxy", "Label",
     "Label2", "Visibility",

@@ -79,7 +79,7 @@ class SurfaceFeature(Stage):
 
 
 def _start_edges(obj: Any) -> tuple[str, ...]:
-    """Names of the edges chosen. InputError 'BAD_EDGES' for those of another object, and for what is no edge."""
+    """Names of the edges chosen. InputError 'BAD_EDGES' for those of another object, and for what is not an edge."""
     if not obj.StartEdges:
         return ()
     owner, names = obj.StartEdges
@@ -88,6 +88,6 @@ def _start_edges(obj: Any) -> tuple[str, ...]:
     if wrong or not names or owner != obj.Source[0]:
         told = ", ".join(wrong) or owner.Label
         raise InputError(
-            "BAD_EDGES", f"{obj.Label}.StartEdges", f"{told} is no edge of {obj.Source[0].Label}; choose edges of it"
+            "BAD_EDGES", f"{obj.Label}.StartEdges", f"{told} is not an edge of {obj.Source[0].Label}; choose edges of it"
         )
     return names

@@ -98,7 +98,7 @@ def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
         )
     if not re.fullmatch(unit, program.unit) and (program.on_positioner or program.unit):
         raise InputError(
-            "UNSUPPORTED_AXES", "program.axes.unit", f"{program.unit!r} is no positioner of this controller; give {form}"
+            "UNSUPPORTED_AXES", "program.axes.unit", f"{program.unit!r} is not a positioner of this controller; give {form}"
         )
 
 

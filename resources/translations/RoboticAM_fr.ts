@@ -5163,7 +5163,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cladding.py"/>
-        <source>The faces to cover; of an object that is no solid all of them, where none is picked.</source>
+        <source>The faces to cover; of an object that is not a solid all of them, where none is picked.</source>
         <translation>Les faces à recouvrir ; d&apos;un objet qui n&apos;est pas un solide, toutes, si aucune n&apos;est choisie.</translation>
     </message>
     <message>
@@ -6298,7 +6298,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
-        <source>a coordinate of its vertices is no number; export it again</source>
+        <source>a coordinate of its vertices is not a number; export it again</source>
         <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
     </message>
     <message>
@@ -6318,7 +6318,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>a height alone is no cone; give the radius of its base circle too, or base: auto</source>
+        <source>a height alone is not a cone; give the radius of its base circle too, or base: auto</source>
         <translation>une hauteur seule n&apos;est pas un cône ; donnez aussi le rayon de son cercle de base, ou base: auto</translation>
     </message>
     <message>
@@ -6538,7 +6538,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_files.py"/>
-        <source>a value is no plain number</source>
+        <source>a value is not a plain number</source>
         <translation>une valeur n&apos;est pas un nombre simple</translation>
     </message>
     <message>
@@ -6558,7 +6558,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
-        <source>a {0} in {1} has a value that is no number ({2})</source>
+        <source>a {0} in {1} has a value that is not a number ({2})</source>
         <translation>un élément {0} de {1} a une valeur qui n&apos;est pas un nombre ({2})</translation>
     </message>
     <message>
@@ -8383,42 +8383,42 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/hub.py"/>
-        <source>it is no cylinder and no cone; choose another face, or give strategy.base</source>
+        <source>it is not a cylinder and no cone; choose another face, or give strategy.base</source>
         <translation>ce n&apos;est ni un cylindre ni un cône ; choisissez une autre face, ou donnez strategy.base</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/source.py"/>
-        <source>it is no joint path; select one</source>
+        <source>it is not a joint path; select one</source>
         <translation>ce n&apos;est pas une trajectoire articulaire ; sélectionnez-en une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
-        <source>it is no program that ends with M2</source>
+        <source>it is not a program that ends with M2</source>
         <translation>ce n&apos;est pas un programme qui finit par M2</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/first_layer.py"/>
-        <source>it is no solid; choose a solid part for the wall to grow on</source>
+        <source>it is not a solid; choose a solid part for the wall to grow on</source>
         <translation>ce n&apos;est pas un solide ; choisissez une pièce solide sur laquelle la paroi doit croître</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/substrate.py"/>
-        <source>it is no solid; choose a solid part or a closed mesh for the wall to grow on</source>
+        <source>it is not a solid; choose a solid part or a closed mesh for the wall to grow on</source>
         <translation>ce n&apos;est pas un solide ; choisissez une pièce solide ou un maillage fermé sur lequel la paroi doit croître</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
-        <source>it is no sound zip file ({0})</source>
+        <source>it is not a sound zip file ({0})</source>
         <translation>ce n&apos;est pas un fichier zip sain ({0})</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/steps.py"/>
-        <source>it is no stage of this workbench; choose one</source>
+        <source>it is not a stage of this workbench; choose one</source>
         <translation>ce n&apos;est pas une étape de cet atelier ; choisissez-en une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_table.py"/>
-        <source>it is no table: it holds bytes that are no text in UTF-8; save it as CSV in UTF-8</source>
+        <source>it is not a table: it holds bytes that are not text in UTF-8; save it as CSV in UTF-8</source>
         <translation>ce n&apos;est pas un tableau : il contient des octets qui ne sont pas du texte UTF-8 ; enregistrez-le en CSV UTF-8</translation>
     </message>
     <message>
@@ -10178,7 +10178,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/proposal.py"/>
-        <source>some of what is selected is no solid</source>
+        <source>some of what is selected is not a solid</source>
         <translation>une partie de la sélection n&apos;est pas un solide</translation>
     </message>
     <message>
@@ -10783,7 +10783,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has no triangles, or points that are no numbers; export it again</source>
+        <source>the mesh has no triangles, or points that are not numbers; export it again</source>
         <translation>le maillage n&apos;a pas de triangles, ou des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
     </message>
     <message>
@@ -10793,7 +10793,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/substrate.py"/>
-        <source>the mesh has points that are no numbers; export it again</source>
+        <source>the mesh has points that are not numbers; export it again</source>
         <translation>le maillage a des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
     </message>
     <message>
@@ -11453,7 +11453,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
-        <source>there are {0} programs that are no subs, expected one</source>
+        <source>there are {0} programs that are not subs, expected one</source>
         <translation>il y a {0} programmes qui ne sont pas des sous-programmes, un seul attendu</translation>
     </message>
     <message>
@@ -11618,7 +11618,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>this and most other lines are no points; give rows of x y z</source>
+        <source>this and most other lines are not points; give rows of x y z</source>
         <translation>celle-ci et la plupart des autres lignes ne sont pas des points ; donnez des lignes de x y z</translation>
     </message>
     <message>
@@ -11638,7 +11638,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
-        <source>this is no cell; choose one</source>
+        <source>this is not a cell; choose one</source>
         <translation>ceci n&apos;est pas une cellule ; choisissez-en une</translation>
     </message>
     <message>
@@ -12243,7 +12243,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} carries the robot and is no track, which is one axis that slides; nothing else can be planned</source>
+        <source>{0} carries the robot and is not a track, which is one axis that slides; nothing else can be planned</source>
         <translation>{0} porte le robot et n&apos;est pas un rail, c&apos;est-à-dire un axe qui coulisse ; rien d&apos;autre ne peut être planifié</translation>
     </message>
     <message>
@@ -12333,7 +12333,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/expressions.py"/>
-        <source>{0} gives {1}, which is no number</source>
+        <source>{0} gives {1}, which is not a number</source>
         <translation>{0} donne {1}, qui n&apos;est pas un nombre</translation>
     </message>
     <message>
@@ -12498,7 +12498,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0} is an open mesh that cuts itself at {1} pairs of its triangles, as at {2}, so it is no wall of one bead: it is filled, with its {3} holes of up to {4} mm closed</source>
+        <source>{0} is an open mesh that cuts itself at {1} pairs of its triangles, as at {2}, so it is not a wall of one bead: it is filled, with its {3} holes of up to {4} mm closed</source>
         <translation>{0} est un maillage ouvert qui se coupe lui-même en {1} paires de ses triangles, par exemple en {2}, ce n&apos;est donc pas une paroi d&apos;un cordon : il est rempli, ses {3} trous jusqu&apos;à {4} mm étant fermés</translation>
     </message>
     <message>
@@ -12563,7 +12563,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
-        <source>{0} is loaded while depositing, is not there, or {1} is no library</source>
+        <source>{0} is loaded while depositing, is not there, or {1} is not a library</source>
         <translation>{0} est chargé pendant le dépôt, n&apos;existe pas, ou {1} n&apos;est pas une bibliothèque</translation>
     </message>
     <message>
@@ -12603,142 +12603,147 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} is no axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]</source>
+        <source>{0} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]</source>
         <translation>{0} n&apos;est pas un axe ; donnez un point et une direction comme [[0, 0, 0], [0, 0, 1]]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
-        <source>{0} is no bend of a torus, so its plane of symmetry is not known; give its normal as build_direction.plane, or use local, layer or fixed</source>
+        <source>{0} is not a bend of a torus, so its plane of symmetry is not known; give its normal as build_direction.plane, or use local, layer or fixed</source>
         <translation>{0} n&apos;est pas le coude d&apos;un tore, son plan de symétrie n&apos;est donc pas connu ; donnez sa normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
-        <source>{0} is no colour; give red, green and blue from 0 to 1</source>
+        <source>{0} is not a colour; give red, green and blue from 0 to 1</source>
         <translation>{0} n&apos;est pas une couleur ; donnez rouge, vert et bleu de 0 à 1</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
-        <source>{0} is no digital input of the project</source>
+        <source>{0} is not a digital input of the project</source>
         <translation>{0} n&apos;est pas une entrée logique du projet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
-        <source>{0} is no digital output of the project</source>
+        <source>{0} is not a digital output of the project</source>
         <translation>{0} n&apos;est pas une sortie logique du projet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>{0} is no direction; give three numbers such as 0 1 0, or auto</source>
+        <source>{0} is not a direction; give three numbers such as 0 1 0, or auto</source>
         <translation>{0} n&apos;est pas une direction ; donnez trois nombres comme 0 1 0, ou auto</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>{0} is no edge of {1}; choose edges of it</source>
+        <source>{0} is not an edge of {1}; choose edges of it</source>
         <translation>{0} n&apos;est pas une arête de {1} ; choisissez ses arêtes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>{0} is no face of {1}; choose faces of the hub</source>
+        <source>{0} is not a face of {1}; choose faces of the hub</source>
         <translation>{0} n&apos;est pas une face de {1} ; choisissez des faces du moyeu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
-        <source>{0} is no face; choose faces or the whole shape</source>
+        <source>{0} is not a face; choose faces or the whole shape</source>
         <translation>{0} n&apos;est pas une face ; choisissez des faces ou toute la forme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>{0} is no height; give numbers in mm</source>
+        <source>{0} is not a height; give numbers in mm</source>
         <translation>{0} n&apos;est pas une hauteur ; donnez des nombres en mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_parsed.py"/>
-        <source>{0} is no instruction</source>
+        <source>{0} is not an instruction</source>
         <translation>{0} n&apos;est pas une instruction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
-        <source>{0} is no library of the project</source>
+        <source>{0} is not a library of the project</source>
         <translation>{0} n&apos;est pas une bibliothèque du projet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
-        <source>{0} is no name; use words without = and ;</source>
+        <source>{0} is not a name; use words without = and ;</source>
         <translation>{0} n&apos;est pas un nom ; utilisez des mots sans = ni ;</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
-        <source>{0} is no obstacle; {1}</source>
+        <source>{0} is not an obstacle; {1}</source>
         <translation>{0} n&apos;est pas un obstacle ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>{0} is no pair of points; give x y z &gt; x y z in mm</source>
+        <source>{0} is not a pair of points; give x y z &gt; x y z in mm</source>
         <translation>{0} n&apos;est pas une paire de points ; donnez x y z &gt; x y z en mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0} is no positioner of this controller; give {1}</source>
+        <source>{0} is not a positioner of this controller; give {1}</source>
         <translation>{0} n&apos;est pas un positionneur de cette commande ; indiquez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
-        <source>{0} is no program of it, or calls itself</source>
+        <source>{0} is not a program of it, or calls itself</source>
         <translation>{0} n&apos;est pas un de ses programmes, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} is no robot and takes no external axes; leave them out</source>
+        <source>{0} is not a robot and takes no external axes; leave them out</source>
         <translation>{0} n&apos;est pas un robot et n&apos;admet pas d&apos;axes externes ; omettez-les</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
-        <source>{0} is no scale; give 1 for mm, 1000 for m</source>
+        <source>{0} is not a scale; give 1 for mm, 1000 for m</source>
         <translation>{0} n&apos;est pas une échelle ; donnez 1 pour mm, 1000 pour m</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
-        <source>{0} is no shape that can be drawn; use {1}</source>
+        <source>{0} is not a shape that can be drawn; use {1}</source>
         <translation>{0} n&apos;est pas une forme qui puisse être dessinée ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
-        <source>{0} is no sign; use 1 or -1</source>
+        <source>{0} is not a sign; use 1 or -1</source>
         <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb_read.py"/>
-        <source>{0} is no speed of the module, or the move is told otherwise than by \T or \V</source>
+        <source>{0} is not a speed of the module, or the move is told otherwise than by \T or \V</source>
         <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb_modules.py"/>
-        <source>{0} is no tool of the module, or {1} no work object</source>
+        <source>{0} is not a tool of the module, or {1} no work object</source>
         <translation>{0} n&apos;est pas un outil du module, ou {1} n&apos;est pas un objet de travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wall.py"/>
-        <source>{0} is no torus, cylinder or cone: a wall of several faces must be of one of these; choose one face</source>
+        <source>{0} is not a torus, cylinder or cone: a wall of several faces must be of one of these; choose one face</source>
         <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône : une paroi de plusieurs faces doit être de l&apos;un d&apos;eux ; choisissez une seule face</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/touched.py"/>
-        <source>{0} is no touched point; {1}</source>
+        <source>{0} is not a touched point; {1}</source>
         <translation>{0} n&apos;est pas un point palpé ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_parts.py"/>
-        <source>{0} is no word such as M7 or H2=1; give one for on and one for off</source>
+        <source>{0} is not a word such as M7 or H2=1; give one for on and one for off</source>
         <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb_read.py"/>
-        <source>{0} is no zone of the module</source>
+        <source>{0} is not a zone of the module</source>
         <translation>{0} n&apos;est pas une zone du module</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} is no {1}; choose one</source>
+        <source>{0} is not a {1}; choose one</source>
+        <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>{0} is not an {1}; choose one</source>
         <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
     </message>
     <message>
@@ -13138,7 +13143,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
-        <source>{0} mm is no unit; give the length of one unit of the file, as 25.4 mm</source>
+        <source>{0} mm is not a unit; give the length of one unit of the file, as 25.4 mm</source>
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
     </message>
     <message>
@@ -13528,7 +13533,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
-        <source>{0} {1} is no straight line; choose a straight edge or an axis</source>
+        <source>{0} {1} is not a straight line; choose a straight edge or an axis</source>
         <translation>{0} {1} n&apos;est pas une droite ; choisissez une arête droite ou un axe</translation>
     </message>
     <message>
@@ -13718,7 +13723,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
-        <source>{0}: {1} mm is no box; give three lengths of more than 0 mm, at most {2} mm</source>
+        <source>{0}: {1} mm is not a box; give three lengths of more than 0 mm, at most {2} mm</source>
         <translation>{0} : {1} mm n&apos;est pas une boîte ; donnez trois longueurs de plus de 0 mm, au plus {2} mm</translation>
     </message>
     <message>
@@ -13803,7 +13808,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
-        <source>{0}={1} of &lt;{2}&gt; holds {3}, which is no number</source>
+        <source>{0}={1} of &lt;{2}&gt; holds {3}, which is not a number</source>
         <translation>{0}={1} de &lt;{2}&gt; contient {3}, qui n&apos;est pas un nombre</translation>
     </message>
     <message>

@@ -181,7 +181,7 @@ def test_what_cannot_follow_the_wire(fin):
 
 def test_messages_name_the_keys_of_the_job(fin):
     for changes, told in (
-        ((("hub.step}", "hub.step, faces: [Face99]}"),), "error[BAD_FACES] fin.yaml: substrate.faces: Face99 is no face of"),
+        ((("hub.step}", "hub.step, faces: [Face99]}"),), "error[BAD_FACES] fin.yaml: substrate.faces: Face99 is not a face"),
         ((("hub.step}", "ball.step}"),), "error[NO_BASE] ball: the hub has no cylinder and no cone"),
         ((("substrate: {file: hub.step}\n", ""),), "error[NO_HUB] fin.yaml: substrate: the hub, a cylinder or cone"),
     ):

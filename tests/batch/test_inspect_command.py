@@ -66,7 +66,7 @@ POINTS = "inspection/hemisphere-synthetic.csv"
     [
         (["hemisphere.yaml"], "--measured"),
         (["hemisphere.yaml", "--measured", "nowhere.csv"], "cannot be read"),
-        (["hemisphere.yaml", "--measured", POINTS, "--set", "tolerance"], "no setting"),
+        (["hemisphere.yaml", "--measured", POINTS, "--set", "tolerance"], "not a setting"),
         (["hemisphere.yaml", "--measured", POINTS, "--set", "colour=3"], "colour is not known"),
         (["hemisphere.yaml", "--measured", POINTS, "--object", "X"], "for FCStd documents"),
         (["nowhere.FCStd", "--measured", POINTS], "no such file"),

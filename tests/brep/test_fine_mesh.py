@@ -51,7 +51,7 @@ def test_others_are_as_the_kernel_makes_them():
 
 
 def without(face):
-    """The kernel's triangles, but for those of one face as long as that is no spline."""
+    """The kernel's triangles, but for those of one face as long as that is not a spline."""
     def made(shape, chord):
         found = tessellated(shape, chord)
         bare = found.owner == face if shape.Faces[face].Surface.TypeId != "Part::GeomBSplineSurface" else found.owner < 0

@@ -148,7 +148,7 @@ DEEP = "".join(holder(k + 1, placed("component", k)) for k in range(1, 2000))
     (model(mesh(1), '<item objectid="1" transform="1 0 0"/>'), "BAD_FILE", "transform"),
     (model(mesh(1), '<item objectid="1" transform="nan 0 0 0 1 0 0 0 1 0 0 0"/>'), "BAD_FILE", "transform"),
     (model(mesh(1), "<item/>"), "BAD_FILE", "lacks 'objectid'"),
-    (model(mesh(1).replace('x="1.0"', 'x="one"'), placed("item", 1)), "BAD_FILE", "no number"),
+    (model(mesh(1).replace('x="1.0"', 'x="one"'), placed("item", 1)), "BAD_FILE", "not a number"),
     (model(mesh(1).replace('x="1.0"', 'y1="1"'), placed("item", 1)), "BAD_FILE", "lacks 'x'"),
     (model(mesh(1), placed("item", 1), "furlong"), "BAD_FILE", "furlong"),
     (model(mesh(1), placed("item", 1))[:-30], "BAD_FILE", "XML"),

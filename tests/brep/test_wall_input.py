@@ -112,7 +112,7 @@ def test_unsound_meshes_are_refused_with_a_place():
     cases = [
         (points, corners[~flat[corners].all(axis=1)], "OPEN_MESH", "4 edges, 28.28 mm across, at (0, 0, 10)"),
         (points, corners[:0], "NO_SOLID", "no triangles"),
-        (np.where(points > 0.0, np.nan, points), corners, "BAD_FILE", "no numbers"),
+        (np.where(points > 0.0, np.nan, points), corners, "BAD_FILE", "not numbers"),
     ]
     for some, triangles, code, words in cases:
         with pytest.raises(InputError) as caught:

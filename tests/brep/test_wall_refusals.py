@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is no wall of revolution, and how that is said."""
+"""What is not a wall of revolution, and how that is said."""
 
 import math
 import re

@@ -131,7 +131,7 @@ def test_what_is_wrong_is_told_beside_its_field_and_nothing_is_left(person, part
     person.type(panel, "Heights", "high")
     person.press("Ok")
     note = person.field(panel, "HeightsNote")
-    assert note.isVisible() and "no height" in note.text()
+    assert note.isVisible() and "not a height" in note.text()
     person.press("Cancel")
     person.panel_closed()
     assert document.getObject("Inspection") is None

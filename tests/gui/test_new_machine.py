@@ -37,7 +37,7 @@ def wizard(person):
 
 @pytest.fixture
 def broken(tmp_path):
-    """A folder of the preferences with a file that is no machine."""
+    """A folder of the preferences with a file that is not a machine."""
     (tmp_path / "broken.json").write_text('{"id": "broken", ', encoding="utf-8")
     group = App.ParamGet(preferences.GROUP)
     group.SetString("MachineFolder", str(tmp_path))

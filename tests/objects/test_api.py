@@ -85,7 +85,7 @@ def test_missing_inputs_are_told(doc, part):
             make()
     with pytest.raises(InputError, match="no shape"):
         api.make_feature(doc, api.make_cell(doc))
-    with pytest.raises(InputError, match="no stage"):
+    with pytest.raises(InputError, match="not a stage"):
         api.result(part)
 
 
@@ -233,7 +233,7 @@ def test_a_wire_turned_about_a_line(doc):
     assert feature.Status == "stale"
     box = doc.addObject("Part::Box", "Box")
     doc.recompute()
-    with pytest.raises(InputError, match="no straight line"):
+    with pytest.raises(InputError, match="not a straight line"):
         api.make_feature(doc, wire, axis=(box, "Face1"))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A text that says something else than the plan is no program: none is made, stored, exported or kept by the name of one."""
+"""A text that says something else than the plan is not a program: none is made, stored, exported or kept under its name."""
 
 import re
 

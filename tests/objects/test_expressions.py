@@ -36,7 +36,8 @@ def test_a_parameter_follows_an_expression_until_it_is_given_a_value(doc, part, 
     ("text", "told"),
     [
         ("=", "not understood"), ("=Sheet.heigth", "not understood"), ("=Sheet.height + 1 deg", "not understood"),
-        ("=90 deg", "another dimension"), ("=0 mm * Sheet.height / 1 mm", "more than 0 mm"), ("=Sheet.Label", "no number"),
+        ("=90 deg", "another dimension"), ("=0 mm * Sheet.height / 1 mm", "more than 0 mm"),
+        ("=Sheet.Label", "not a number"),
     ],
 )
 def test_a_wrong_expression_is_told_and_changes_nothing(doc, part, sheet, text, told):

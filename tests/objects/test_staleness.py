@@ -178,7 +178,7 @@ def test_an_infeasible_path_is_kept_and_stops_the_program(job, no_remedies):
 def test_a_link_to_the_wrong_kind_is_told(job):
     job.toolpath.Feature = job.cell
     job.doc.recompute()
-    assert job.toolpath.Status == FAILED and job.toolpath.Message == "Toolpath.Feature: Cell is no feature; choose one"
+    assert job.toolpath.Status == FAILED and job.toolpath.Message == "Toolpath.Feature: Cell is not a feature; choose one"
 
 
 def test_what_failed_is_tried_again_at_the_next_recompute(job, root, tmp_path):

@@ -19,7 +19,7 @@ TIME, ANGLE = Quantity("time", "s"), Quantity("angle", "deg")
 
 
 def lines(axes):
-    """The lines in a frame that are no marks: drawn in the units of the data."""
+    """The lines in a frame that are not marks: drawn in the units of the data."""
     return [line for line in axes.get_lines() if line.get_transform() == axes.transData]
 
 

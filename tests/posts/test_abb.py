@@ -441,7 +441,7 @@ def test_a_module_by_hand():
     ("[FALSE,TRUE,\"\"", '[TRUE,TRUE,""', "either the tool or the work object"),
     ("0.7071068,0]]", "0.8,0]]", "value of nozzle"), ("0.6,0.0,0.8,0.0", "0.6,0.0,0.7,0.0", "unit quaternion"),
     ("ConfL\\Off", "ConfL\\On", "not understood"), ("    ConfL\\Off;\n", "", "supervised"),
-    ("near,nozzle", "z50,nozzle", "no zone"), ("SetDO do7,0", "SetDO do8,0", "second output"),
+    ("near,nozzle", "z50,nozzle", "not a zone"), ("SetDO do7,0", "SetDO do8,0", "second output"),
     ("V:=30.5,fine", "V:=30.5,near", "before the move before it ends"), ("gripper_open;", "main;", "not loaded"),
     ("gripper_open;", "MoveJ x,y;", "not understood"), ("slow\\V:=30.5", "slow\\T:=30.5", "otherwise than by"),
     ("gripper_open;", "GOTO start;", "not understood"), ("9E9]]\\NoEOffs", "0]]\\NoEOffs", "not understood"),

@@ -144,7 +144,7 @@ def test_random_programs_come_back(random_program, seed, motion):
     (r"  12:.*\n", "  12:  DO[6]=ON ;\n", "HAND.LS line 19", "second output"),
     (r"  12:.*\n", "  12:  JMP LBL[1] ;\n", "HAND.LS line 19", "JMP"),
     (r"  12:.*\n", "  12:  END ;\n", "HAND.LS line 19", "'END'"),
-    (r"  12:.*\n", "  12:  CALL ELSEWHERE\n", "HAND.LS line 19", "no instruction"),
+    (r"  12:.*\n", "  12:  CALL ELSEWHERE\n", "HAND.LS line 19", "not an instruction"),
     (r"UTOOL_NUM=4", "UTOOL_NUM=5", "HAND.LS line 15", "another UTOOL"),
     (r"UFRAME_NUM=3", "UFRAME_NUM=0", "HAND.LS line 15", "another UFRAME"),
     (r"J5=    45.000 deg", "J5=    45,000 deg", "HAND.LS line 22", "P[1]"),

@@ -80,7 +80,7 @@ def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
     (r" F[\d.]+\n", "\n"), (r"\nM2\n", "\n"), (r"G17", "G18 G19"), (r"M429", "M431"), (r"G43", "G143"),
 ])  # fmt: skip
 def test_linuxcnc_refuses_what_is_wrong(tmp_path, damage):
-    """The judge is one: it refuses texts that are no programs."""
+    """The judge is one: it refuses texts that are not programs."""
     (name, content), = linuxcnc.write(random_program(1, max_points=10**5)).items()
     text = re.sub(damage[0], damage[1], content.decode(), count=0)
     assert text != content.decode()

@@ -163,7 +163,7 @@ def _touched(value: Any) -> str:
 def _point(value: Any, key: str) -> touched.Point:
     """Three lengths of a job file."""
     if not isinstance(value, list) or len(value) != 3:
-        raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is no point; give [x, y, z]")
+        raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is not a point; give [x, y, z]")
     x, y, z = (quantity.read(number, f.LENGTH, key) for number in value)
     return x, y, z
 
@@ -197,7 +197,7 @@ def _obstacle(value: Any, key: str, number: int, path: str) -> obstacles.Obstacl
     edges = section.get("box")
     if edges is not None:
         if not isinstance(edges, list) or len(edges) != 3:
-            raise InputError("BAD_VALUE", f"{key}.box", f"{quantity.shown(edges)} is no box; give its edges along x, y "
+            raise InputError("BAD_VALUE", f"{key}.box", f"{quantity.shown(edges)} is not a box; give its edges along x, y "
                              "and z such as [1200, 800, 30]")
         width, depth, height = (quantity.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
         size = (width, depth, height)

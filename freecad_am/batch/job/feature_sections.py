@@ -20,7 +20,7 @@ from .part_source import PartSource, absolute, part_of
 
 
 def kept_clear(kind: str) -> tuple[str, ...]:
-    """The keys of `strategy` that are no parameters of the family: its kind, and what is picked of the part."""
+    """The keys of `strategy` that are not parameters of the family: its kind, and what is picked of the part."""
     return ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
 
 

@@ -123,8 +123,8 @@ def _schedules(value: Any) -> dict[str, Any]:
     fields.known_keys(table, (ALL, *bead_classes.CLASSES), "schedules")
     for name, number in table.items():
         if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= bead_classes.LARGEST_SCHEDULE:
-            raise InputError("BAD_VALUE", f"schedules.{name}", f"{quantity.shown(number)} is no number of a schedule; give "
-                             f"a whole number from 1 to {bead_classes.LARGEST_SCHEDULE}")
+            raise InputError("BAD_VALUE", f"schedules.{name}", f"{quantity.shown(number)} is not a number of a schedule; "
+                             f"give a whole number from 1 to {bead_classes.LARGEST_SCHEDULE}")
     classes = {name: {"schedule": number} for name, number in table.items() if name != ALL}
     return {**({"schedule": table[ALL]} if ALL in table else {}), **({"classes": classes} if classes else {})}
 

@@ -51,7 +51,7 @@ def read(value: Any, kind: str, key: str) -> float:
     """The value of `key` in inner units (mm, rad, mm/s, s, plain) from a YAML scalar; may be infinite.
 
     A number without a unit is in the outer unit of `kind` (mm, deg, mm/s, s, %). Raises InputError 'BAD_VALUE' for
-    what is no quantity, 'BAD_UNIT' for an unknown unit or one of the wrong dimension.
+    what is not a quantity, 'BAD_UNIT' for an unknown unit or one of the wrong dimension.
     """
     wanted, example = WANTED[kind]
     if isinstance(value, bool) or value is None or not isinstance(value, (int, float, str)):

@@ -29,7 +29,7 @@ KNOWN = (
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
 )
-NOT_DEPOSITED = ("support", "other")  # types of objects that are no part
+NOT_DEPOSITED = ("support", "other")  # types of objects that are not part
 LARGEST = 1 << 29  # bytes of a file of the zip, unpacked
 MOST = 20_000_000  # triangles of all items together
 MOST_PLACED, DEEPEST = 100_000, 100  # objects of all items together, and one inside the other
@@ -57,7 +57,7 @@ def triangles(path: Path) -> tuple[Array, Index]:
         with zipfile.ZipFile(path) as archive:
             return _Package(archive, where).built()
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError) as error:
-        raise _bad(where, f"it is no sound zip file ({error})") from None
+        raise _bad(where, f"it is not a sound zip file ({error})") from None
     except expat.ExpatError as error:
         raise _bad(where, f"its XML is damaged ({error})") from None
     except OverflowError:
@@ -213,7 +213,7 @@ class _Model:
         except KeyError as error:
             raise _bad(self.where, f"a {name} in {self.name} lacks {error}") from None
         except ValueError as error:
-            raise _bad(self.where, f"a {name} in {self.name} has a value that is no number ({error})") from None
+            raise _bad(self.where, f"a {name} in {self.name} has a value that is not a number ({error})") from None
 
     def _key(self, values: dict[str, str]) -> Key:
         path = next((text for name, text in values.items() if name.endswith(" path")), "")

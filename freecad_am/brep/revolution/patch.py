@@ -50,7 +50,7 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
     try:
         curves = _meridian(face, frame)
     except (ValueError, RuntimeError, Part.OCCError):
-        curves = None  # a line that stands still is no meridian, and the kernel gives up on some surfaces
+        curves = None  # a line that stands still is not a meridian, and the kernel gives up on some surfaces
     if curves is None:
         return Patch(name, (), _spread(face, frame), "it does not turn about the axis")
     deviation = _deviation(face, frame, curves)

@@ -52,7 +52,7 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
 
 
 def refuse_crossing(wall: PatchWall, label: str) -> None:
-    """InputError SELF_INTERSECTION where triangles of the wall that are no neighbours cut each other, and the exact faces
+    """InputError SELF_INTERSECTION where triangles of the wall that are not neighbours cut each other, and the exact faces
     do so too."""
     corner = wall.vertices[wall.triangles]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])

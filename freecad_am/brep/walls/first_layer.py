@@ -68,7 +68,7 @@ def find_wall(
 
 def _solid(substrate: Any, label: str) -> Any:
     if substrate is None or substrate.isNull() or not substrate.Solids:
-        raise InputError("NO_SOLID", label, "it is no solid; choose a solid part for the wall to grow on")
+        raise InputError("NO_SOLID", label, "it is not a solid; choose a solid part for the wall to grow on")
     if substrate.Volume <= 0.0:
         raise InputError("INSIDE_OUT", label, "the solid is turned inside out; repair it (Part, Check geometry)")
     return substrate

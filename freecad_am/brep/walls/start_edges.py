@@ -19,7 +19,7 @@ ON_WALL = 1e-3  # mm
 WITHIN = 1e-5  # mm between nodes, at the THIRDS of each arc
 THIRDS = np.array([1.0 / 3.0, 2.0 / 3.0])
 ROUNDS = 12
-SMOOTH = np.radians(1.0)  # smaller turns from edge to edge are no corners
+SMOOTH = np.radians(1.0)  # smaller turns from edge to edge are not corners
 
 
 def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> list[FirstCurve]:

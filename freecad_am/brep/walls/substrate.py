@@ -59,7 +59,8 @@ def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
         solid, issues = mesh_solid(mesh.vertices, mesh.triangles, label, mend)
         return Substrate(label, None, solid, None, issues)
     if source is None or source.isNull() or not source.Solids:
-        raise InputError("NO_SOLID", label, "it is no solid; choose a solid part or a closed mesh for the wall to grow on")
+        raise InputError("NO_SOLID", label,
+                         "it is not a solid; choose a solid part or a closed mesh for the wall to grow on")
     for solid in source.Solids:
         if solid.Volume <= 0.0:
             raise InputError(
@@ -73,7 +74,7 @@ def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
 
 
 def _as_one(shape: Any) -> Any:
-    """The shape with solids that touch made one, for what lies between them is no outside to leave."""
+    """The shape with solids that touch made one, for what lies between them is not an outside to leave."""
     solids = shape.Solids
     boxes = [solid.BoundBox for solid in solids]
     near = [one.intersect(other) for k, one in enumerate(boxes) for other in boxes[:k]]
@@ -88,7 +89,7 @@ def mesh_solid(points: Any, triangles: Any, label: str, mend: float = 0.0) -> tu
     if not len(triangles):
         raise InputError("NO_SOLID", label, "the mesh has no triangles; choose a closed mesh or a solid part")
     if not np.isfinite(points).all():
-        raise InputError("BAD_FILE", label, "the mesh has points that are no numbers; export it again")
+        raise InputError("BAD_FILE", label, "the mesh has points that are not numbers; export it again")
     vertices, corners, _ = welded(
         np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), np.zeros(len(triangles), dtype=np.intp)
     )

@@ -52,8 +52,8 @@ def tubes(shape: Any, names: Sequence[str], label: str) -> tuple[list[tuple[str,
     kind = _ANALYTIC.get(first.Surface.TypeId, TABLE)
     if kind == TABLE and len(named) > 1:
         raise InputError(
-            "NOT_ONE_SURFACE", label, f"{first_name} is no torus, cylinder or cone: a wall of several faces must be of one "
-            "of these; choose one face",
+            "NOT_ONE_SURFACE", label, f"{first_name} is not a torus, cylinder or cone: a wall of several faces must be of "
+            "one of these; choose one face",
         )
     for name, face in named[1:]:
         _refuse_other(first, face, f"{label} {name}", first_name)

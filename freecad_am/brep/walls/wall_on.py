@@ -24,7 +24,7 @@ from .wall import faces_by_name, tubes
 FLAT = "Part::GeomPlane"
 TOLD = 8  # faces named in a message
 BELOW = 9  # places up the tube at which it is told whether it stays in the substrate's box
-# what is no closed tube of one surface that starts in one loop may still be a wall
+# what is not a closed tube of one surface that starts in one loop may still be a wall
 OTHER_KIND = frozenset({"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"})
 
 

@@ -13,7 +13,7 @@ from ..geometry.regions.region import WIDTH, Region
 from ..types import Array
 from .curve import Beads, PlaneCurve
 
-MORE = 1.002  # of the thickness, beside what the measure of it may be short of: a contour in the middle is no thin loop
+MORE = 1.002  # of the thickness, beside what the measure of it may be short of: a contour in the middle is not a thin loop
 PLACES = 0.25  # of the spacing, mm between places at which widths are looked at
 
 

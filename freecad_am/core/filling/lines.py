@@ -58,7 +58,7 @@ def lines(region: Region, beads: Beads, angle: float = 0.0, walls: int = 0) -> l
     """Lines at an angle (rad), every other one the other way round; so many contours round them come first.
 
     First and last line are half a bead inside the border (with walls: a spacing inside of the last), and the rest
-    at the spacing from these. Where the breadth is no multiple of the spacing the lines move evenly if that takes no more
+    at the spacing from these. Where the breadth is not a multiple of the spacing the lines move evenly if that takes no more
     than TOGETHER and APART; otherwise what is left over is in the middle and has a line of its own. With walls, lines end
     on the last. What lines leave open elsewhere, beside borders almost along them, is filled too, as is the place of lines
     that would be too short. InfeasibleError THIN_REGION, see `Beads`.

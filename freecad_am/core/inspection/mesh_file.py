@@ -75,4 +75,4 @@ def _numbers(texts: list[list[bytes]], where: str) -> Array:
     try:
         return np.array(texts, dtype=np.float64).reshape(-1, 3)
     except ValueError:
-        raise InputError("BAD_FILE", where, "a coordinate of its vertices is no number; export it again") from None
+        raise InputError("BAD_FILE", where, "a coordinate of its vertices is not a number; export it again") from None

@@ -108,9 +108,10 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
         else:
             bad.append(number)
     if len(bad) > len(found):
-        raise InputError("BAD_FILE", f"{label} line {bad[0]}", "this and most other lines are no points; give rows of x y z")
+        raise InputError("BAD_FILE", f"{label} line {bad[0]}",
+                         "this and most other lines are not points; give rows of x y z")
     if bad:
-        told.append(f"{len(bad)} lines that are no points are left out, the first is line {bad[0]}")
+        told.append(f"{len(bad)} lines that are not points are left out, the first is line {bad[0]}")
     texts = [*named, *(" ".join(head) for head in heads if "unit" in " ".join(head).lower()),
              *(remark for remark in remarks if "unit" in remark.lower())]
     unit = next((one for one in map(_unit_in, texts) if one), "")

@@ -15,7 +15,7 @@ class Arrangement:
     setup: the value of `cell.setup`.
     carries_part: the flange carries the part, under a nozzle that stands; else the nozzle.
     redundant: a rotation about the tool and a configuration of the arm are left to choose; else poses leave nothing free.
-    holds_part: the part turns in the hand of a robot, so that what runs straight in the world is no line on the part.
+    holds_part: the part turns in the hand of a robot, so that what runs straight in the world is not a line on the part.
     links_known: files tell what the links look like, so that what they touch can be found; else they are drawn to fit.
     named_axes: the controller writes axes by names of their own (X, A), not by number.
     planned: jobs with it can be planned.

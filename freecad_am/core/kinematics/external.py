@@ -79,7 +79,7 @@ def coupled(
     _check_names(robot, found)
     _check(found)
     if not robot.redundant:
-        raise InputError("WRONG_SETUP", WHERE, f"{robot.title} is no robot and takes no external axes; leave them out")
+        raise InputError("WRONG_SETUP", WHERE, f"{robot.title} is not a robot and takes no external axes; leave them out")
     axes, ends = robot.chain.axes, np.cumsum([0, *(machine.chain.axes for _, machine in found)])
     values, count = [np.arange(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)], int(ends[-1])
     carriers = [k for k, (one, _) in enumerate(found) if one.carries == PART]
@@ -114,8 +114,8 @@ def _check(found: Sequence[tuple[External, Machine]]) -> None:
     tracks = [machine for one, machine in found if one.carries == ROBOT]
     for machine in tracks:
         if machine.chain.axes != 1 or not machine.chain.sliding.all():
-            raise InputError("NOT_YET", WHERE, f"{machine.title} carries the robot and is no track, which is one axis that "
-                             "slides; nothing else can be planned")
+            raise InputError("NOT_YET", WHERE, f"{machine.title} carries the robot and is not a track, which is one axis "
+                             "that slides; nothing else can be planned")
     if len(tracks) > 1:
         raise InputError("NOT_YET", WHERE, f"{len(tracks)} mechanisms carry the robot; one track can be planned")
     others = [machine for one, machine in found if one.carries == PART]

@@ -60,7 +60,7 @@ class BuildDirectionParameters:
         return auto if self.max_turn == "auto" else float(self.max_turn)
 
     def plane_normal(self) -> tuple[float, float, float] | None:
-        """`plane` as three numbers, not of unit length; None for auto. InputError BAD_VALUE for what is no vector."""
+        """`plane` as three numbers, not of unit length; None for auto. InputError BAD_VALUE for what is not a vector."""
         if self.plane == "auto":
             return None
         try:
@@ -70,6 +70,6 @@ class BuildDirectionParameters:
         if not 0.0 < math.hypot(x, y, z) < math.inf:
             raise InputError(
                 "BAD_VALUE", "build_direction.plane",
-                f"{self.plane!r} is no direction; give three numbers such as 0 1 0, or auto",
+                f"{self.plane!r} is not a direction; give three numbers such as 0 1 0, or auto",
             )
         return x, y, z

@@ -64,7 +64,7 @@ def spec_of(field: dataclasses.Field[Any]) -> Spec:
 
 
 def direction_of(text: str, where: str, remedy: str) -> tuple[float, float, float]:
-    """Three numbers, not of unit length. InputError BAD_VALUE for what is no direction."""
+    """Three numbers, not of unit length. InputError BAD_VALUE for what is not a direction."""
     try:
         x, y, z = (float(word) for word in text.replace(",", " ").split())
     except ValueError:

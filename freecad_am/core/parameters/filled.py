@@ -38,8 +38,8 @@ class BaseParameters:
         self.line()
         if self.radius == "auto" and self.height != "inf":
             raise InputError(
-                "BAD_VALUE", "strategy.base.radius", "a height alone is no cone; give the radius of its base circle too, or "
-                "base: auto",
+                "BAD_VALUE", "strategy.base.radius", "a height alone is not a cone; give the radius of its base circle too, "
+                "or base: auto",
             )
 
     def line(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -52,7 +52,7 @@ class BaseParameters:
         if len(numbers) != 6 or not all(map(math.isfinite, numbers)) or not math.hypot(*way) > 0.0:
             raise InputError(
                 "BAD_VALUE", "strategy.base.axis",
-                f"{self.axis!r} is no axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]",
+                f"{self.axis!r} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]",
             )
         return point, way
 
@@ -224,7 +224,7 @@ class SolidParameters(FilledParameters):
         self.stacking()
 
     def stacking(self) -> tuple[float, float, float] | None:
-        """`direction` as three numbers, not of unit length; None for auto. InputError BAD_VALUE for what is no direction."""
+        """`direction` as three numbers, of any length; None for auto. InputError BAD_VALUE for what is not a direction."""
         if self.direction == "auto":
             return None
         return f.direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1], or auto")

@@ -41,10 +41,10 @@ class Obstacle:
             raise InputError("BAD_VALUE", WHERE, f"{self.name} is neither a file nor a box, or both; give one of them")
         if self.size is not None and not all(0.0 < edge <= LARGEST for edge in self.size):
             edges = " ".join(f"{edge:g}" for edge in self.size)
-            raise InputError("BAD_VALUE", WHERE, f"{self.name}: {edges} mm is no box; give three lengths of more than 0 mm, "
-                             f"at most {LARGEST:g} mm")
+            raise InputError("BAD_VALUE", WHERE, f"{self.name}: {edges} mm is not a box; give three lengths of more than 0 "
+                             f"mm, at most {LARGEST:g} mm")
         if any(sign in self.name for sign in "=;") or not self.name.strip():
-            raise InputError("BAD_VALUE", WHERE, f"{self.name!r} is no name; use words without = and ;")
+            raise InputError("BAD_VALUE", WHERE, f"{self.name!r} is not a name; use words without = and ;")
 
     def __str__(self) -> str:
         what = self.file if self.size is None else "box " + " ".join(f"{edge:.12g}" for edge in self.size)
@@ -72,7 +72,7 @@ def usual_name(file: str, number: int) -> str:
 def _obstacle(text: str, number: int) -> Obstacle:
     found = _TEXT.fullmatch(text)
     if found is None:
-        raise InputError("BAD_VALUE", WHERE, f"{text!r} is no obstacle; {_FORM}")
+        raise InputError("BAD_VALUE", WHERE, f"{text!r} is not an obstacle; {_FORM}")
     pose = _numbers(found["pose"], 6)
     x, y, z, *angles = pose
     a, b, c = (math.radians(angle) for angle in angles)

@@ -105,7 +105,7 @@ class CurvesParameters(LayerParameters):
         self.way()
 
     def way(self) -> tuple[float, float, float]:
-        """`direction` as a unit vector. InputError BAD_VALUE for what is no direction."""
+        """`direction` as a unit vector. InputError BAD_VALUE for what is not a direction."""
         x, y, z = f.direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1]")
         size = math.hypot(x, y, z)
         return x / size, y / size, z / size

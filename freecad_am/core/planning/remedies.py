@@ -124,7 +124,7 @@ def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Pro
                 return [Issue(NOTE, REMEDY, f"with {change.told} this job is feasible; it was planned so")]
             if not whole:
                 break
-        except AmError:  # what cannot be asked for is no remedy
+        except AmError:  # what cannot be asked for is not a remedy
             continue
     if not tried:
         return []

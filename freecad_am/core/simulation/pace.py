@@ -26,7 +26,7 @@ GROWTH, ROUNDS = 1.3, 6
 # from this share of its bound on a bend counts as the reason for being slow
 BENT = 0.9
 _ANY = 1e9  # a change of p^2 that is as good as any
-# segments shorter than this, s, are no moves: rows that repeat a place
+# segments shorter than this, s, are not moves: rows that repeat a place
 _NO_TIME = 1e-12
 
 

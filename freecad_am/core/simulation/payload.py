@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Whether what carries the part can: its mass as it grows, and how far its centre of gravity is from the last axis.
 
-The part is the deposit and the bodies it grows on, all as dense as the deposit; what of them is no closed mesh counts
+The part is the deposit and the bodies it grows on, all as dense as the deposit; what of them is not a closed mesh counts
 nothing. A load may be farther from the axis the less it weighs: what counts is its moment about the axis.
 """
 

@@ -21,7 +21,7 @@ from .pace import Pace
 
 # nearer to a limit than this many degrees or mm counts as near
 NEAR = 0.5
-# programs keep 0.05 deg; what rounding leaves is no violation, degrees or mm
+# programs keep 0.05 deg; what rounding leaves is not a violation, degrees or mm
 _ROUNDING = 1e-6
 
 UNREACHABLE, LIMIT, NEAR_LIMIT, SINGULAR, SLOWED, ISSUE = "unreachable", "limit", "near limit", "singular", "slowed", "issue"
@@ -107,7 +107,7 @@ def watch(
     motion: Motion, cell: Cell, kept: Pace, condition: Array, threshold: Array, issues: Sequence[Issue] = (),
     arm: ArmTouches | None = None,
 ) -> Watch:
-    """What is to be seen in a motion; condition, threshold: (n,), NaN where not known. Notes are no findings. arm: what the
+    """What is to be seen in a motion; condition, threshold: (n,), NaN where not known. Notes are not findings. arm: what the
     links touch, None where nobody has looked."""
     margins = shown_margins(cell, motion.joints)
     limit = np.argmin(np.where(np.isnan(margins), np.inf, margins), axis=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A table of figures that are typed or pasted, and read so that what is no number is told with its row and column."""
+"""A table of figures that are typed or pasted, and read so that what is not a number is told with its row and column."""
 
 from __future__ import annotations
 

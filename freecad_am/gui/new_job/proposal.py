@@ -118,7 +118,7 @@ def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposa
         if all(part.shape is None or part.shape.Solids for _, part in known):
             reason = tr("{} solids are selected, which are filled").format(len(known))
             return JobProposal(SOLID, reason, tuple(Pick(pick.obj) for pick in picks), layers=PLANES)
-        return as_kind(SURFACE, picks, tr("some of what is selected is no solid"))
+        return as_kind(SURFACE, picks, tr("some of what is selected is not a solid"))
     wall, ground, _ = picking.proposal(picks)
     if wall is None or ground is None:  # both are meshes
         wall, ground = picks

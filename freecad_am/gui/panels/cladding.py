@@ -20,7 +20,7 @@ from ..views.preview import Draft
 from .pick import PickPanel
 
 FACES = Link(
-    "Source", "", marked("The faces to cover; of an object that is no solid all of them, where none is picked."),
+    "Source", "", marked("The faces to cover; of an object that is not a solid all of them, where none is picked."),
     type_name="App::PropertyLinkSub",
 )
 SUBSTRATE = Link("Substrate", "", marked("A further part that the nozzle is kept clear of."), required=False)

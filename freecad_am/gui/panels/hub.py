@@ -78,7 +78,7 @@ class HubPanel(PickPanel):
         return None if self.solids.picks else self.solids
 
     def _taken(self, field: PickField) -> None:
-        """What is picked as hub is no solid beside others."""
+        """What is picked as hub is not a solid beside others."""
         hub = self.hub.picks[0].obj if self.hub.picks else None
         others = [pick for pick in self.solids.picks if pick.obj != hub]
         if others and len(others) < len(self.solids.picks):

@@ -78,7 +78,7 @@ class Legend:
 
 def _look(legend: weakref.ref[Legend], action: Any) -> None:
     there = legend()
-    # the camera is no node of the scene: rays of the mouse must not go through it
+    # the camera is not a node of the scene: rays of the mouse must not go through it
     if there is not None and action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
         there.camera.doAction(action)
 

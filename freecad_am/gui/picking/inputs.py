@@ -61,7 +61,7 @@ class StageChoice(Input):
         if not link.required:
             self.widget.addItem(tr("none"), "")
         wished = [obj.Name for obj in meant() if obj.Name in names]
-        last = [] if link.kind == INSPECTION else names[-1:]  # what is compared elsewhere is no input unless it is chosen
+        last = [] if link.kind == INSPECTION else names[-1:]  # what is compared elsewhere is an input only if chosen
         self.proposed = present.Name if present is not None else (wished or last or [""])[0]
         self.widget.setCurrentIndex(max(0, self.widget.findData(self.proposed)))
 

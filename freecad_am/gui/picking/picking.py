@@ -77,7 +77,7 @@ def _alone(obj: Any) -> Any:
 
 
 def usable(obj: Any) -> bool:
-    """Whether an object has a shape or a mesh, and is no stage of ours."""
+    """Whether an object has a shape or a mesh, and is not a stage of ours."""
     if obj is None or stage_of(obj) is not None:
         return False
     shape = getattr(obj, "Shape", None)

@@ -81,7 +81,7 @@ def source_of(obj: Any) -> Source:
     """What there is about a joint path. Raises InputError where there is no map of it, saying what to do."""
     stage = stage_of(obj)
     if stage is None or stage.kind != "joint path":
-        raise InputError("NO_MAP", getattr(obj, "Label", "?"), "it is no joint path; select one")
+        raise InputError("NO_MAP", getattr(obj, "Label", "?"), "it is not a joint path; select one")
     value, toolpath, looks = planned_of(obj, obj.Label)
     cell = resolved(looks, toolpath, user_machines.folders())
     if not cell.arrangement.redundant or not value.joint_path.branch:

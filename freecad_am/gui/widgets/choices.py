@@ -14,7 +14,7 @@ from ...objects import user_machines
 from ..texts.translation import marked, tr, translated
 
 FEWEST_LETTERS = 8  # a list may be as narrow: panels are
-WORDS = {  # of keys that are no words by themselves; `tr` gives them in the language of the window
+WORDS = {  # of keys that are not words by themselves; `tr` gives them in the language of the window
     "part-on-robot": marked("part on robot"),
     "tool-on-robot": marked("tool on robot"),
     "rotary-table": marked("five-axis machine"),
@@ -73,7 +73,7 @@ def offer(combo: Any, pairs: Iterable[tuple[str, str]]) -> None:
 
 
 def entered(combo: Any) -> str:
-    """The key of what a list that can be typed into shows; what was typed where that is no entry."""
+    """The key of what a list that can be typed into shows; what was typed where that is not an entry."""
     text = str(combo.currentText()).strip()
     at = next((row for row in range(combo.count()) if combo.itemText(row) == text), -1)
     return str(combo.itemData(at) or text) if at >= 0 else text

@@ -25,7 +25,7 @@ def evaluated(value: str, obj: Any, where: str) -> Any:
     except Exception as error:  # FreeCAD's own errors share no base
         raise _wrong(value, where, error) from None
     if isinstance(found, bool) or not (isinstance(found, (int, float)) or hasattr(found, "Unit")):
-        raise InputError("BAD_EXPRESSION", where, f"{value!r} gives {found!r}, which is no number")
+        raise InputError("BAD_EXPRESSION", where, f"{value!r} gives {found!r}, which is not a number")
     return found
 
 

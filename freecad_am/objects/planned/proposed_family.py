@@ -44,7 +44,7 @@ STEEP = float(np.radians(45.0))
 LEVEL = float(np.cos(np.radians(1.0)))
 FLAT = 0.01  # of the height, above the lowest point; what lies there stands on something
 OPEN = 0.1  # of its size; a mesh with a wider hole is a wall
-LYING = 0.95  # of its area; an open mesh of which more is less than STEEP from level is no wall that stands
+LYING = 0.95  # of its area; an open mesh of which more is less than STEEP from level is not a wall that stands
 WIDEST = 10000.0  # mm; the bound of `strategy.mend`
 ROUND = ("Part::GeomCylinder", "Part::GeomCone")
 UP = (0.0, 0.0, 1.0)
@@ -159,7 +159,7 @@ def _of_mesh(part: Taken, substrate: Taken | None, edges: bool, tilts: bool, pla
         size = at_least(opening)
         why = (
             f"{part.label} is an open mesh that cuts itself at {len(crossed.pairs)} pairs of its triangles, as at {at}, "
-            f"so it is no wall of one bead: it is filled, with its {len(open_)} holes of up to {size:.4g} mm closed"
+            f"so it is not a wall of one bead: it is filled, with its {len(open_)} holes of up to {size:.4g} mm closed"
         )
         return replace(_solid(part, why, tilts, planes), mend=min(size, WIDEST))
     lies = _lying(found.vertices[found.triangles])
@@ -290,7 +290,7 @@ def _own_hub(part: Taken, faces: Sequence[str] = ()) -> bool:
 def stands_on_hub(part: Taken, substrate: Taken, faces: Sequence[str] = ()) -> bool:
     """Whether a solid or mesh has corners on a cylinder or cone of the substrate, on the faces chosen of it or any."""
     if substrate.shape is None or (part.shape is not None and not part.shape.Solids):
-        return False  # a surface is no solid to be filled
+        return False  # a surface is not a solid to be filled
     corners = part.body().vertices if part.shape is None else np.array(
         [tuple(vertex.Point) for vertex in part.shape.Vertexes]).reshape(-1, 3)
     named = [(f"Face{number}", face) for number, face in enumerate(substrate.shape.Faces, start=1)]

@@ -41,7 +41,7 @@ def _try(path: str, where: str) -> None:
 
 
 def refuse(path: str, where: str) -> None:
-    """Refuse what is no document of FreeCAD, and XML with a document type: its entities can stand for more than there is
+    """Refuse what is not a document of FreeCAD, and XML with a document type: its entities can stand for more than there is
     memory, and FreeCAD takes them at their word. InputError BAD_FILE."""
     try:
         with zipfile.ZipFile(path) as archive:

@@ -58,7 +58,7 @@ class Module:
         """The frames of a tool and a work object, of which the robot carries one."""
         if (tool, work_object) not in self._paired:
             if tool not in self.tools or work_object not in self.objects:
-                raise unreadable(where, f"{tool} is no tool of the module, or {work_object} no work object")
+                raise unreadable(where, f"{tool} is not a tool of the module, or {work_object} no work object")
             (on_robot, at), (held, seen) = self.tools[tool], self.objects[work_object]
             if on_robot == held:
                 raise unreadable(where, "the robot has to carry either the tool or the work object")

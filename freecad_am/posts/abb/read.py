@@ -170,9 +170,9 @@ def _move(module: Module, move: re.Match[str], run: _Run, where: str) -> None:
     if linear and not run.nearest:
         raise unreadable(where, "the configurations that its positions name are supervised, and are none")
     if speed not in module.speeds or (letter == "V") != linear:
-        raise unreadable(where, f"{speed} is no speed of the module, or the move is told otherwise than by \\T or \\V")
+        raise unreadable(where, f"{speed} is not a speed of the module, or the move is told otherwise than by \\T or \\V")
     if zone != "fine" and zone not in module.zones:
-        raise unreadable(where, f"{zone} is no zone of the module")
+        raise unreadable(where, f"{zone} is not a zone of the module")
     frames = module.tool_and_object(tool, work_object, where)
     if run.frames is None:
         run.frames = frames

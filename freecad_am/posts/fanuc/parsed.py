@@ -122,6 +122,6 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
         if row < count:
             statement = _LINE.match(lines[row])
             if statement is None:
-                raise unreadable(f"{file} line {number + row}", f"{lines[row].strip()!r} is no instruction")
+                raise unreadable(f"{file} line {number + row}", f"{lines[row].strip()!r} is not an instruction")
             instructions.append(_Instruction(number + row, statement[1].strip()))
     return instructions, _Moves(*(getattr(moves, entry.name)[moving] for entry in dataclasses.fields(moves)))

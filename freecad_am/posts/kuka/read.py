@@ -173,7 +173,7 @@ def _set(outputs: tuple[int, int], number: int, run: _Run, where: str) -> None:
 
 
 def _done(line: str, run: _Run, where: str) -> None:
-    """An instruction that is no move and no setting: it is read ahead but for waits, so outputs and calls come after one."""
+    """An instruction, neither move nor setting: it is read ahead but for waits, so outputs and calls come after one."""
     if pause := _PAUSE.match(line):
         run.standing = _stopped(run, where)
         run.happens("wait", float(pause[1]), digits=0.5 * 10.0 ** -len(pause[2] or "") if pause[2] else 0.0)

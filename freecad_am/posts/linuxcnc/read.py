@@ -57,7 +57,7 @@ class _State:
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
-    """All moves of the files in the order of execution, beginning with the one that is no sub.
+    """All moves of the files in the order of execution, beginning with the one that is not a sub.
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
@@ -66,12 +66,12 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     for file, content in files.items():
         name, lines = file.rpartition(".")[0].upper(), _lines(file, content)
         if not file.lower().endswith(".ngc") or not lines or lines[-1][1] != "M2":
-            raise unreadable(file, "it is no program that ends with M2")
+            raise unreadable(file, "it is not a program that ends with M2")
         programs[name] = lines[:-1]
         if not (lines[0][1] == f"O<{name}> SUB" and lines[-2][1] == f"O<{name}> ENDSUB"):
             main.append(name)
     if len(main) != 1:
-        raise unreadable("program", f"there are {len(main)} programs that are no subs, expected one")
+        raise unreadable("program", f"there are {len(main)} programs that are not subs, expected one")
     state = _State(programs)
     _follow(main[0], programs[main[0]], state, ())
     if state.track.on or state.loop[0]:

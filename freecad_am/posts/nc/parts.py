@@ -42,7 +42,8 @@ def refuse_words(program: Program, taken: frozenset[str]) -> None:
         return
     for key, word in words.items():
         if not re.fullmatch(r"M\d{1,3}|H\d{1,2}=\d{1,5}", word):
-            raise InputError("DEPOSIT_WORD", key, f"{word!r} is no word such as M7 or H2=1; give one for on and one for off")
+            raise InputError("DEPOSIT_WORD", key,
+                             f"{word!r} is not a word such as M7 or H2=1; give one for on and one for off")
         if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in taken or (word.startswith("H") and "H" in taken):
             raise InputError("DEPOSIT_WORD", key, f"{word} means something else to the controller; use another word")
     if program.nc.deposit_on == program.nc.deposit_off:
@@ -60,7 +61,7 @@ def refuse_wire_output(program: Program, last: int) -> None:
 
 
 def refuse_setup(post: str, motion: str, setup: str) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for what is no machine with rotary axes; both motions of these can be said."""
+    """Raises InputError UNSUPPORTED_SETUP for what is not a machine with rotary axes; both motions of these can be said."""
     if setup != "rotary-table":
         raise InputError(
             "UNSUPPORTED_SETUP", "cell.setup", f"the post {post} cannot write {setup} ({motion} motion), only rotary-table"

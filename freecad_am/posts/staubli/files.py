@@ -113,7 +113,7 @@ def numbers(data: Data, names: Sequence[str], where: str) -> tuple[Array, float]
     texts = [value.get(name, "0") for value in data.values for name in names]
     together = " ".join(texts) + " "
     if texts and not _PLAIN.fullmatch(together):
-        raise unreadable(where, "a value is no plain number")
+        raise unreadable(where, "a value is not a plain number")
     decimals = max(map(len, _DECIMALS.findall(together)), default=0)
     return np.array(texts, dtype=np.float64).reshape(-1, len(names)), 0.5 * 10.0**-decimals
 

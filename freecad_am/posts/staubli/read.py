@@ -85,7 +85,7 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
     """Carry out the statements of a program in order, and of those it calls."""
     here = (app.folder, name)
     if name not in app.programs or here in callers:
-        raise unreadable(app.folder, f"{name} is no program of it, or calls itself")
+        raise unreadable(app.folder, f"{name} is not a program of it, or calls itself")
     statements = iter(app.programs[name])
     for number, line in statements:
         where = f"{app.folder}/{name}.pgx line {number}"
@@ -124,14 +124,14 @@ def _load(
     if not rest[0].startswith("popUpMsg(") or rest[1:] != ["return", "endIf"]:
         raise unreadable(where, "a part is loaded without stopping where it cannot be")
     if run.on or f"{app.folder}/{part}" not in run.found or alias not in app.libraries:
-        raise unreadable(where, f"{part} is loaded while depositing, is not there, or {alias} is no library")
+        raise unreadable(where, f"{part} is loaded while depositing, is not there, or {alias} is not a library")
     run.loaded[app.folder, alias] = f"{app.folder}/{part}"
 
 
 def _library(app: Application, alias: str, run: _Run, where: str) -> Application | None:
     """The application behind an alias; None for one that stands elsewhere on the controller."""
     if alias not in app.libraries:
-        raise unreadable(where, f"{alias} is no library of the project")
+        raise unreadable(where, f"{alias} is not a library of the project")
     if (app.folder, alias) in run.loaded:
         return run.found[run.loaded[app.folder, alias]]
     if not app.libraries[alias].startswith("Disk://"):
@@ -157,7 +157,7 @@ def _other(app: Application, line: str, run: _Run, where: str) -> None:
 def _link(app: Application, name: str, letter: str, where: str) -> str:
     data = app.data.get(name, Data("", ()))
     if data.kind != "dio" or len(data.values) != 1 or f"%{letter}" not in data.values[0].get("link", ""):
-        raise unreadable(where, f"{name} is no digital {'output' if letter == 'Q' else 'input'} of the project")
+        raise unreadable(where, f"{name} is not a digital {'output' if letter == 'Q' else 'input'} of the project")
     return data.values[0]["link"]
 
 

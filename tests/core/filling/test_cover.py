@@ -247,6 +247,6 @@ def test_ribs_thinner_than_a_bead_are_filled_in_all_their_branches(loops, least,
 
 
 def test_points_of_a_region_get_no_bead_of_their_own():
-    """What runs to a point is no rib: beads there would stand out of it by half."""
+    """What runs to a point is not a rib: beads there would stand out of it by half."""
     region, = regions(shapes.polygon((0, 0), (20, 0), (20, 12), (0, 12), (-40, 6)))
     assert min(curve.points[:, 0].min() for curve in fill(region, BEADS)) > -25.0

@@ -63,7 +63,7 @@ def test_lines_that_are_no_points_are_left_out_and_told():
     lines.append("nan;1;2")
     found = point_file.parse("\n".join(lines).encode(), "scan.csv")
     assert len(found.points) == len(POINTS) - 2
-    assert "2 lines that are no points are left out, the first is line 6" in told(found)
+    assert "2 lines that are not points are left out, the first is line 6" in told(found)
     assert "1 points without finite" in told(found) and found.issues[0].level == "warning"
 
 

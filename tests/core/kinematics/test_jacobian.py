@@ -126,7 +126,7 @@ def test_rate_is_the_derivative_along_the_joints(chain):
         return values[:, -1] / values[:, 0]
 
     wanted = (condition_at(step) - condition_at(-step)) / (2 * step)
-    # where the smallest two values meet, or it is almost nought, a difference is no derivative
+    # where the smallest two values meet, or it is almost nought, a difference is not a derivative
     values = singular_values(jac.jacobian(chain, q, points))
     smooth = (values[:, -1] > 1e-3) & (values[:, -2] > 1.05 * values[:, -1]) & (values[:, 0] > 1.05 * values[:, 1])
     assert smooth.sum() > 100

@@ -185,11 +185,11 @@ BAD = {
     "acceleration of nought": (
         changed("joints", 5, "max_acceleration", value=0), "joints[5].max_acceleration", "more than 0",
     ),
-    "jerk that is no number": (changed("joints", 1, "max_jerk", value="much"), "joints[1].max_jerk", "much"),
+    "jerk that is not a number": (changed("joints", 1, "max_jerk", value="much"), "joints[1].max_jerk", "much"),
     "shape of no link": (changed("shapes", value={"joint_9": {"file": "a.stl"}}), "shapes", "'joint_9' is not known"),
     "shape without a file": (changed("shapes", value={"base": {"scale": 2}}), "shapes.base", "'file' is missing"),
     "shape of a wrong format": (
-        changed("shapes", value={"joint_2": {"file": "a.dae"}}), "shapes.joint_2.file", "a.dae is no shape",
+        changed("shapes", value={"joint_2": {"file": "a.dae"}}), "shapes.joint_2.file", "a.dae is not a shape",
     ),
     "shape of no size": (
         changed("shapes", value={"base": {"file": "a.stl", "scale": 0}}), "shapes.base.scale", "1000 for m",

@@ -73,7 +73,7 @@ def test_signs_of_a_table_turn_its_joints():
     turned = dh.Table(rows, table.before, table.after)
     q = joints(20, 6)
     np.testing.assert_allclose(dh.chain_of(turned).forward(q), dh.chain_of(table).forward(q * signs), atol=1e-9)
-    with pytest.raises(InputError, match=r"row 2: 3 is no sign"):
+    with pytest.raises(InputError, match=r"row 2: 3 is not a sign"):
         dh.chain_of(dh.Table((table.rows[0], dh.Row(0, 0, 0, 0, 3)), np.eye(4), np.eye(4)))
 
 
@@ -328,7 +328,7 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
 
 
 @pytest.mark.parametrize("old,new,line,words", [
-    ('"0 0 2"', '"0 0 x"', 14, "'x', which is no number"),
+    ('"0 0 2"', '"0 0 x"', 14, "'x', which is not a number"),
     ('"0 0 2"', '"0 0"', 14, "is not 3 numbers"),
     ('"0 0 2"', '"0 0 0"', 14, "has no direction"),
     ('type="revolute"', 'type="floating"', 13, "is floating"),

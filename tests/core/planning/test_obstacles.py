@@ -178,11 +178,11 @@ def test_texts_of_obstacles_say_what_they_are():
 
 
 @pytest.mark.parametrize(("text", "told"), [
-    ("table.step", "'table.step' is no obstacle; write such as"),
+    ("table.step", "'table.step' is not an obstacle; write such as"),
     ("table.step at 0 0 0", "'0 0 0' are not 6 numbers"),
     ("table.step at 0 0 zero 0 0 0", "are not 6 numbers"),
     ("box 1 2 at 0 0 0 0 0 0", "'1 2' are not 3 numbers"),
-    ("box 1 2 0 at 0 0 0 0 0 0", "1 2 0 mm is no box"),
+    ("box 1 2 0 at 0 0 0 0 0 0", "1 2 0 mm is not a box"),
     ("a.stl at 0 0 0 0 0 0; b/a.stl at 0 0 0 0 0 0", "2 of them are called 'a'"),
 ])  # fmt: skip
 def test_texts_that_say_nothing_are_refused(text, told):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads that are no circles, degrees 0 to 6: seeded random curves in space, closed and open, checked by other means."""
+"""Beads that are not circles, degrees 0 to 6: seeded random curves in space, closed and open, checked by other means."""
 
 import dataclasses
 

@@ -202,7 +202,7 @@ def test_a_track_that_is_too_short_is_told(track, tmp_path):
 
 
 @pytest.mark.parametrize(("external", "code", "says"), [
-    ("motoman-motopos-d500 at 0 0 0 0 0 0 carries robot", "NOT_YET", "carries the robot and is no track"),
+    ("motoman-motopos-d500 at 0 0 0 0 0 0 carries robot", "NOT_YET", "carries the robot and is not a track"),
     ("kuka-kl100-2 at 0 0 0 0 0 0 carries part", "NOT_YET", "slides and carries the part"),
     ("kuka-kl100-2 at 0 0 0 0 0 0 carries robot; kuka-kl100-2 at 0 900 0 0 0 0 carries robot", "NOT_YET", "2 mechanisms"),
 ])

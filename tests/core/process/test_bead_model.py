@@ -147,7 +147,7 @@ def test_a_table_of_the_users_own(tmp_path):
         bead_table.load("other.csv", tmp_path)
     assert caught.value.code == "NO_FILE"
     (tmp_path / "bin.csv").write_bytes(bytes(range(256)))
-    with pytest.raises(InputError, match="no text in UTF-8") as caught:
+    with pytest.raises(InputError, match="not text in UTF-8") as caught:
         bead_table.load("bin.csv", tmp_path)
     assert caught.value.code == "BAD_TABLE" and caught.value.where == "bin.csv"
 

@@ -56,7 +56,7 @@ def test_smooth_keeps_band_and_turn(compared):
     smooth, exact = compared["smooth"], compared["constant-distance"]
     assert smooth.least >= 4.0 and smooth.most <= 6.0 and smooth.corners == 0
     assert smooth.turn <= np.radians(6.0)
-    assert np.radians(6.0) < exact.turn < np.radians(60.0)  # beside corners; a corner is no turn per mm
+    assert np.radians(6.0) < exact.turn < np.radians(60.0)  # beside corners; a corner is not a turn per mm
 
 
 def test_the_figures_hang_together(compared):

@@ -34,7 +34,7 @@ class BeadCurve:
 @dataclass(frozen=True, eq=False)
 class Curves:
     """What is laid, in this order. surroundings: substrate and fixtures, as bodies. depths: None, a part has no volume.
-    edges: names of those of a shape that were chosen, none where all of them are; None of what is no shape's."""
+    edges: names of those of a shape that were chosen, none where all of them are; None of what is not a shape's."""
 
     label: str
     curves: tuple[BeadCurve, ...]

@@ -16,7 +16,7 @@ from ..columns import lengths
 
 # a row of points that turns by more than this has a corner there, where nothing else is known, rad
 CORNER = np.radians(35.0)
-# a segment so many times as long as one beside it is no piece of the same arc: a circle through both would bow it most
+# a segment so many times as long as one beside it is not a piece of the same arc: a circle through both would bow it most
 LONG = 3.0
 
 

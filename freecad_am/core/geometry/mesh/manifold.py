@@ -18,7 +18,7 @@ from ..walls.surface import dot
 from .refined import Edges
 from .triangle_mesh import chains
 
-SEVERAL = 64  # triangles of one edge that are told apart; what has more is no solid
+SEVERAL = 64  # triangles of one edge that are told apart; what has more is not a solid
 
 
 class Hole(NamedTuple):

@@ -43,7 +43,7 @@ def repaired(points: Array, triangles: Index, label: str, hole: float = 0.0, cro
     InputError BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, NO_SOLID, SELF_CROSSING.
     """
     if not len(triangles) or not np.isfinite(points).all():
-        raise InputError("BAD_FILE", label, "the mesh has no triangles, or points that are no numbers; export it again")
+        raise InputError("BAD_FILE", label, "the mesh has no triangles, or points that are not numbers; export it again")
     told: list[str] = []
     mended: list[str] = []
     vertices, corners = _closed(points, triangles, told)

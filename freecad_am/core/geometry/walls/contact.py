@@ -181,7 +181,7 @@ def _with_corners(
             break
     span = np.linalg.norm(points[at] - points[following[at]], axis=1)
     kept = ~flat & (np.linalg.norm(p - middle, axis=1) < 2.0 * span + 1e-9)
-    if ground.facets and kept.any():  # planes of facets that are no neighbours meet above the solid
+    if ground.facets and kept.any():  # planes of facets that are not neighbours meet above the solid
         kept[kept] = np.abs(ground.signed(p[kept])) < 1e-5
     key = np.r_[np.arange(count), at[kept] + 0.5]
     order = np.argsort(key, kind="stable")

@@ -128,7 +128,7 @@ def _bare(samples: Array, corners: Index, label: str, issues: tuple[Issue, ...])
 
 def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
     if not len(triangles) or not np.isfinite(points).all():
-        raise InputError("BAD_FILE", label, "the mesh has no triangles, or points that are no numbers; export it again")
+        raise InputError("BAD_FILE", label, "the mesh has no triangles, or points that are not numbers; export it again")
     found = connected_triangles(points, triangles, label, mend)
     mended = list(found.mended)
     crossed = crossings(found.vertices, found.triangles, WELDS[-1])

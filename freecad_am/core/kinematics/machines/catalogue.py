@@ -31,9 +31,9 @@ class Entry:
 
 
 def entries(folders: Sequence[Path | str] = ()) -> list[Entry]:
-    """All machines, built in and in the user's `folders`, in order of id; files that are no machine files are left out.
+    """All machines, built in and in the user's `folders`, in order of id; files that are not machine files are left out.
 
-    Raises InputError BAD_MACHINE for reach or payload that are no figures.
+    Raises InputError BAD_MACHINE for reach or payload that are not figures.
     """
     names = [name for name, title in machine.known(folders) if not title.startswith(machine.REFUSED)]
     return [_entry(name, read(machine.file_of(name, folders))) for name in names]

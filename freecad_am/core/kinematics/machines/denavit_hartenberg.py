@@ -83,7 +83,7 @@ def _check(table: Table) -> None:
         if not np.isfinite([row.theta, row.d, row.a, row.alpha]).all():
             raise InputError("BAD_TABLE", where, "theta, d, a and alpha must be numbers")
         if row.sign not in (1, -1):
-            raise InputError("BAD_TABLE", where, f"{row.sign} is no sign; use 1 or -1")
+            raise InputError("BAD_TABLE", where, f"{row.sign} is not a sign; use 1 or -1")
 
 
 def _row(row: Row, modified: bool) -> tuple[Array, Array]:

@@ -39,7 +39,7 @@ from .file import Node, read
 BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
 NOT_TOLD = "a URDF does not tell what the controller shows"
-REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is no machine file
+REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is not a machine file
 KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "payload",
     "verified", "check_poses", "shapes",
@@ -145,7 +145,7 @@ def unit_values(sliding: NDArray[np.bool_]) -> Array:
 def known(folders: Sequence[Path | str] = ()) -> list[tuple[str, str]]:
     """Id and title of every machine, built in and in the user's `folders`, in order of id.
 
-    A file that is no machine file stands among them with what is wrong in place of a title: `load` refuses it alone.
+    A file that is not a machine file stands among them with what is wrong in place of a title: `load` refuses it alone.
     """
     return [(name, _title(path)) for name, path in sorted(_files(folders).items())]
 

@@ -93,7 +93,9 @@ class Element:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise self.bad(f"{name}={self.attributes.get(name, word)!r} of <{self.tag}> holds {word!r}, which is no number")
+            raise self.bad(
+                f"{name}={self.attributes.get(name, word)!r} of <{self.tag}> holds {word!r}, which is not a number"
+            )
         return value
 
 

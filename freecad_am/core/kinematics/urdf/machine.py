@@ -89,5 +89,5 @@ def grounded_chain(chain: Chain) -> tuple[Chain, Array]:
 
 
 def is_mechanism(chain: Chain) -> bool:
-    """Whether a chain is no machine by itself, but what stands beside a robot: a track, a turntable, a positioner."""
+    """Whether a chain is not a machine by itself, but what stands beside a robot: a track, a turntable, a positioner."""
     return chain.axes <= MECHANISM

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Rotations at which the links of the robot stay clear.
 
-Those at which a link comes too near are no candidates of the search. What the local search makes of one that is clear may
+Those at which a link comes too near are not candidates of the search. What the local search makes of one that is clear may
 come too near again: then the polynomial that goes furthest towards it and stays clear is taken.
 """
 

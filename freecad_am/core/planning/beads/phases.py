@@ -97,7 +97,7 @@ def _with_points(
     columns["points"][new], columns["tool"][new] = cell.tip_in_part(flange)
     condition[new] = condition[new] if condition_at is None else condition_at(flange, joints[new])
     columns["speed"][new] = bead.speed[at]
-    if bead.tangents is not None:  # a point within a segment is no corner
+    if bead.tangents is not None:  # a point within a segment is not a corner
         columns["tangents"][new] = (bead.tangents[segment, 1] + bead.tangents[at, 0])[:, None]
     for name in _UNIT:
         if name in columns:

@@ -52,7 +52,7 @@ def parted(phase: Roles, own: ProcessParameters) -> list[tuple[slice, int | None
 
 
 def _ahead(schedule: int | None, parameters: ProgramParameters) -> list[Block]:
-    """What stands before a bead where its schedule is no part of the arc instruction."""
+    """What stands before a bead where its schedule is not a part of the arc instruction."""
     if schedule is None or parameters.dry_run or parameters.schedule.by == ARC:
         return []
     if parameters.schedule.by == CALL:

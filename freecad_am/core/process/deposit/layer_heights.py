@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How high filled layers that are no planes lie over each other: how far the nearest bead below is says how beads lie beside
+"""How high filled layers that are not planes lie over each other: how far the nearest bead below is tells how beads lie by
 each other, so the height is taken along its build direction."""
 
 from __future__ import annotations

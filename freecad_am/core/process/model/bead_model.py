@@ -120,7 +120,7 @@ def fit(
     Least squares, linear in the three coefficients; two where all beads are straight, radii infinite. feeds: (n,) mm/s of
     beads laid at several, of which `wire_feed` is the nominal one.
 
-    InputError 'TOO_FEW_ROWS', 'BAD_TABLE' (values that are no beads: not positive, not finite), 'COLLINEAR_TABLE' (radii
+    InputError 'TOO_FEW_ROWS', 'BAD_TABLE' (values that are not beads: not positive, not finite), 'COLLINEAR_TABLE' (radii
     or speeds do not vary, or only together) or 'NO_MODEL' (width does not fall with speed).
     """
     columns = {

@@ -57,7 +57,7 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     """The beads of a built-in table ('csw': table 1 of Dai 2020; 'li-2025': of table 5 of Li 2025) or of the table at a
     path, relative to `folder`.
 
-    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column, or that it is no text).
+    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column, or that it is not a text).
     """
     path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
     try:
@@ -65,7 +65,7 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     except (OSError, ValueError) as error:
         if isinstance(error, UnicodeError):
             raise InputError(
-                "BAD_TABLE", name, "it is no table: it holds bytes that are no text in UTF-8; save it as CSV in UTF-8",
+                "BAD_TABLE", name, "it is not a table: it holds bytes that are not text in UTF-8; save it as CSV in UTF-8",
             ) from None
         why = (getattr(error, "strerror", None) or str(error) or "no access").lower()
         raise InputError(

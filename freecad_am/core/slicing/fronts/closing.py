@@ -103,7 +103,7 @@ def _between(below: list[SpaceCurve], above: list[SpaceCurve], places: Array, co
 class _Gaps(NamedTuple):
     """Where gaps may be: a fine mesh, and its vertices (n,) that must not be farther than `covered` heights from a bead.
 
-    cut: those of its vertices (k,) that lie on its border, but on none of the wall: what reaches them is no gap between
+    cut: those of its vertices (k,) that lie on its border, but on none of the wall: what reaches them is not a gap between
     fronts. levels: heights, where borders of gaps are drawn. ends: points (k, 3) where layers finish."""
 
     wall: Wall

@@ -17,7 +17,7 @@ STEPS = 12
 ROUNDS = 12
 SETTLED = 1e-6  # of the height; points off by more have not found their place
 SAME_PLACE = 1e-5  # mm; of two nodes nearer than this one goes, and it is not the corner
-SMOOTH = 1.0 - 1e-9  # cosine of the turn at a node that is no corner
+SMOOTH = 1.0 - 1e-9  # cosine of the turn at a node that is not a corner
 WITHIN = 5e-5  # mm; at INSIDE, where arcs are off by more than half of what they are anywhere between the nodes
 # of each arc; where the wall's curvature jumps within it, its middle may be right by chance
 INSIDE = np.array([1.0 / 3.0, 2.0 / 3.0])

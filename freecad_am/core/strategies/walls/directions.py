@@ -54,8 +54,8 @@ def plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Arr
     normal = wall.symmetry_normal if isinstance(wall, SurfaceWall) else None
     if normal is None:
         raise InputError(
-            "NO_SYMMETRY_PLANE", "build_direction.mode", f"{wall.label} is no bend of a torus, so its plane of symmetry is "
-            "not known; give its normal as build_direction.plane, or use local, layer or fixed",
+            "NO_SYMMETRY_PLANE", "build_direction.mode", f"{wall.label} is not a bend of a torus, so its plane of symmetry "
+            "is not known; give its normal as build_direction.plane, or use local, layer or fixed",
         )
     return normal
 
