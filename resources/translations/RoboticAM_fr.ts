@@ -1212,7 +1212,7 @@
         <translation> ou </translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>$OUT[{0}] to $OUT[{1}] tell the schedule, and one of them switches the deposit; use other ones, or another program.deposit_output</source>
         <translation>$OUT[{0}] à $OUT[{1}] transmettent le programme de soudage, et l&apos;une d&apos;elles commute le dépôt ; prenez-en d&apos;autres, ou un autre program.deposit_output</translation>
     </message>
@@ -1232,17 +1232,17 @@
         <translation>, et </translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>. At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the section, at {0} to {1} mm/s of wire</source>
         <translation>. Au même dévidage les passages plus rapides sont plus bas ; process.wire.feed_mode: proportional garderait la section, à {0} à {1} mm/s de fil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>. The wire runs in proportion to the speed, at {0} to {1} mm/s, and keeps their section</source>
         <translation>. Le fil court en proportion de la vitesse, de {0} à {1} mm/s, et garde leur section</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
         <source>. Times {0} it would reach {1}: is its file in {2}? Then export it in mm, or give scale: {3} mm with it, as part.scale (in the window: Meshes, Scale)</source>
         <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez `scale: {3} mm` avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
     </message>
@@ -1267,42 +1267,42 @@
         <translation>95 % des écarts absolus sous</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>: it is up to {0} mm wider there and {1} mm higher, by the bead model</source>
         <translation>: il y est jusqu&apos;à {0} mm plus large et {1} mm plus haut, d&apos;après le modèle de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>: it is up to {0} mm wider there and {1} mm higher, by the bead model; slower than {2} mm/s nothing was measured</source>
         <translation>: il y est jusqu&apos;à {0} mm plus large et {1} mm plus haut, d&apos;après le modèle de cordon ; au-dessous de {2} mm/s rien n&apos;a été mesuré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>: it is up to {0} mm wider there, by the bead model</source>
         <translation>: il y est jusqu&apos;à {0} mm plus large, d&apos;après le modèle de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>: it is up to {0} mm wider there, by the bead model; slower than {1} mm/s nothing was measured</source>
         <translation>: il y est jusqu&apos;à {0} mm plus large, d&apos;après le modèle de cordon ; au-dessous de {1} mm/s rien n&apos;a été mesuré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>; between the edges of its triangles it runs smoothly, up to {0} mm off them, about as far as they are off what they stand for</source>
         <translation>; entre les arêtes de ses triangles elle court régulièrement, à {0} mm d&apos;eux au plus, à peu près autant qu&apos;ils s&apos;écartent de ce qu&apos;ils représentent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>&lt;{0}&gt; has no &lt;{1}&gt;</source>
         <translation>&lt;{0}&gt; n&apos;a pas de &lt;{1}&gt;</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>&lt;{0}&gt; has no {1}</source>
         <translation>&lt;{0}&gt; n&apos;a pas de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>&lt;{0}&gt; {1} has no &lt;{2}&gt;</source>
         <translation>&lt;{0}&gt; {1} n&apos;a pas de &lt;{2}&gt;</translation>
     </message>
@@ -1352,7 +1352,7 @@
         <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>A stop of the program switches the deposit off</source>
         <translation>Un arrêt du programme coupe le dépôt</translation>
     </message>
@@ -1367,12 +1367,12 @@
         <translation>Un tableau de Denavit et Hartenberg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move</source>
         <translation>AOUT entre deux mouvements d&apos;un job INFORM est réglé quand sa ligne est atteinte, ce que les coins arrondis déplacent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>AO[] between two moves of a FANUC is set when its line is read, ahead of the motion</source>
         <translation>AO[] entre deux mouvements d&apos;un FANUC est réglé à la lecture de sa ligne, avant le mouvement</translation>
     </message>
@@ -1467,7 +1467,7 @@
         <translation>Le long du temps du travail, ou le long de sa trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>An axis without limits has the Continuous Turn option</source>
         <translation>Un axe sans limites a l’option Continuous Turn</translation>
     </message>
@@ -1507,7 +1507,7 @@
         <translation>Un autre panneau de tâche est ouvert ; fermez-le d&apos;abord.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one</source>
         <translation>ArcL va à la vitesse de ses welddata tant que l&apos;arc brûle, autant qu&apos;on sache, et non à celle qui est planifiée</translation>
     </message>
@@ -1577,7 +1577,7 @@
         <translation>Axe à l&apos;arrêt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>BASE_DATA and TOOL_DATA of the numbers in the program are those of the cell, with their load</source>
         <translation>Les BASE_DATA et TOOL_DATA des numéros du programme sont ceux de la cellule, avec leur charge</translation>
     </message>
@@ -1792,12 +1792,12 @@
         <translation>Irréalisable :</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>Cartesian motion with the part on the robot means remote TCP, and what the position records of such moves (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`</source>
         <translation>le mouvement cartésien avec la pièce sur le robot veut dire TCP distant, et ce que représentent les enregistrements de position de tels mouvements (RX RY RZ RW RP RR) n&apos;est pas assez compris pour les écrire ; utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
         <source>Cartesian positions are written only of an arm reaching forwards; use `branch: [front, ...]` or `motion: joint`</source>
         <translation>les positions cartésiennes ne sont écrites que pour un bras tendu vers l&apos;avant ; utilisez `branch: [front, ...]` ou `motion: joint`</translation>
     </message>
@@ -2032,7 +2032,7 @@
         <translation>Condition du jacobien (0 est singulier)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>Configuration supervision may be off (ConfL), and joint values mean what the machine file says</source>
         <translation>La surveillance des configurations peut être désactivée (ConfL), et les valeurs articulaires signifient ce que dit le fichier de machine</translation>
     </message>
@@ -2117,7 +2117,7 @@
         <translation>Masse volumique</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/preferences.py"/>
+        <location filename="../../freecad_am/objects/fields/preferences.py"/>
         <source>Density (g/cm³)</source>
         <translation>Masse volumique (g/cm³)</translation>
     </message>
@@ -2302,7 +2302,7 @@
         <translation>Marche à vide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>E1 of the robot&apos;s own motion group</source>
         <translation>E1 du groupe de mouvement du robot lui-même</translation>
     </message>
@@ -2322,7 +2322,7 @@
         <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
         <source>Edge{0} at {1}</source>
         <translation>Edge{0} en {1}</translation>
     </message>
@@ -2747,7 +2747,7 @@
         <translation>Guide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens.py"/>
+        <location filename="../../freecad_am/posts/siemens/post.py"/>
         <source>H words have address extensions to {0}, not {1}; use another output, or program.nc.deposit_on and deposit_off</source>
         <translation>les mots H ont des extensions d&apos;adresse jusqu&apos;à {0}, et non {1} ; utilisez une autre sortie, ou program.nc.deposit_on et deposit_off</translation>
     </message>
@@ -2927,7 +2927,7 @@
         <translation>Moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens.py"/>
+        <location filename="../../freecad_am/posts/siemens/post.py"/>
         <source>H{0} switches the deposit; use another one for schedules</source>
         <translation>H{0} commute le dépôt ; prenez-en un autre pour les programmes de soudage</translation>
     </message>
@@ -3037,7 +3037,7 @@
         <translation>Trajectoire articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>Joint programs count on the nominal arm; the calibrated one stands up to millimetres beside it</source>
         <translation>Les programmes articulaires comptent sur le bras nominal ; le bras étalonné s&apos;en écarte jusqu&apos;à quelques millimètres</translation>
     </message>
@@ -3052,7 +3052,7 @@
         <translation>Vitesses articulaires en %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>Joint speeds of the machine file are those the controller calls 100 %</source>
         <translation>Les vitesses articulaires du fichier de machine sont celles que la commande appelle 100 %</translation>
     </message>
@@ -3062,7 +3062,7 @@
         <translation>Vitesses articulaires pendant le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>Joint values mean what the machine file says, J3 above all</source>
         <translation>Les valeurs articulaires ont le sens que dit le fichier machine, J3 surtout</translation>
     </message>
@@ -3342,7 +3342,7 @@
         <translation>Peu de matière est déposée deux fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>Loaded parts and tools that stand on other tools have been tried with a dry run</source>
         <translation>Le chargement des parties et les outils portés par d’autres outils ont été essayés à vide</translation>
     </message>
@@ -3392,7 +3392,7 @@
         <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; sans lui la sortie logique le fait.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>M428 and M429 switch the kinematics, and the work offset is that of the remarks</source>
         <translation>M428 et M429 commutent la cinématique, et l’origine pièce est celle des remarques</translation>
     </message>
@@ -3947,12 +3947,12 @@
         <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>P[{0}] is not recorded</source>
         <translation>P[{0}] n&apos;est pas enregistré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>P[{0}] is recorded in another U{1} than the one selected</source>
         <translation>P[{0}] est enregistré dans un autre U{1} que celui qui est choisi</translation>
     </message>
@@ -3982,17 +3982,17 @@
         <translation>Trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>Payload is set and the monitor speed is 100 %</source>
         <translation>La charge est réglée et la vitesse moniteur est de 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>Payload is set and the override is 100 %</source>
         <translation>La charge est réglée et la correction de vitesse est de 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>Payload is set, safety limits allow the speeds, and the speed slider is at 100 %</source>
         <translation>La charge est réglée, les limites de sécurité permettent les vitesses, et le curseur de vitesse est à 100 %</translation>
     </message>
@@ -4277,7 +4277,7 @@
         <translation>Prouvées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>Pulses per degree of the machine file are the controller&apos;s, and zero pulses the zero of its angles</source>
         <translation>Les impulsions par degré du fichier machine sont celles de la commande, et zéro impulsion le zéro de ses angles</translation>
     </message>
@@ -4697,7 +4697,7 @@
         <translation>Signe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>Signals do1, di1 and so on have these names</source>
         <translation>Les signaux portent les noms do1, di1 et ainsi de suite</translation>
     </message>
@@ -4792,7 +4792,7 @@
         <translation>Solides sans support</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>Solid{0} ({1} to {2})</source>
         <translation>Solid{0} ({1} à {2})</translation>
     </message>
@@ -4987,7 +4987,7 @@
         <translation>Commuter la cinématique</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens.py"/>
+        <location filename="../../freecad_am/posts/siemens/post.py"/>
         <source>TRAORI and the work offset are those of the machine file and of the remarks</source>
         <translation>TRAORI et l’origine pièce sont ceux du fichier machine et des remarques</translation>
     </message>
@@ -5092,12 +5092,12 @@
         <translation>Les fichiers de la commande ; double-cliquez pour les lire et les exporter.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>The controller&apos;s world is the robot&apos;s base</source>
         <translation>Le repère monde de la commande est la base du robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>The controller&apos;s world is the robot&apos;s base, and joint speeds are its nominal ones</source>
         <translation>Le repère monde de la commande est la base du robot, et les vitesses articulaires sont les nominales</translation>
     </message>
@@ -5112,17 +5112,17 @@
         <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>The deposit output switches the process</source>
         <translation>La sortie de dépôt commute le procédé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>The deposit output switches the process, and a stop of the program switches it off</source>
         <translation>La sortie du dépôt commande le procédé, et un arrêt du programme la coupe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>The digital and analogue pins are connected to the process</source>
         <translation>Les broches numériques et analogiques sont reliées au procédé</translation>
     </message>
@@ -5177,7 +5177,7 @@
         <translation>L&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>The feed override is 100 %</source>
         <translation>La correction d’avance est de 100 %</translation>
     </message>
@@ -5287,7 +5287,7 @@
         <translation>Le corps dont le repère est la bride, avec son Z hors d&apos;elle : tool0 dans les fichiers de ROS-Industrial</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>The load of t_am is set, and the speed override is 100 %</source>
         <translation>La charge de t_am est réglée, et la vitesse générale est à 100 %</translation>
     </message>
@@ -5357,12 +5357,12 @@
         <translation>Le numéro d&apos;un programme de soudage est mis sur une sortie de groupe ; nommé par les instructions d&apos;arc, qui commutent alors le dépôt ; ou est celui d&apos;un programme appelé.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>The outputs and inputs are linked to the process</source>
         <translation>Les sorties et entrées sont liées au procédé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>The override is 100 %</source>
         <translation>La vitesse générale est à 100 %</translation>
     </message>
@@ -5407,7 +5407,7 @@
         <translation>Le robot peut atteindre {} endroits d&apos;une grille de {:.0f} mm.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>The robot keeps the time of every move through the blends</source>
         <translation>Le robot tient la durée de chaque mouvement à travers les lissages</translation>
     </message>
@@ -5467,7 +5467,7 @@
         <translation>Le temps du travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>The tool file of the number in the job is the nozzle&apos;s tip, and speeds have the unit of the remarks</source>
         <translation>Le fichier outil du numéro dans le job est la pointe de la buse, et les vitesses ont l&apos;unité des remarques</translation>
     </message>
@@ -5477,12 +5477,12 @@
         <translation>L’outil reste loin des singularités pendant le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens.py"/>
+        <location filename="../../freecad_am/posts/siemens/post.py"/>
         <source>The tool offset has the torch&apos;s length, and G500 is the machine&apos;s zero</source>
         <translation>Le correcteur d’outil a la longueur de la torche, et G500 est le zéro machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>The tool table has the torch&apos;s length, and the kinematics has the machine file&apos;s offsets</source>
         <translation>La table d’outils a la longueur de la torche, et la cinématique a les décalages du fichier machine</translation>
     </message>
@@ -5537,7 +5537,7 @@
         <translation>Le fil amène ce que les cordons demandent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens.py"/>
+        <location filename="../../freecad_am/posts/siemens/post.py"/>
         <source>The words that switch the deposit and the inputs are taken up in the PLC</source>
         <translation>Les mots qui commutent le dépôt et les entrées sont traités dans l’automate</translation>
     </message>
@@ -5787,7 +5787,7 @@
         <translation>Torsion autour de x, deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>UFRAME and UTOOL of the numbers in the program are those of the cell</source>
         <translation>UFRAME et UTOOL aux numéros du programme sont ceux de la cellule</translation>
     </message>
@@ -5797,17 +5797,17 @@
         <translation>Fichier URDF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>URScript has no arc instructions</source>
         <translation>URScript n&apos;a pas d&apos;instructions d&apos;arc</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>URScript moves a tool that the flange carries, at its speed; with the part on the robot the tool stands and the speed at the deposition point is another one at every point of the part, which no documented instruction of URScript holds; use `motion: joint`</source>
         <translation>URScript déplace un outil porté par la bride, à la vitesse de celui-ci ; avec la pièce sur le robot, l&apos;outil est fixe et la vitesse au point de dépôt est une autre en chaque point de la pièce, ce qu&apos;aucune instruction documentée d&apos;URScript ne tient ; utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>URScript sets an output when the robot enters the blend before it, not where the bead asks for it</source>
         <translation>URScript règle une sortie quand le robot entre dans le lissage qui précède, et non où le cordon la demande</translation>
     </message>
@@ -5852,22 +5852,22 @@
         <translation>Repère utilisateur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>V has two units</source>
         <translation>V a deux unités</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>VAL 3 has no arc instructions</source>
         <translation>VAL 3 n&apos;a pas d&apos;instructions d&apos;arc</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>VAL 3 sets outputs while the moves before are still in the queue</source>
         <translation>VAL 3 règle les sorties pendant que les mouvements précédents sont encore dans la file</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>VJ is a share of the largest speeds of the machine file, those of the axis that takes longest</source>
         <translation>VJ est une part des plus grandes vitesses du fichier machine, celle de l&apos;axe qui met le plus de temps</translation>
     </message>
@@ -5902,7 +5902,7 @@
         <translation>Attente</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/preferences.py"/>
+        <location filename="../../freecad_am/objects/fields/preferences.py"/>
         <source>Wait between layers</source>
         <translation>Attente entre les couches</translation>
     </message>
@@ -6137,12 +6137,12 @@
         <translation>Fil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/preferences.py"/>
+        <location filename="../../freecad_am/objects/fields/preferences.py"/>
         <source>Wire diameter</source>
         <translation>Diamètre du fil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/preferences.py"/>
+        <location filename="../../freecad_am/objects/fields/preferences.py"/>
         <source>Wire feed</source>
         <translation>Dévidage du fil</translation>
     </message>
@@ -6247,27 +6247,27 @@
         <translation>`cell.deposition_point: [{0}]`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
         <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
         <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} of them in corners, first layer {5}, by up to {6} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
         <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, dont {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} of them in corners, first layer {5}, by up to {6} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
         <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, dont {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/smooth_spacing.py"/>
+        <location filename="../../freecad_am/core/slicing/tubes/smooth_spacing.py"/>
         <source>a band of {0} % is too narrow for {1} points around: use more of them</source>
         <translation>une bande de {0} % est trop étroite pour {1} points sur le tour : prenez-en davantage</translation>
     </message>
@@ -6282,7 +6282,7 @@
         <translation>un cordon suit la direction dans laquelle il est déposé, en {0} : la buse se gênerait elle-même ; donnez une autre strategy.direction, des faces, ou des directions dans le tableau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/wall_direction.py"/>
+        <location filename="../../freecad_am/core/slicing/directions/wall.py"/>
         <source>a build direction of {0} is normal to its plane of symmetry; use local</source>
         <translation>une direction de dépôt de {0} est normale à son plan de symétrie ; utilisez local</translation>
     </message>
@@ -6292,7 +6292,7 @@
         <translation>une cellule avec {0} n&apos;a pas de {1} qui place la pièce ; utilisez {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>a comment that may be carried out, or a line that is too long</source>
         <translation>un commentaire qui peut être exécuté, ou une ligne trop longue</translation>
     </message>
@@ -6307,12 +6307,12 @@
         <translation>une courbe est à {0} mm des faces dont elle doit avoir les normales, en {1} ; choisissez les faces sur lesquelles elle repose, ou donnez strategy.direction</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>a curved layer cannot be laid flat without distortion: beads are up to {0} % nearer together or farther apart than the bead spacing</source>
         <translation>une couche courbe ne se met pas à plat sans distorsion : des cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que le pas des cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>a gap of {0} mm between faces of {1} is bridged</source>
         <translation>un jour de {0} mm entre des faces de {1} est comblé</translation>
     </message>
@@ -6327,12 +6327,12 @@
         <translation>une couche sur tout le tour du moyeu est remplie de {0} ; strategy.fill = {1} est pour les régions qui ont une fin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/iso_parameter.py"/>
+        <location filename="../../freecad_am/core/slicing/tubes/iso_parameter.py"/>
         <source>a layer height of {0} mm is more than the wall&apos;s bend allows</source>
         <translation>une hauteur de couche de {0} mm est plus que ne permet le coude de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>a length such as 1 mm</source>
         <translation>une longueur comme 1 mm</translation>
     </message>
@@ -6342,7 +6342,7 @@
         <translation>un maillage n&apos;a ni cylindres ni cônes ; donnez strategy.base, ou une pièce solide comme substrat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>a mesh has no exact surfaces; a part of revolution needs a boundary representation: STEP, IGES or BREP</source>
         <translation>un maillage n&apos;a pas de surfaces exactes ; une pièce de révolution demande une représentation par les frontières : STEP, IGES ou BREP</translation>
     </message>
@@ -6352,67 +6352,67 @@
         <translation>un maillage n&apos;a pas de faces à choisir ; omettez-les</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>a move before G1, G21, G90 and a work offset are said</source>
         <translation>un mouvement avant que G1, G21, G90 et un décalage d&apos;origine soient dits</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>a move before G1, G90 and G710 are said</source>
         <translation>un mouvement avant que G1, G90 et G710 soient dits</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_numbers.py"/>
+        <location filename="../../freecad_am/posts/nc/numbers.py"/>
         <source>a move of {0} s cannot be written; moves take {1} to {2} s: use another speed or a larger chord error</source>
         <translation>un mouvement de {0} s ne peut pas être écrit ; les mouvements prennent de {1} à {2} s : utilisez une autre vitesse ou une plus grande erreur de corde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
         <source>a move of {0} s is longer than {1} s; raise the speed or add points</source>
         <translation>un mouvement de {0} s est plus long que {1} s ; augmentez la vitesse ou ajoutez des points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_numbers.py"/>
+        <location filename="../../freecad_am/posts/ur/numbers.py"/>
         <source>a move takes {0} ms, less than the {1} ms in which the controller steps; use a larger strategy.chord_error or a lower process.travel_speed</source>
         <translation>un mouvement dure {0} ms, moins que le pas de {1} ms de la commande ; utilisez un strategy.chord_error plus grand ou un process.travel_speed plus petit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_numbers.py"/>
+        <location filename="../../freecad_am/posts/abb/numbers.py"/>
         <source>a move takes {0} s, less than the {1} s that can be written; use a larger chord error or a lower speed</source>
         <translation>un mouvement prend {0} s, moins que les {1} s qui peuvent s&apos;écrire ; prenez une erreur de corde plus grande ou une vitesse plus faible</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <location filename="../../freecad_am/posts/nc/read.py"/>
         <source>a move without a feed of its own</source>
         <translation>un mouvement sans avance à lui</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_numbers.py"/>
+        <location filename="../../freecad_am/posts/staubli/numbers.py"/>
         <source>a move would need {0} % of the largest joint speed, which cannot be written; use another speed, so that it is {1} to 100 %</source>
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, ce qui ne peut pas être écrit ; utilisez une autre vitesse, pour qu&apos;il soit de {1} à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>a move would need {0} % of the largest joint speed, which is told in steps of {1} %; use another speed, so that it is {2} to 100 %</source>
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, qui se dit par pas de {1} % ; utilisez une autre vitesse, pour qu&apos;il soit de {2} à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>a part does not end</source>
         <translation>une partie ne finit pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>a part is loaded without stopping where it cannot be</source>
         <translation>une partie est chargée sans arrêt là où cela ne se peut pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>a point of {0} asks for another configuration of the arm</source>
         <translation>un point de {0} demande une autre configuration du bras</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>a position is moved to in another way than it is recorded</source>
         <translation>on va à une position autrement qu&apos;elle n&apos;est enregistrée</translation>
     </message>
@@ -6422,27 +6422,27 @@
         <translation>une position n&apos;est pas un nombre d&apos;au plus {0} mm ; exportez-le à nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_records.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>a position is recorded twice</source>
         <translation>une position est enregistrée deux fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <location filename="../../freecad_am/posts/nc/read.py"/>
         <source>a position needs X Y Z, and a move in axes before it</source>
         <translation>une position demande X Y Z, et un mouvement des axes avant elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>a position of a station or of base axes has a value for each of them from the first one on; use 1, not {0}</source>
         <translation>une position d&apos;une station ou d&apos;axes de base a une valeur pour chacun d&apos;eux à partir du premier ; utiliser 1, pas {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>a position on the part needs G94 and a work offset of its own</source>
         <translation>une position sur la pièce demande G94 et un décalage d&apos;origine à elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>a position on the part needs X Y Z and all rotary axes</source>
         <translation>une position sur la pièce demande X Y Z et tous les axes rotatifs</translation>
     </message>
@@ -6462,7 +6462,7 @@
         <translation>un rayon de {0} mm ne fait pas d&apos;arc entre des points distants de {1} mm ; donnez I et J</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_text.py"/>
+        <location filename="../../freecad_am/posts/kuka/text.py"/>
         <source>a rapid would need {0} % of the largest joint speed, and KRL is told whole percents of {1} to 100; use another rapid speed</source>
         <translation>un rapide demanderait {0} % de la plus grande vitesse articulaire, et KRL prend des pourcentages entiers de {1} à 100 ; prenez une autre vitesse rapide</translation>
     </message>
@@ -6472,32 +6472,32 @@
         <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>a schedule is told within a bead</source>
         <translation>un programme de soudage est transmis à l&apos;intérieur d&apos;un cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>a second U{0} is selected</source>
         <translation>un deuxième U{0} est choisi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <location filename="../../freecad_am/posts/nc/read.py"/>
         <source>a second analogue output is set</source>
         <translation>une seconde sortie analogique est réglée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>a second output is switched</source>
         <translation>une seconde sortie est commandée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>a speed such as 6 mm/s or 360 mm/min</source>
         <translation>une vitesse comme 6 mm/s ou 360 mm/min</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/room.py"/>
+        <location filename="../../freecad_am/core/planning/turns/fit.py"/>
         <source>a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with an endless axis</source>
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
     </message>
@@ -6512,7 +6512,7 @@
         <translation>une température est attendue autrement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>a time such as 2 s</source>
         <translation>un temps comme 2 s</translation>
     </message>
@@ -6527,77 +6527,77 @@
         <translation>un rail n&apos;a pas ici de nom à lui, c&apos;est {0} ; laisser unit de côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>a triangle in it has a point with a number of more than 64 bits</source>
         <translation>un triangle y a un point dont le numéro dépasse 64 bits</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>a turn per length such as 10 deg/mm</source>
         <translation>une rotation par longueur comme 10 deg/mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>a value is not a plain number</source>
         <translation>une valeur n&apos;est pas un nombre simple</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>a whole ring has no end to start from; cut it where it stands on the substrate</source>
         <translation>un anneau entier n&apos;a pas d&apos;extrémité d&apos;où partir ; coupez-le là où il repose sur le substrat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>a wire or sketch needs an axis to turn about; give one</source>
         <translation>un fil ou une esquisse demande un axe de rotation ; donnez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>a work offset of LinuxCNC turns about Z alone, and the part leans on the table by RX {0} and RY {1} deg; enter an upright origin, as cell.platform: [{2}, {3}, {4}, 0, 0, {5}], or use `motion: joint`</source>
         <translation>un décalage d&apos;origine de LinuxCNC ne tourne qu&apos;autour de Z, et la pièce penche sur la table de RX {0} et RY {1} deg ; entrez une origine droite, comme cell.platform: [{2}, {3}, {4}, 0, 0, {5}], ou utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>a {0} in {1} has a value that is not a number ({2})</source>
         <translation>un élément {0} de {1} a une valeur qui n&apos;est pas un nombre ({2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>a {0} in {1} lacks {2}</source>
         <translation>il manque {2} à un élément {0} de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>about {0} cm3 of beads are laid over others of their layer, {1} % of those of {2}: they come nearer to each other than they are wide, or cross; layers get higher there. Use narrower beads, or leave out what is there twice</source>
         <translation>environ {0} cm3 de cordons sont déposés sur d&apos;autres de leur couche, {1} % de ceux de {2} : ils s&apos;approchent plus que leur largeur, ou se croisent ; les couches y deviennent plus hautes. Prenez des cordons plus étroits, ou omettez ce qui est en double</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>about {0} cm3 of beads are laid over others of their layer, {1} % of {2}: where lines and their links meet contours, and where room is left for less than a bead; layers get higher there. Use fill: contours, narrower beads, or a wider strategy.gap</source>
         <translation>environ {0} cm3 de cordons sont déposés sur d&apos;autres de leur couche, {1} % de {2} : là où les lignes et leurs liaisons rejoignent les contours, et là où il reste de la place pour moins d&apos;un cordon ; les couches y deviennent plus hautes. Utilisez fill : contours, des cordons plus étroits, ou un strategy.gap plus large</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>about {0} cm3 of beads lie beside the {1} cm3 of {2}: beads of {3} mm stand out where it is narrower; use narrower beads, or machine it off</source>
         <translation>environ {0} cm3 de cordons sont à côté des {1} cm3 de {2} : des cordons de {3} mm en débordent là où c&apos;est plus étroit ; prenez des cordons plus étroits, ou usinez l&apos;excédent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>about {0} cm3 of the {1} cm3 of {2} are not deposited</source>
         <translation>environ {0} cm3 des {1} cm3 de {2} ne sont pas déposés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>about {0} of the {1} cm3 of {2} are not deposited</source>
         <translation>environ {0} des {1} cm3 de {2} ne sont pas déposés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>about {0} of the {1} cm3 of {2}, all that lies within its hub, are not deposited</source>
         <translation>environ {0} des {1} cm3 de {2}, tout ce qui est à l’intérieur de son moyeu, ne sont pas déposés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>about {0} of {1} cm3 of beads lie beside {2}, which is {3} mm thick there, and beads are {4} mm wide; give process.bead_width, or machine it off</source>
         <translation>environ {0} des {1} cm3 de cordons sont à côté de {2}, qui y a {3} mm d’épaisseur, et les cordons ont {4} mm de large ; donnez process.bead_width, ou enlevez-les par usinage</translation>
     </message>
@@ -6632,22 +6632,22 @@
         <translation>toutes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/turn.py"/>
+        <location filename="../../freecad_am/brep/revolution/turn.py"/>
         <source>all around</source>
         <translation>sur tout le tour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed</source>
         <translation>tous les cordons reçoivent la même longueur de fil par millimètre ; mesurez au moins deux vitesses à une même vitesse de fil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>all beads have the {0} {1} {2}</source>
         <translation>tous les cordons ont : {0} {1} {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>all its faces are flat; choose a part, or faces, of revolution</source>
         <translation>toutes ses faces sont planes ; choisissez une pièce, ou des faces, de révolution</translation>
     </message>
@@ -6692,22 +6692,22 @@
         <translation>alterné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>an acceleration</source>
         <translation>une accélération</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>an analogue output that KRL sets between approximated moves is set ahead of the motion</source>
         <translation>une sortie analogique que KRL règle entre des mouvements lissés l&apos;est en avance sur le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried</source>
         <translation>une sortie analogique que RAPID règle entre deux mouvements l&apos;est en avance sur le mouvement, et TriggSpeed n&apos;a pas été essayé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>an angle such as 90 deg</source>
         <translation>un angle comme 90 deg</translation>
     </message>
@@ -6722,12 +6722,12 @@
         <translation>une version antérieure a écrit ce programme, dont les rapides n’étaient pas tous vérifiés ; recalculez le travail, et lisez Migrating dans le journal des modifications</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/kernel.py"/>
+        <location filename="../../freecad_am/brep/kernel/limits.py"/>
         <source>an edge of the face crosses itself at {0}; draw it without crossings, or divide it there and deposit its parts one after the other</source>
         <translation>une arête de la face se croise elle-même en {0} ; dessinez-la sans croisement, ou divisez-la à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>an element of {0} is longer than {1} MB</source>
         <translation>un élément de {0} dépasse {1} Mo</translation>
     </message>
@@ -6737,17 +6737,17 @@
         <translation>une entrée a changé pendant le calcul ; recalculez</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>an output is switched too, or the arc burns already, or not yet</source>
         <translation>une sortie est commutée aussi, ou l&apos;arc brûle déjà, ou pas encore</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>analogue inputs are whole numbers, not {0}; change below, gain or zero so that it is one</source>
         <translation>les entrées analogiques sont des nombres entiers, et non {0} ; changez below, gain ou zero pour qu&apos;il en soit un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>analogue output {0} tells the speed of the wire; use another one for schedules</source>
         <translation>la sortie analogique {0} transmet la vitesse du fil ; prenez-en une autre pour les programmes de soudage</translation>
     </message>
@@ -6762,12 +6762,12 @@
         <translation>angle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>another analogue input is read than the one that is waited for</source>
         <translation>une autre entrée analogique est lue que celle qui est attendue</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>another program is called within a bead</source>
         <translation>un autre programme est appelé au sein d&apos;un cordon</translation>
     </message>
@@ -6777,7 +6777,7 @@
         <translation>un autre programme de soudage que prévu est transmis</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program_beads.py"/>
+        <location filename="../../freecad_am/core/planning/program/beads.py"/>
         <source>another schedule within a bead is told by an output alone: calls stop the machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and end out</source>
         <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
     </message>
@@ -6787,7 +6787,7 @@
         <translation>une autre installation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>another unit is active than in moves before</source>
         <translation>une autre unité est active que dans les mouvements d&apos;avant</translation>
     </message>
@@ -6842,12 +6842,12 @@
         <translation>comme vous l&apos;avez choisi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/surface_patch.py"/>
+        <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
         <source>at ({0}) it is {1} mm off the spline that stands for it, more than {2} mm; rebuild the face, for instance as a loft or a sweep</source>
         <translation>en ({0}) elle est à {1} mm de la spline qui la représente, plus que {2} mm ; reconstruisez la face, par exemple par lissage ou balayage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/surface_patch.py"/>
+        <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
         <source>at ({0}) the face has an edge within itself, of {1} deg; round it, or divide the face there and deposit its parts one after the other</source>
         <translation>en ({0}) la face a une arête en son sein, de {1} deg ; arrondissez-la, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
@@ -6867,7 +6867,7 @@
         <translation>au plus {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>at {0} ends of beads the retract of {1} mm would leave limits, reach or condition; it is {2} to {3} mm there, {4} times in another direction than along the tool axis and {5} times with the tool turned</source>
         <translation>à {0} extrémités de cordons le retrait de {1} mm sortirait des limites, de l&apos;atteinte ou du conditionnement ; il y est de {2} à {3} mm, {4} fois dans une autre direction que le long de l&apos;axe de l&apos;outil et {5} fois avec l&apos;outil tourné</translation>
     </message>
@@ -6877,7 +6877,7 @@
         <translation>à {0} des {1} endroits de la couche {2} il n&apos;y a pas de points de la numérisation autour, le premier en {3} ; elle s&apos;étend sur {4} mm, la couche sur {5} mm : numérisez tout ce sur quoi la couche repose, ou vérifiez son unité et son ajustement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>at {0} short places, {1} mm in all, the deposit is slowed, here to {2} mm/s, for the axes go no faster; up to {3} mm of the bead more than meant lie there{4}</source>
         <translation>en {0} endroits courts, {1} mm en tout, le dépôt est ralenti, ici à {2} mm/s, car les axes ne vont pas plus vite ; jusqu&apos;à {3} mm de cordon de plus que prévu s&apos;y trouvent{4}</translation>
     </message>
@@ -6887,7 +6887,7 @@
         <translation>auto</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>auto finds no centre line of {0} from where it stands: {1}; choose an edge, a wire or a sketch as guide, or set strategy.direction so that the part stands on one of its ends</source>
         <translation>auto ne trouve pas de ligne médiane de {0} à partir de son appui : {1} ; choisissez une arête, un fil ou une esquisse comme guide, ou réglez strategy.direction pour que la pièce repose sur l&apos;une de ses extrémités</translation>
     </message>
@@ -6897,27 +6897,27 @@
         <translation>les axes 2 et 3 ne sont pas parallèles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>axes 2 and 3 are not parallel, but {0} deg apart</source>
         <translation>les axes 2 et 3 ne sont pas parallèles, mais à {0} deg l&apos;un de l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>axes 2 and 3 are the same line</source>
         <translation>les axes 2 et 3 sont la même droite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>axes are moved in another frame than that of the machine</source>
         <translation>des axes sont déplacés dans un autre repère que celui de la machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>axes beside the robot do not run at {0} % of their speeds</source>
         <translation>les axes externes ne tournent pas à {0} % de leurs vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>axes beside the robot have no value, or their unit is not active, or not the object&apos;s</source>
         <translation>des axes externes n&apos;ont pas de valeur, ou leur unité n&apos;est pas active, ou n&apos;est pas celle de l&apos;objet</translation>
     </message>
@@ -6927,7 +6927,7 @@
         <translation>deux axes qui se suivent sont la même droite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>axes {0} and {1} are {2} deg apart, not 90 deg</source>
         <translation>les axes {0} et {1} sont à {2} deg l&apos;un de l&apos;autre, et non à 90 deg</translation>
     </message>
@@ -6937,7 +6937,7 @@
         <translation>axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>axis 1 is not the Z of the base frame</source>
         <translation>l&apos;axe 1 n&apos;est pas le Z du repère de base</translation>
     </message>
@@ -6957,37 +6957,37 @@
         <translation>l&apos;axe {0} est jusqu&apos;à {1} {2} de la valeur planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
         <source>axis {0} stands at {1} deg and its turn cannot be told reliably in a Cartesian position; use `motion: joint`</source>
         <translation>l&apos;axe {0} se tient à {1} deg et son tour ne peut pas être dit sûrement dans une position cartésienne ; utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/table.py"/>
+        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
         <source>axis {0} stands at {1} deg; the tool is up to {2} deg off the direction asked for</source>
         <translation>l&apos;axe {0} se tient à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/table.py"/>
+        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
         <source>axis {0} stands at {1} deg; the tool is up to {2} deg off the direction asked for, more than joints.max_residual allows ({3} deg); lock the other axis, elsewhere or none</source>
         <translation>l&apos;axe {0} se tient à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée, plus que joints.max_residual ne permet ({3} deg) ; bloquez l&apos;autre axe, ailleurs ou aucun</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/turns.py"/>
+        <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
         <source>axis {0} turns back {1} times between beads, first before layer {2}</source>
         <translation>l&apos;axe {0} revient en arrière {1} fois entre les cordons, d&apos;abord avant la couche {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>axis {0} turns {1} deg in one move; an axis of continuous turn goes less than 180 deg per move: add points, or limit the axis</source>
         <translation>l&apos;axe {0} tourne de {1} deg en un mouvement ; un axe à rotation continue fait moins de 180 deg par mouvement : ajoutez des points, ou limitez l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens.py"/>
+        <location filename="../../freecad_am/posts/siemens/post.py"/>
         <source>axis {0} turns {1} deg in one move; an axis without end goes less than 180 deg per move: add points, or limit the axis</source>
         <translation>l&apos;axe {0} tourne de {1} deg en un mouvement ; un axe sans fin fait moins de 180 deg par mouvement : ajoutez des points, ou limitez l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>axis {0} would move at {1} {2}/s, it can do {3}; {4}</source>
         <translation>l&apos;axe {0} irait à {1} {2}/s, il peut {3} ; {4}</translation>
     </message>
@@ -7032,7 +7032,7 @@
         <translation>le cordon {0} recommence ; gardez ensemble les lignes d&apos;un cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/table.py"/>
+        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
         <source>bead {0} of {1}</source>
         <translation>cordon {0} de {1}</translation>
     </message>
@@ -7047,22 +7047,22 @@
         <translation>largeur de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/material.py"/>
+        <location filename="../../freecad_am/core/process/model/material.py"/>
         <source>beads are laid at {0} to {1} mm/s, and {2} at {3} mm/s or more; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
         <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} à {3} mm/s ou plus ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/material.py"/>
+        <location filename="../../freecad_am/core/process/model/material.py"/>
         <source>beads are laid at {0} to {1} mm/s, and {2} at {3} to {4} mm/s; change process.travel_speed, process.bead_width or process.classes, or measure beads at these speeds</source>
         <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} de {3} à {4} mm/s ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm; set strategy.layer_height to what the beads make{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
@@ -7072,7 +7072,7 @@
         <translation>les cordons changent de programme de soudage, et ce contrôleur met les sorties entre les mouvements en avance sur le mouvement, autant qu&apos;on sache ; ne donnez à start et end que d&apos;autres vitesses, ou prenez un autre contrôleur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>beads get wider with speed (m = {0}); check the table&apos;s columns</source>
         <translation>les cordons s&apos;élargissent avec la vitesse (m = {0}) ; vérifiez les colonnes du tableau</translation>
     </message>
@@ -7082,12 +7082,12 @@
         <translation>les cordons laissent {0} jour(s) ouverts, le plus large de {1} mm en {2} ; strategy.gap permet {3} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program_beads.py"/>
+        <location filename="../../freecad_am/core/planning/program/beads.py"/>
         <source>beads of the class {0} have no schedule, and would be laid by that of the bead before; give process.schedule, or one in process.classes.{1}</source>
         <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, et seraient déposés avec celui du cordon précédent ; donnez process.schedule, ou un dans process.classes.{1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program_beads.py"/>
+        <location filename="../../freecad_am/core/planning/program/beads.py"/>
         <source>beads of the class {0} have no schedule, which arc instructions name; give process.schedule, or one in process.classes.{1}</source>
         <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, que les instructions d&apos;arc nomment ; donnez process.schedule, ou un dans process.classes.{1}</translation>
     </message>
@@ -7097,12 +7097,12 @@
         <translation>des cordons larges de {0} mm (process.bead_width), distants de {1} mm, laissent entre eux des bandes ouvertes de {2} mm ; prenez {3} mm ou moins, ou des cordons plus larges</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>before {0} beads the tool is retracted in another direction than along its axis, or turned on the way, to pass clear</source>
         <translation>avant {0} cordons l&apos;outil est retiré dans une autre direction que le long de son axe, ou tourné en chemin, pour passer sans toucher</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>before {0} beads the tool is withdrawn by up to {1} mm instead of {2} mm to pass clear</source>
         <translation>avant {0} cordons l&apos;outil est retiré jusqu&apos;à {1} mm au lieu de {2} mm pour passer sans toucher</translation>
     </message>
@@ -7122,12 +7122,12 @@
         <translation>au-delà d&apos;une limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>block numbers do not rise</source>
         <translation>les numéros de bloc ne montent pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>blocks that tell a time are compressed into one, which would take the time of the last</source>
         <translation>des blocs qui disent un temps sont comprimés en un seul, qui prendrait le temps du dernier</translation>
     </message>
@@ -7147,7 +7147,7 @@
         <translation>les deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
         <source>both ends of the wall lie in {0}; a wall starts on it and ends outside of it</source>
         <translation>les deux extrémités de la paroi sont dans {0} ; une paroi y commence et finit en dehors</translation>
     </message>
@@ -7162,17 +7162,17 @@
         <translation>encadrement de l’objectif</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>build directions</source>
         <translation>directions de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/wall_direction.py"/>
+        <location filename="../../freecad_am/core/slicing/directions/wall.py"/>
         <source>build directions cannot be brought below {0} deg/mm on a bead of {1} mm: allow a faster turn, or use the mode fixed</source>
         <translation>les directions de dépôt ne peuvent pas être ramenées sous {0} deg/mm sur un cordon de {1} mm : permettez une rotation plus rapide, ou utilisez le mode fixed</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>build directions of {0} layers, keeping the nozzle clear</source>
         <translation>directions de dépôt de {0} couches, en tenant la buse éloignée</translation>
     </message>
@@ -7202,17 +7202,17 @@
         <translation>annulé ; recalculez</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
         <source>cannot be read as a calibration: {0}</source>
         <translation>ne peut pas être lu comme étalonnage : {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>cannot be read as a machine file: {0}</source>
         <translation>ne peut pas être lu comme un fichier machine : {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>cannot be read: {0}</source>
         <translation>ne peut pas être lu : {0}</translation>
     </message>
@@ -7332,7 +7332,7 @@
         <translation>la condition {0} est au-dessous de {1} demandés : trop près d&apos;une singularité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>condition {0} on a rapid move before or after the bead is below the {1} allowed, and no other height, direction or rotation is farther from a singularity; lower joints.min_condition or move the part in the cell</source>
         <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
@@ -7412,7 +7412,7 @@
         <translation>les courbes et le rechargement ne planifient pas de surface ; comparez les points à la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>cutting layers</source>
         <translation>découpe des couches</translation>
     </message>
@@ -7452,32 +7452,32 @@
         <translation>écart, mm (maximum : {} points)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>did you mean {0}?</source>
         <translation>vouliez-vous dire {0} ?</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>digital inputs are 1 to {0} (1 to 8 are digital_in[0] to [7], 9 to {1} the configurable ones), not {2}</source>
         <translation>les entrées numériques vont de 1 à {0} (1 à 8 sont digital_in[0] à [7], 9 à {1} les configurables), pas {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>digital inputs are 1 to {0} (motion.digital-in-00 is number 1), not {1}</source>
         <translation>les entrées logiques vont de 1 à {0} (motion.digital-in-00 est le numéro 1), et non {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>digital outputs are 1 to {0} (1 to 8 are digital_out[0] to [7], 9 to {1} the configurable ones), not {2}</source>
         <translation>les sorties numériques vont de 1 à {0} (1 à 8 sont digital_out[0] à [7], 9 à {1} les configurables), pas {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>digital outputs are 1 to {0} (motion.digital-out-00 is number 1), not {1}</source>
         <translation>les sorties logiques vont de 1 à {0} (motion.digital-out-00 est le numéro 1), et non {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>digital outputs are 1 to {0}, not {1}; use one of these</source>
         <translation>les sorties numériques vont de 1 à {0}, pas {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
@@ -7537,7 +7537,7 @@
         <translation>chaque court morceau de cordon, contre sa direction de dépôt, sur le dépôt précédent de sa largeur et ce qui est là</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>edges of {0} are chosen, which are laid as beads</source>
         <translation>des arêtes de {0} sont choisies, qui sont déposées comme cordons</translation>
     </message>
@@ -7547,7 +7547,7 @@
         <translation>fr</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>entities such as {0} are not read</source>
         <translation>les entités comme {0} ne sont pas lues</translation>
     </message>
@@ -7572,17 +7572,17 @@
         <translation>des faces du maillage de la paroi sont tournées en sens opposés : orientez-les pareillement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>faces of {0} are chosen, which do not turn about one axis, and it is thicker there than a bead of {1} mm, so they are covered</source>
         <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe, et elle y est plus épaisse qu&apos;un cordon de {1} mm, elles sont donc recouvertes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>faces of {0} are chosen, which do not turn about one axis, so they are a wall that starts on the platform where nothing carries it</source>
         <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi qui part du plateau là où rien ne la porte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>faces of {0} are chosen, which do not turn about one axis, so they are a wall; it needs a substrate, or edges to start from</source>
         <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi ; il lui faut un substrat, ou des arêtes d&apos;où partir</translation>
     </message>
@@ -7617,12 +7617,12 @@
         <translation>remplissage, ou ouvert</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/fronts.py"/>
+        <location filename="../../freecad_am/core/slicing/fronts/layers.py"/>
         <source>finding layer {0}</source>
         <translation>recherche de la couche {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/plan.py"/>
         <source>finding layers</source>
         <translation>recherche des couches</translation>
     </message>
@@ -7657,27 +7657,27 @@
         <translation>retourné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/constant.py"/>
+        <location filename="../../freecad_am/core/planning/methods/constant.py"/>
         <source>following the beads</source>
         <translation>suivi des cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_catalogue.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/catalogue.py"/>
         <source>freecad-am machines</source>
         <translation>freecad-am machines</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/tilt.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
         <source>from layer {0} on, directions are tilted back to keep the nozzle clear, by up to {1} deg in layer {2}</source>
         <translation>à partir de la couche {0}, les directions sont redressées pour tenir la buse éloignée, jusqu&apos;à {1} deg dans la couche {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/tilt.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
         <source>from layer {0} on, max_tilt holds directions within {1} deg</source>
         <translation>à partir de la couche {0}, max_tilt tient les directions à {1} deg au plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/turn.py"/>
+        <location filename="../../freecad_am/brep/revolution/turn.py"/>
         <source>from {0} to {1} deg</source>
         <translation>de {0} à {1} deg</translation>
     </message>
@@ -7687,7 +7687,7 @@
         <translation>avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
         <source>front splits in {0}</source>
         <translation>front se divise en {0}</translation>
     </message>
@@ -7712,7 +7712,7 @@
         <translation>avant-haut-non retourné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
         <source>fronts split in {0} each</source>
         <translation>fronts se divisent chacun en {0}</translation>
     </message>
@@ -7747,7 +7747,7 @@
         <translation>donnez trois nombres comme [0, 0, 1], ou auto</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/point_by_point.py"/>
+        <location filename="../../freecad_am/core/planning/methods/point_by_point.py"/>
         <source>going from point to point</source>
         <translation>passage de point en point</translation>
     </message>
@@ -7787,22 +7787,22 @@
         <translation>nid d&apos;abeilles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>how a job waits for an analogue input differs with the controller&apos;s options, and the post yaskawa knows none</source>
         <translation>la façon dont un job attend une entrée analogique dépend des options de la commande, et le post-processeur yaskawa n&apos;en connaît aucune</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>how many pulses {0} counts to a degree of each axis is not known, and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant tells (a position in pulses over the same in degrees), or plan without a program</source>
         <translation>combien d&apos;impulsions {0} compte par degré de chaque axe n&apos;est pas connu, et deux modèles diffèrent toujours ; faites-en un fichier machine à vous, avec controller.pulses_per_degree d&apos;après le pupitre (une position en impulsions divisée par la même en degrés), ou planifiez sans programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/tilt.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
         <source>however far it is tilted back, the nozzle touches platform or deposit, beads of {0} mm, in {1} layer(s), from layer {2} on; use a slimmer nozzle, another wall, or a smaller process.bead_width where beads are not that wide</source>
         <translation>si fort qu&apos;elle soit redressée, la buse touche le plateau ou le dépôt, des cordons de {0} mm, dans {1} couche(s), à partir de la couche {2} ; utilisez une buse plus fine, une autre paroi, ou un process.bead_width plus petit là où les cordons sont moins larges</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
         <source>however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at {0} point(s) of layers {1} to {2}; use a slimmer nozzle, a larger build_direction.max_tilt or another place for what is in the way</source>
         <translation>de quelque façon que l&apos;outil soit incliné, la buse touche substrat, montage, plateau ou dépôt en {0} point(s) des couches {1} à {2} ; utilisez une buse plus fine, un plus grand build_direction.max_tilt ou une autre place pour ce qui gêne</translation>
     </message>
@@ -7812,12 +7812,12 @@
         <translation>i, j, k sont 0 ; donnez une direction, comme 0, 0, 1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
         <source>in layer {0}, tool axes are tilted back to keep the nozzle clear, by up to {1} deg</source>
         <translation>dans la couche {0}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {1} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
         <source>in layers {0} to {1}, tool axes are tilted back to keep the nozzle clear, by up to {2} deg</source>
         <translation>dans les couches {0} à {1}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {2} deg</translation>
     </message>
@@ -7847,7 +7847,7 @@
         <translation>contrôle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>instructions of ArcTech name weld data that only the pendant makes</source>
         <translation>les instructions d&apos;ArcTech nomment des données de soudage que seul le pupitre crée</translation>
     </message>
@@ -7867,7 +7867,7 @@
         <translation>paramètre constant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/overlap.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/overlap.py"/>
         <source>it and {0} fill the same place, as at {1}, which would be deposited twice; fuse them into one solid, or move one</source>
         <translation>lui et {0} remplissent le même endroit, comme en {1}, qui serait déposé deux fois ; fusionnez-les en un solide, ou déplacez-en un</translation>
     </message>
@@ -7877,37 +7877,37 @@
         <translation>il commence par une position et ne nomme aucune configuration du bras ; indiquez-la dans la cellule, branch: [front, up, flip]</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it builds more than holds itself; simplify it</source>
         <translation>il construit plus que ce qui se contient soi-même ; simplifiez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it builds more than is not in it; simplify it</source>
         <translation>il construit plus que ce qui n&apos;y est pas ; simplifiez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it builds more than {0} objects, or objects nested {1} times; simplify it</source>
         <translation>il construit plus de {0} objets, ou des objets imbriqués {1} fois ; simplifiez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it builds more than {0} points; simplify it</source>
         <translation>il construit plus de {0} points ; simplifiez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it builds more than {0} triangles; simplify it</source>
         <translation>il construit plus de {0} triangles ; simplifiez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it builds no triangles; export the part again</source>
         <translation>il ne construit pas de triangles ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>it calls itself</source>
         <translation>il s&apos;appelle lui-même</translation>
     </message>
@@ -7917,12 +7917,12 @@
         <translation>elle ne peut pas être ramenée sur {0} : {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/document_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/document_file.py"/>
         <source>it cannot be read as a FreeCAD document; save it again</source>
         <translation>il ne peut pas être lu comme un document FreeCAD ; enregistrez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it cannot be read: {0}</source>
         <translation>il ne peut pas être lu : {0}</translation>
     </message>
@@ -7932,27 +7932,27 @@
         <translation>il ne peut pas être écrit : {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/settings.py"/>
+        <location filename="../../freecad_am/objects/fields/settings.py"/>
         <source>it cannot follow an expression; give a plain value</source>
         <translation>il ne peut pas suivre une expression ; donnez une valeur simple</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>it closes on itself both ways; choose a tube that is closed around</source>
         <translation>elle se ferme sur elle-même dans les deux sens ; choisissez un tube fermé sur son tour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
         <source>it comes back to where it begins, at {0}: the last layer would lie on the first; leave an edge of it out</source>
         <translation>il revient à son début, en {0} : la dernière couche reposerait sur la première ; enlevez-en une arête</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>it could at {0} mm/s, but the bead model asks for {1} mm/s and too much would pile up: turn the torch more slowly (build_direction.max_turn), lean it less, mount the part otherwise, or ask for a wider bead (process.bead_width), which is laid more slowly</source>
         <translation>il le pourrait à {0} mm/s, mais le modèle de cordon demande {1} mm/s et trop s&apos;y amasserait : tournez la torche plus lentement (build_direction.max_turn), penchez-la moins, montez la pièce autrement, ou demandez un cordon plus large (process.bead_width), qui est posé plus lentement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wire.py"/>
+        <location filename="../../freecad_am/brep/revolution/wire.py"/>
         <source>it crosses the axis by {0} mm; keep it on one side</source>
         <translation>il croise l&apos;axe de {0} mm ; gardez-le d&apos;un seul côté</translation>
     </message>
@@ -7962,77 +7962,77 @@
         <translation>il se coupe lui-même : {0} paires de ses triangles se croisent, par exemple en {1}, de sorte que l&apos;intérieur n&apos;est pas connu ; fusionnez ce qui se recouvre là où la pièce a été dessinée, ou réparez le maillage (Mesh, Analyser, Auto-intersections)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>it declares a document type, which no controller writes</source>
         <translation>il déclare un type de document, ce qu&apos;aucune commande n&apos;écrit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>it does not end the motion and switch the deposit off</source>
         <translation>il ne termine pas le mouvement et ne coupe pas le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>it does not end with M17, or calls itself</source>
         <translation>il ne finit pas par M17, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>it does not end with M30, or calls itself</source>
         <translation>il ne finit pas par M30, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>it does not hold the code of a program {0}</source>
         <translation>il ne contient pas le code d&apos;un programme {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>it does not say how many pulses there are to a degree of each axis, a mm of a track</source>
         <translation>il ne dit pas combien d&apos;impulsions fait un degré de chaque axe, ou un mm d&apos;un rail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>it does not say what unit V has</source>
         <translation>il ne dit pas quelle unité a V</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
         <source>it does not stand on the hub: it begins {0} mm outside of {1}, at {2}; move it, or choose its base{3}</source>
         <translation>il ne repose pas sur le moyeu : il commence à {0} mm en dehors de {1}, en {2} ; déplacez-le, ou choisissez sa base{3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
         <source>it does not stand on the hub: it lies inside of the hub; move it, or choose its base{0}</source>
         <translation>il ne repose pas sur le moyeu : il est à l&apos;intérieur du moyeu ; déplacez-le, ou choisissez sa base{0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
         <source>it does not stand on the hub: it passes {0} beside the face, near {1}; move it, or choose its base{2}</source>
         <translation>il ne repose pas sur le moyeu : il passe à {0} à côté de la face, près de {1} ; déplacez-le, ou choisissez sa base{2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch.py"/>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>it does not turn about the axis</source>
         <translation>elle ne tourne pas autour de l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>it ends before the last move does</source>
         <translation>il finit avant le dernier mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>it ends with the deposit on</source>
         <translation>il finit avec le dépôt en marche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>it ends with the deposit on, or within a loop</source>
         <translation>il finit avec le dépôt en marche, ou dans une boucle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>it ends within a loop</source>
         <translation>il finit dans une boucle</translation>
     </message>
@@ -8042,32 +8042,32 @@
         <translation>il extrude avant que le programme ne dise où : X, Y et Z doivent être donnés d&apos;abord ; {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>it has 1 row; measure at least {0} beads</source>
         <translation>il a 1 ligne ; mesurez au moins {0} cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
         <source>it has a corner of {0} deg at {1}, where layers would have no height on the inside; round it with a radius, or choose guide: auto</source>
         <translation>il a un angle vif de {0} deg en {1}, où les couches n&apos;auraient pas de hauteur à l&apos;intérieur ; arrondissez-le par un rayon, ou choisissez guide: auto</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it has a document type, which 3MF does not allow</source>
         <translation>il a un type de document, ce que 3MF ne permet pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>it has an edge along its seam; walls with edges cannot be deposited yet</source>
         <translation>elle a une arête le long de sa couture ; les parois à arêtes ne peuvent pas encore être déposées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch.py"/>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>it has an edge but no area, so the file is damaged or it does not turn about the axis</source>
         <translation>elle a une arête mais pas d&apos;aire, donc le fichier est endommagé ou elle ne tourne pas autour de l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
         <source>it has an edge that is neither straight across the tube at its end nor below the first layer; walls with openings or slanted ends cannot be deposited yet</source>
         <translation>elle a une arête qui n&apos;est ni droite en travers du tube à son extrémité ni sous la première couche ; les parois à ouvertures ou à extrémités obliques ne peuvent pas encore être déposées</translation>
     </message>
@@ -8077,27 +8077,27 @@
         <translation>il a plus de {0} caractères</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>it has more values than there are columns; write decimals with a point</source>
         <translation>il a plus de valeurs que de colonnes ; écrivez les décimales avec un point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>it has neither faces nor edges; choose another object</source>
         <translation>il n&apos;a ni faces ni arêtes ; choisissez un autre objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>it has no arc instructions</source>
         <translation>elle n&apos;a pas d&apos;instructions d&apos;arc</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>it has no closed direction; choose a tube that is closed around</source>
         <translation>elle n&apos;a pas de direction fermée ; choisissez un tube fermé sur son tour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>it has no column {0}; its first line names {1}</source>
         <translation>il n&apos;a pas de colonne {0} ; sa première ligne nomme {1}</translation>
     </message>
@@ -8107,27 +8107,27 @@
         <translation>il n&apos;a pas d&apos;arêtes à déposer en cordons ; choisissez des arêtes, un fil ou une esquisse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>it has no face of any width; choose another object</source>
         <translation>il n&apos;a aucune face de quelque largeur ; choisissez un autre objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>it has no face that turns about the axis; name the faces of the wall</source>
         <translation>aucune de ses faces ne tourne autour de l&apos;axe ; nommez les faces de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/distance.py"/>
+        <location filename="../../freecad_am/brep/shapes/distance.py"/>
         <source>it has no faces to compare points with; choose a solid or a surface</source>
         <translation>il n&apos;a pas de face à laquelle comparer les points ; choisissez un solide ou une surface</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/tessellate.py"/>
+        <location filename="../../freecad_am/brep/shapes/tessellate.py"/>
         <source>it has no faces to keep the nozzle clear of; choose a solid or a mesh</source>
         <translation>il n&apos;a pas de face dont tenir la buse éloignée ; choisissez un solide ou un maillage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>it has no faces; choose a part with the faces of the wall</source>
         <translation>il n&apos;a pas de faces ; choisissez une pièce avec les faces de la paroi</translation>
     </message>
@@ -8147,7 +8147,7 @@
         <translation>il n&apos;a pas de points ; {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes.py"/>
+        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
         <source>it has no shape; choose an object with a shape</source>
         <translation>il n&apos;a pas de forme ; choisissez un objet qui a une forme</translation>
     </message>
@@ -8167,27 +8167,27 @@
         <translation>il n&apos;a pas de {0} ; ses arêtes vont de Edge1 à Edge{1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>it has no {0}; its faces are Face1 to Face{1}</source>
         <translation>il n&apos;a pas de {0} ; ses faces vont de Face1 à Face{1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
         <source>it has no {0}; the edges of a mesh are its open ends, by height: {1}</source>
         <translation>il n&apos;a pas de {0} ; les arêtes d&apos;un maillage sont ses extrémités ouvertes, par hauteur : {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>it has only flat faces across the axis; name the faces of the wall</source>
         <translation>il n&apos;a que des faces planes en travers de l&apos;axe ; nommez les faces de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>it has other characters than ASCII</source>
         <translation>il contient d&apos;autres caractères que l&apos;ASCII</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>it has {0} axes, {1} of which slide; a robot that can be planned has six that turn</source>
         <translation>il a {0} axes, dont {1} linéaires ; un robot planifiable en a six rotatifs</translation>
     </message>
@@ -8202,7 +8202,7 @@
         <translation>il a {0} arêtes, dont un guide prend quelques-unes ; nommez-les, comme dans edges: [Edge1]</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>it has {0} faces that are not flat; name the wall&apos;s in part.faces</source>
         <translation>il a {0} faces qui ne sont pas planes ; nommez celles de la paroi dans part.faces</translation>
     </message>
@@ -8212,7 +8212,7 @@
         <translation>elle a {0} nombres au lieu de {1} ; remplissez le vide, ou enlevez la ligne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>it has {0} rows; measure at least {1} beads</source>
         <translation>il a {0} lignes ; mesurez au moins {1} cordons</translation>
     </message>
@@ -8222,12 +8222,12 @@
         <translation>cela vaut pour tout le programme, non pour un de ses éléments ; donnez-le au premier niveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it holds no shape; export the part again</source>
         <translation>il ne contient pas de forme ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it holds no triangles; export the part again</source>
         <translation>il ne contient pas de triangles ; exportez la pièce de nouveau</translation>
     </message>
@@ -8237,7 +8237,7 @@
         <translation>c&apos;est un maillage fermé, qui n&apos;a pas de faces à choisir ; découpez-en ce qui est à couvrir (Mesh, Découpe), ou prenez le fichier dont il est issu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it is a folder; name the file of the part</source>
         <translation>c&apos;est un dossier ; nommez le fichier de la pièce</translation>
     </message>
@@ -8247,7 +8247,7 @@
         <translation>c&apos;est un mot réservé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_on.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>it is a solid whose faces that are not flat ({0}) are not one wall; name the faces of the wall: part.faces of a job, or select them</source>
         <translation>c&apos;est un solide dont les faces non planes ({0}) ne sont pas une seule paroi ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
     </message>
@@ -8257,12 +8257,12 @@
         <translation>c&apos;est un solide de {0} face(s), et aucune n&apos;est choisie ; nommez celles à recouvrir : part.faces d&apos;une tâche, ou sélectionnez-les</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it is compressed in a way that 3MF does not allow</source>
         <translation>il est comprimé d&apos;une façon que 3MF ne permet pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch.py"/>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>it is cut out or slanted: an edge runs neither around nor along it</source>
         <translation>elle est découpée ou oblique : une arête n&apos;en fait pas le tour et ne court pas le long d&apos;elle</translation>
     </message>
@@ -8272,27 +8272,27 @@
         <translation>il est coupé après {0} de {1} sommets ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it is damaged or not what its ending says; export the part again</source>
         <translation>il est endommagé ou n&apos;est pas ce que dit son extension ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/apart.py"/>
+        <location filename="../../freecad_am/brep/files/apart.py"/>
         <source>it is damaged: FreeCAD crashes on it; export it again</source>
         <translation>il est endommagé : FreeCAD plante en le lisant ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/apart.py"/>
+        <location filename="../../freecad_am/brep/files/apart.py"/>
         <source>it is damaged: it takes more than {0} MB of memory to read, the limit of a file of its size; export it again</source>
         <translation>il est endommagé : sa lecture demande plus de {0} Mo de mémoire, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/apart.py"/>
+        <location filename="../../freecad_am/brep/files/apart.py"/>
         <source>it is damaged: it takes more than {0} s of the processor to read, the limit of a file of its size; export it again</source>
         <translation>il est endommagé : sa lecture demande plus de {0} s de processeur, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>it is declared behind an instruction</source>
         <translation>il est déclaré après une instruction</translation>
     </message>
@@ -8307,7 +8307,7 @@
         <translation>il est vide ; un fichier de machine ne vaut pas plus que ses poses de contrôle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it is empty; export the part again</source>
         <translation>il est vide ; exportez la pièce de nouveau</translation>
     </message>
@@ -8337,17 +8337,17 @@
         <translation>il est vide ; donnez le constructeur et le modèle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it is encrypted; export it without protection</source>
         <translation>il est chiffré ; exportez-le sans protection</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it is encrypted; export plain triangles</source>
         <translation>il est chiffré ; exportez des triangles simples</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>it is for plane layers, not for curved ones; use {0}, or layers: planes</source>
         <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
     </message>
@@ -8367,12 +8367,12 @@
         <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/placed.py"/>
+        <location filename="../../freecad_am/objects/checks/placed.py"/>
         <source>it is neither a toolpath nor a joint path; give one</source>
         <translation>ce n&apos;est ni une trajectoire d&apos;outil ni une trajectoire articulaire ; donnez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>it is nested too deeply to be a machine file</source>
         <translation>ses niveaux sont trop nombreux pour un fichier de machine</translation>
     </message>
@@ -8382,9 +8382,19 @@
         <translation>ce n&apos;est pas un fichier PLY qui commence par ses sommets ; exportez-le de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
+        <source>it is none of signs and a coupling of axes 2 and 3; copy the file itself</source>
+        <translation>elle n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier lui-même</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/hub.py"/>
         <source>it is not a cylinder and no cone; choose another face, or give strategy.base</source>
         <translation>ce n&apos;est ni un cylindre ni un cône ; choisissez une autre face, ou donnez strategy.base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>it is not a job from /JOB to END</source>
+        <translation>ce n&apos;est pas un job de /JOB à END</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/source.py"/>
@@ -8392,22 +8402,42 @@
         <translation>ce n&apos;est pas une trajectoire articulaire ; sélectionnez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/parsed.py"/>
+        <source>it is not a listing with /PROG, /MN, /POS and /END in this order</source>
+        <translation>ce n&apos;est pas un listing avec /PROG, /MN, /POS et /END dans cet ordre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
+        <source>it is not a module with one routine</source>
+        <translation>ce n&apos;est pas un module à une seule routine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>it is not a module with one routine of the file&apos;s name</source>
+        <translation>ce n&apos;est pas un module avec une seule routine du nom du fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>it is not a program that ends with M2</source>
         <translation>ce n&apos;est pas un programme qui finit par M2</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <source>it is not a project in millimetres</source>
+        <translation>ce n&apos;est pas un projet en millimètres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
         <source>it is not a solid; choose a solid part for the wall to grow on</source>
         <translation>ce n&apos;est pas un solide ; choisissez une pièce solide sur laquelle la paroi doit croître</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/substrate.py"/>
+        <location filename="../../freecad_am/brep/walls/substrate.py"/>
         <source>it is not a solid; choose a solid part or a closed mesh for the wall to grow on</source>
         <translation>ce n&apos;est pas un solide ; choisissez une pièce solide ou un maillage fermé sur lequel la paroi doit croître</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it is not a sound zip file ({0})</source>
         <translation>ce n&apos;est pas un fichier zip sain ({0})</translation>
     </message>
@@ -8417,39 +8447,9 @@
         <translation>ce n&apos;est pas une étape de cet atelier ; choisissez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>it is not a table: it holds bytes that are not text in UTF-8; save it as CSV in UTF-8</source>
         <translation>ce n&apos;est pas un tableau : il contient des octets qui ne sont pas du texte UTF-8 ; enregistrez-le en CSV UTF-8</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
-        <source>it is none of signs and a coupling of axes 2 and 3; copy the file itself</source>
-        <translation>elle n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
-        <source>it is not a job from /JOB to END</source>
-        <translation>ce n&apos;est pas un job de /JOB à END</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc_parsed.py"/>
-        <source>it is not a listing with /PROG, /MN, /POS and /END in this order</source>
-        <translation>ce n&apos;est pas un listing avec /PROG, /MN, /POS et /END dans cet ordre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb_modules.py"/>
-        <source>it is not a module with one routine</source>
-        <translation>ce n&apos;est pas un module à une seule routine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
-        <source>it is not a module with one routine of the file&apos;s name</source>
-        <translation>ce n&apos;est pas un module avec une seule routine du nom du fichier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
-        <source>it is not a project in millimetres</source>
-        <translation>ce n&apos;est pas un projet en millimètres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
@@ -8457,27 +8457,27 @@
         <translation>ce n&apos;est pas une trajectoire d&apos;AdaOne, ou elle est endommagée ({0}) ; exportez-la à nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch.py"/>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>it is not of revolution</source>
         <translation>elle n&apos;est pas de révolution</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>it is not on the surface of {0} ({1} mm off); walls of several surfaces cannot be deposited yet: choose faces of one torus, cylinder or cone</source>
         <translation>elle n&apos;est pas sur la surface de {0} (écart de {1} mm) ; les parois de plusieurs surfaces ne peuvent pas encore être déposées : choisissez des faces d&apos;un même tore, cylindre ou cône</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>it is not one function from its first line to its last</source>
         <translation>ce n&apos;est pas une seule fonction de la première ligne à la dernière</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>it is not said which axes the feed is the speed of</source>
         <translation>il n&apos;est pas dit de quels axes l&apos;avance est la vitesse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>it is not text in UTF-8</source>
         <translation>ce n&apos;est pas un texte en UTF-8</translation>
     </message>
@@ -8492,7 +8492,7 @@
         <translation>ce n&apos;est pas du texte ; donnez un tableau de points en CSV</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>it is not well-formed XML ({0})</source>
         <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
     </message>
@@ -8502,17 +8502,17 @@
         <translation>elle est ouverte, si bien que nul ne sait ce qui est à l&apos;intérieur ; donnez des solides fermés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>it is set ahead of the motion, or its outputs cannot tell such a number</source>
         <translation>il est mis en avance sur le mouvement, ou ses sorties ne peuvent transmettre un tel numéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>it is several solids</source>
         <translation>ce sont plusieurs solides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>it is solid and has no {0} wall; use wall: outer</source>
         <translation>il est plein et n&apos;a pas de paroi {0} ; utilisez wall: outer</translation>
     </message>
@@ -8527,7 +8527,7 @@
         <translation>il est le même dans toutes les poses, ce qui ne prouve rien ; ajoutez une autre pose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>it is waited for an analogue input within a bead</source>
         <translation>une entrée analogique est attendue au milieu d&apos;un cordon</translation>
     </message>
@@ -8537,7 +8537,7 @@
         <translation>les attentes sont autres que planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
         <source>it is {0} mm and {1} deg from where the machine file has this joint, which is more than a calibration corrects; name the machine that it is of</source>
         <translation>elle est à {0} mm et {1} deg de l&apos;endroit où le fichier de machine place cette articulation, plus qu&apos;un étalonnage ne corrige ; nommez la machine dont il s&apos;agit</translation>
     </message>
@@ -8547,12 +8547,12 @@
         <translation>elle est à {0} mm de son origine, d&apos;où sort le dépôt ; placez la pointe du fil ou de la buse à l&apos;origine du fichier, Z sortant de la buse, en mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wire.py"/>
+        <location filename="../../freecad_am/brep/revolution/wire.py"/>
         <source>it is {0} mm off the plane of the wire and its axis; draw the wire in a plane that holds the axis</source>
         <translation>il est à {0} mm hors du plan du fil et de son axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
         <source>it is {0} pieces that do not hang together, and no layer starts on the one at {1}, {2} mm from where layers start; choose its edge to start from too, or deposit it by itself</source>
         <translation>ce sont {0} morceaux qui ne tiennent pas ensemble, et aucune couche ne commence sur celui en {1}, à {2} mm du départ des couches ; choisissez aussi son arête comme départ, ou déposez-le seul</translation>
     </message>
@@ -8567,17 +8567,17 @@
         <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_records.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>it moves groups {0}, and has positions of others</source>
         <translation>il déplace les groupes {0}, et a des positions d&apos;autres groupes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>it moves other groups than those before</source>
         <translation>il déplace d&apos;autres groupes que les précédents</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>it moves without a tool, without the platform, or in joints where positions are told</source>
         <translation>il se déplace sans outil, sans plateau, ou en valeurs articulaires là où des positions sont dites</translation>
     </message>
@@ -8592,12 +8592,12 @@
         <translation>il nomme des tours d&apos;autres axes que le dernier, ce qui ne peut être suivi ; donnez ces positions en valeurs d&apos;axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it needs an extension that is not read ({0}); export plain triangles</source>
         <translation>il demande une extension qui n&apos;est pas lue ({0}) ; exportez des triangles simples</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>it reaches to {0} mm, farther than {1} mm; a coordinate is damaged, or its unit is wrong; export the part again</source>
         <translation>il s&apos;étend jusqu&apos;à {0} mm, plus loin que {1} mm ; une coordonnée est endommagée ou son unité est fausse ; exportez la pièce de nouveau</translation>
     </message>
@@ -8607,32 +8607,32 @@
         <translation>elle dépasse son origine de {0} mm selon Z, là où est le dépôt ; le Z du fichier sort de la buse, à l&apos;opposé de la torche, et l&apos;origine est sa pointe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>it rounds corners or accelerates in a way that is not understood</source>
         <translation>il arrondit les angles ou accélère d&apos;une façon qui n&apos;est pas comprise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
         <source>it stands on a point and has no open end to start from; give a substrate that it grows on, or turn it so that an end lies on the platform</source>
         <translation>il repose sur un point et n&apos;a pas d&apos;extrémité ouverte où commencer ; donnez un substrat, ou tournez-le pour qu&apos;une extrémité repose sur le plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/cell_obstacles.py"/>
+        <location filename="../../freecad_am/objects/shapes/cell_obstacles.py"/>
         <source>it touches the nozzle at the first point of the job already, however the arm stands; its pose is that in the maker&apos;s base frame, and files are in mm: move it, or the deposition point</source>
         <translation>il touche déjà la buse au premier point du travail, quelle que soit la posture du bras ; sa pose est donnée dans le repère de base du constructeur, et les fichiers sont en mm : déplacez-le, ou le point de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
         <source>it turns back by {0} deg at {1}: layers would go through what was deposited; choose edges that lead on</source>
         <translation>il fait demi-tour de {0} deg en {1} : les couches traverseraient ce qui est déposé ; choisissez des arêtes qui mènent plus loin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/laid_flat.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/unrolled.py"/>
         <source>it winds {0} times about the cone and would lie on itself when laid flat; divide it into shorter solids</source>
         <translation>il s&apos;enroule {0} fois autour du cône et se recouvrirait une fois mis à plat ; divisez-le en solides plus courts</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>its XML is damaged ({0})</source>
         <translation>son XML est endommagé ({0})</translation>
     </message>
@@ -8647,12 +8647,12 @@
         <translation>sa cellule a disparu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>its closed form is {0} mm and {1} (entries of the rotation) off; give the geometry with more digits</source>
         <translation>sa forme explicite s&apos;écarte de {0} mm et {1} (termes de la rotation) ; donnez la géométrie avec plus de chiffres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>its code does not run from begin to end</source>
         <translation>son code ne va pas de begin à end</translation>
     </message>
@@ -8662,52 +8662,52 @@
         <translation>ses colonnes sont {0} ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
         <source>its edges are not one curve: {0} of {1} do not go on from where the others end, at {2} and {3}, and the nearest is {4} mm off; choose edges that meet end to end</source>
         <translation>ses arêtes ne font pas une courbe : {0} sur {1} ne continuent pas là où les autres finissent, en {2} et {3}, et la plus proche en est à {4} mm ; choisissez des arêtes qui se touchent bout à bout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wire.py"/>
+        <location filename="../../freecad_am/brep/revolution/wire.py"/>
         <source>its edges lie on the axis; choose another axis</source>
         <translation>ses arêtes sont sur l&apos;axe ; choisissez un autre axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_fronts.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>its end cuts the first layer off; make it longer</source>
         <translation>son extrémité coupe la première couche ; allongez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/plan.py"/>
         <source>its end does not lie above the substrate all around; make it longer</source>
         <translation>son extrémité n&apos;est pas au-dessus du substrat sur tout le tour ; allongez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_on.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>its faces that are not flat run on smoothly into {0}, which is; name the faces of the wall: part.faces of a job, or select them</source>
         <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>its first axis slides and carries the six that turn, as a track does; let the machine begin with the robot, and name the track in `cell.external` with `carries: robot`</source>
         <translation>son premier axe coulisse et porte les six qui tournent, comme un rail ; faites commencer la machine au robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>its function is called {0}</source>
         <translation>sa fonction s&apos;appelle {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>its group is not that of its positions</source>
         <translation>son groupe n&apos;est pas celui de ses positions</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>its header names other motion groups than programs before</source>
         <translation>son en-tête nomme d&apos;autres groupes de mouvement que les programmes précédents</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>its job is called {0}</source>
         <translation>son job s&apos;appelle {0}</translation>
     </message>
@@ -8722,22 +8722,22 @@
         <translation>sa machine a deux axes rotatifs, qui ne laissent pas de rotation autour de l&apos;outil à choisir ; une carte est pour les robots</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>its module is called {0}, and the file is not, or another one is too</source>
         <translation>son module s&apos;appelle {0}, mais pas le fichier, ou un autre porte ce nom aussi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>its motion group, 2 to {0}</source>
         <translation>son groupe de mouvement, de 2 à {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_records.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>its positions are not all of the same motion groups, or one is not understood</source>
         <translation>ses positions ne sont pas toutes des mêmes groupes de mouvement, ou l&apos;une n&apos;est pas comprise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>its positions are not pulses of one tool</source>
         <translation>ses positions ne sont pas des impulsions d&apos;un seul outil</translation>
     </message>
@@ -8747,17 +8747,17 @@
         <translation>ses solutions ne redonnent pas ses poses ; donnez la géométrie avec plus de chiffres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>its speed is limited, or its tool fixed, in a way that is not understood</source>
         <translation>sa vitesse est limitée, ou son outil fixé, d&apos;une façon qui n&apos;est pas comprise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/surface_patch.py"/>
+        <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
         <source>its surface ({0}) cannot be told as a spline; rebuild the face, for instance as a loft</source>
         <translation>sa surface ({0}) ne peut pas être dite par une spline ; reconstruisez la face, par exemple par lissage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>its time, speed or blend is none that is kept</source>
         <translation>sa durée, sa vitesse ou son lissage n&apos;est pas de ceux qui sont tenus</translation>
     </message>
@@ -8767,7 +8767,7 @@
         <translation>sa trajectoire d&apos;outil a disparu ; choisissez-en une autre, ou supprimez aussi la trajectoire articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>its unit {0} is none of {1}</source>
         <translation>son unité {0} n&apos;est aucune de {1}</translation>
     </message>
@@ -8782,7 +8782,7 @@
         <translation>sa vue a été fermée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <location filename="../../freecad_am/objects/checks/placed.py"/>
         <source>its {0} is missing; choose one and recompute</source>
         <translation>son {0} manque ; choisissez-en un et recalculez</translation>
     </message>
@@ -8802,7 +8802,7 @@
         <translation>articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>joint and Cartesian positions are mixed</source>
         <translation>positions articulaires et cartésiennes sont mêlées</translation>
     </message>
@@ -8827,12 +8827,12 @@
         <translation>marge articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/straight.py"/>
+        <location filename="../../freecad_am/core/planning/beads/straight.py"/>
         <source>joint motion leaves the bead between two points however many are added: near a singularity</source>
         <translation>le mouvement articulaire quitte le cordon entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;une singularité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>joint moves of KRL run at whole percents of the axes&apos; speeds, so the speed along a bead would not be the one asked for; use `motion: cartesian`</source>
         <translation>les mouvements articulaires de KRL vont à des pourcentages entiers des vitesses des axes, et la vitesse le long d&apos;un cordon ne serait pas celle demandée ; prenez `motion: cartesian`</translation>
     </message>
@@ -8852,27 +8852,27 @@
         <translation>joints.certificate : plusieurs solutions de ce bras portent la même configuration, aucune borne inférieure n’est donc connue ; retirez ce paramètre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/external_rule.py"/>
+        <location filename="../../freecad_am/core/planning/external/rule.py"/>
         <source>joints.external_axes: {0} is of no effect without cell.external; leave it out</source>
         <translation>joints.external_axes : {0} est sans effet sans cell.external ; à omettre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/given.py"/>
+        <location filename="../../freecad_am/core/planning/rotation/given.py"/>
         <source>joints.given is of no effect on the method {0}; use {1}, or take it out</source>
         <translation>joints.given est sans effet sur la méthode {0} ; utilisez {1}, ou retirez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/given.py"/>
+        <location filename="../../freecad_am/core/planning/rotation/given.py"/>
         <source>joints.given names beads that are not there: {0}; take them out</source>
         <translation>joints.given nomme des cordons qui n&apos;existent pas : {0} ; retirez-les</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/layer_by_layer.py"/>
+        <location filename="../../freecad_am/core/planning/methods/layer_by_layer.py"/>
         <source>keeping the arm clear</source>
         <translation>dégagement du bras</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/in_sequence.py"/>
+        <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
         <source>keeping the nozzle clear</source>
         <translation>maintien de la buse à distance</translation>
     </message>
@@ -8882,7 +8882,7 @@
         <translation>type de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>known are {0}</source>
         <translation>sont connus {0}</translation>
     </message>
@@ -8912,7 +8912,7 @@
         <translation>couche {0} cordon {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>layer {0} bead {1} has {2} points, and loading another part within a bead would stop the robot while it deposits; use at least {3}, or a larger strategy.chord_error</source>
         <translation>couche {0} cordon {1} a {2} points, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {3}, ou une plus grande strategy.chord_error</translation>
     </message>
@@ -8922,7 +8922,7 @@
         <translation>couche {0} cordon {1} point {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/on_faces.py"/>
+        <location filename="../../freecad_am/core/layers/curved/on_faces.py"/>
         <source>layer {0} of {1} would lie {2} mm above the faces, as far as a hollow reaches at {3}, and fold there; lay at most {4} layer(s), or leave out what is so hollow</source>
         <translation>la couche {0} de {1} se trouverait à {2} mm au-dessus des faces, aussi loin que va un creux en {3}, et s&apos;y replierait ; déposez au plus {4} couche(s), ou laissez de côté ce qui est si creux</translation>
     </message>
@@ -8962,17 +8962,17 @@
         <translation>les couches de la famille {0} ne s&apos;ajustent pas encore à une numérisation ; les solides en couches planes et les parois sur un substrat le font : retirez la numérisation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <location filename="../../freecad_am/brep/walls/checks.py"/>
         <source>layers of {0} mm are higher than the wall&apos;s smallest radius of curvature, {1} mm at {2}; use lower layers, or a larger radius there</source>
         <translation>des couches de {0} mm sont plus hautes que le plus petit rayon de courbure de la paroi, {1} mm en {2} ; prenez des couches plus basses, ou un plus grand rayon à cet endroit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
         <source>layers of {0} mm ask for a mesh of the wall of about {1} triangles, and more than {2} cannot be worked with; give more than {3} mm, or deposit the wall in parts</source>
         <translation>des couches de {0} mm demandent un maillage de la paroi d&apos;environ {1} triangles, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez plus de {3} mm, ou déposez la paroi en plusieurs parties</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/guided.py"/>
+        <location filename="../../freecad_am/core/layers/along/guided.py"/>
         <source>layers of {0} stand normal to its centre line, {1} mm from {2} to {3}, which turns by {4} deg in all</source>
         <translation>les couches de {0} sont normales à sa ligne médiane, {1} mm de {2} à {3}, qui tourne de {4} deg en tout</translation>
     </message>
@@ -8992,7 +8992,7 @@
         <translation>pose des points sur la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/tilt.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
         <source>lead and tilt alone lean the tool by more than max_tilt ({0} deg); make them smaller or the cap larger</source>
         <translation>l&apos;angle d&apos;avance et l&apos;inclinaison seuls penchent l&apos;outil de plus que max_tilt ({0} deg) ; diminuez-les ou augmentez le maximum</translation>
     </message>
@@ -9047,22 +9047,22 @@
         <translation>ligne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>linear moves at the speed of a fixed nozzle over a part on the robot need the controller&apos;s external reference point, whose instruction is not documented well enough to write it; use `motion: joint`</source>
         <translation>les mouvements linéaires à la vitesse d&apos;une buse fixe sur une pièce portée par le robot demandent le point de référence externe de la commande, dont l&apos;instruction n&apos;est pas assez documentée pour l&apos;écrire ; utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>linear moves of a robot on a track have the base axis go along, and whether their speed counts its way was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it</source>
         <translation>les mouvements linéaires d&apos;un robot sur un rail entraînent l&apos;axe de base, et il n&apos;a pas été confirmé si leur vitesse en compte le chemin ; utiliser `motion: joint`, dont les parts des vitesses articulaires la tiennent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions are then seen from was not confirmed; use `motion: joint`, whose times hold the speed</source>
         <translation>les mouvements linéaires sur une pièce portée par un positionneur sont du mouvement coordonné (COORD), et le repère utilisateur d&apos;où leurs positions sont alors vues n&apos;a pas été confirmé ; utilisez `motion: joint`, dont les durées tiennent la vitesse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>linear moves over a part on a positioner are coordinated motion (SMOVL), and what their speed is of was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it</source>
         <translation>les mouvements linéaires sur une pièce portée par un positionneur sont des mouvements coordonnés (SMOVL), et de quoi leur vitesse est celle n&apos;est pas confirmé ; utilisez `motion: joint`, dont les parts des vitesses articulaires la tiennent</translation>
     </message>
@@ -9077,12 +9077,12 @@
         <translation>lignes de la surface</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
@@ -9107,7 +9107,7 @@
         <translation>vérification de ce qui est promis</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/in_sequence.py"/>
+        <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
         <source>looking for beads over nothing</source>
         <translation>recherche de cordons au-dessus du vide</translation>
     </message>
@@ -9117,12 +9117,12 @@
         <translation>recherche de ce qui le rendrait faisable : {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/on_its_part.py"/>
+        <location filename="../../freecad_am/objects/checks/on_its_part.py"/>
         <source>looking whether the deposit lies on the part</source>
         <translation>vérification que le dépôt est sur la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>lower the travel speed to {0} mm/s</source>
         <translation>diminuez la vitesse d&apos;avance à {0} mm/s</translation>
     </message>
@@ -9192,7 +9192,7 @@
         <translation>mesure de la trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/plan.py"/>
         <source>measuring {0} layers</source>
         <translation>mesure de {0} couches</translation>
     </message>
@@ -9207,12 +9207,12 @@
         <translation>mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>more than one axis is called the track, or it has no value</source>
         <translation>plus d&apos;un axe est appelé le rail, ou il n&apos;a pas de valeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <location filename="../../freecad_am/brep/walls/checks.py"/>
         <source>more than two faces meet in one edge at {0}; a wall branches by smooth faces with openings: leave one of them out</source>
         <translation>plus de deux faces se rencontrent en une arête en {0} ; une paroi se ramifie par des faces lisses à ouvertures : laissez l&apos;une d&apos;elles de côté</translation>
     </message>
@@ -9237,22 +9237,22 @@
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>most solids of {0} stand on a cylinder or cone of another of them</source>
         <translation>la plupart des solides de {0} se dressent sur un cylindre ou un cône de l&apos;un d&apos;eux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>moves of more than one tool or work object are mixed</source>
         <translation>des mouvements de plus d&apos;un outil ou d&apos;un objet de travail sont mêlés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>moves with another track or station than before are mixed</source>
         <translation>des mouvements d&apos;un autre rail ou d&apos;une autre station qu&apos;auparavant sont mêlés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>moves with other axes beside the robot are mixed</source>
         <translation>des mouvements avec d&apos;autres axes externes sont mêlés</translation>
     </message>
@@ -9272,7 +9272,7 @@
         <translation>le poignet n&apos;est pas sphérique et les axes 4 et 5 ne se coupent pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>no access</source>
         <translation>pas d&apos;accès</translation>
     </message>
@@ -9282,7 +9282,7 @@
         <translation>aucun axe n’a de limites, ou aucun point n’est atteint</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>no axis was found that its faces turn about; give it, or name the faces</source>
         <translation>aucun axe de rotation de ses faces n&apos;a été trouvé ; donnez-le, ou nommez les faces</translation>
     </message>
@@ -9307,17 +9307,17 @@
         <translation>aucun cordon de {0} mm ou plus ne trouve de place sur ses faces ; utilisez un espacement des cordons plus petit, ou thin = single</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>no ending</source>
         <translation>aucune extension</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>no face of it lies on the plane through its lowest place along strategy.direction, or on the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a substrate that it touches</source>
         <translation>aucune de ses faces ne repose sur le plan de son point le plus bas suivant strategy.direction, ni sur le substrat : rien où commencer ; tournez la pièce, donnez strategy.direction, ou un substrat qu&apos;elle touche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>no face of {0} lies on the faces chosen to start from, which are {1} mm away; choose faces that it touches, or none</source>
         <translation>aucune face de {0} ne repose sur les faces de départ choisies, qui sont à {1} mm ; choisissez des faces qu&apos;il touche, ou aucune</translation>
     </message>
@@ -9332,17 +9332,17 @@
         <translation>non retourné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>no joint moves {0} against {1}; choose another link</source>
         <translation>aucune articulation ne déplace {0} par rapport à {1} ; choisissez un autre corps</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
         <source>no joint of {0} moves anything against {1}; name another link as base</source>
         <translation>aucune articulation de {0} ne meut quoi que ce soit par rapport à {1} ; nommer un autre corps comme base</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>no layer has a corner; within the wall they turn by up to {0} deg/mm</source>
         <translation>aucune couche n&apos;a d&apos;angle ; dans la paroi elles tournent jusqu&apos;à {0} deg/mm</translation>
     </message>
@@ -9372,7 +9372,7 @@
         <translation>aucun corps n&apos;est porté par {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_catalogue.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/catalogue.py"/>
         <source>no machine known is of {0}; titles begin with {1}</source>
         <translation>aucune machine connue n’est de {0} ; les titres commencent par {1}</translation>
     </message>
@@ -9387,7 +9387,7 @@
         <translation>aucun point n’est atteint</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/constant_distance.py"/>
+        <location filename="../../freecad_am/core/slicing/tubes/constant_distance.py"/>
         <source>no point of the wall at v = {0} lies {1} mm from the layer below: the layer height must stay below the wall&apos;s smallest radius of curvature</source>
         <translation>aucun point de la paroi en v = {0} n&apos;est à {1} mm de la couche du dessous : la hauteur de couche doit rester au-dessous du plus petit rayon de courbure de la paroi</translation>
     </message>
@@ -9412,7 +9412,7 @@
         <translation>aucune rotation autour de l&apos;outil ne dessert les autres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>no section lies where it stands</source>
         <translation>aucune section là où il repose</translation>
     </message>
@@ -9432,12 +9432,12 @@
         <translation>aucun</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
         <source>none of its solids stands on a cylinder or cone of another: name the hub as substrate, choose a face of it, or give strategy.base; what stands on a flat base is deposited by kind: solid</source>
         <translation>aucun de ses solides ne repose sur un cylindre ou un cône d&apos;un autre : nommez le moyeu comme substrat, choisissez une face de celui-ci, ou donnez strategy.base ; ce qui repose sur une base plane est déposé par kind: solid</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>none of its {0} solids is of revolution; name the faces of the wall</source>
         <translation>aucun de ses {0} solides n&apos;est de révolution ; nommez les faces de la paroi</translation>
     </message>
@@ -9452,7 +9452,7 @@
         <translation>rien de ceci ne rend le travail faisable, tout a été essayé : {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/constant.py"/>
+        <location filename="../../freecad_am/core/planning/methods/constant.py"/>
         <source>none of {0} values of RZ serves for the whole job; the nearest to it is {1} deg</source>
         <translation>aucune de {0} valeurs de RZ ne sert pour tout le travail ; la plus proche est {1} deg</translation>
     </message>
@@ -9547,7 +9547,7 @@
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>not every position has one of the axes beside the robot, or these are alone</source>
         <translation>toutes les positions n&apos;en ont pas une des axes à côté du robot, ou celles-ci sont seules</translation>
     </message>
@@ -9582,37 +9582,37 @@
         <translation>nozzle : pas plus d&apos;inclinaison qu&apos;il n&apos;en faut pour tenir la buse éloignée du dépôt et du plateau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>object {0} of {1} has triangles with points that it has not</source>
         <translation>l&apos;objet {0} de {1} a des triangles dont il n&apos;a pas les points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>object {0} of {1} holds itself</source>
         <translation>l&apos;objet {0} de {1} se contient lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>object {0} of {1} is moved by a matrix that flattens it</source>
         <translation>l&apos;objet {0} de {1} est déplacé par une matrice qui l&apos;aplatit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>object {0} of {1} is not in it</source>
         <translation>l&apos;objet {0} de {1} n&apos;y est pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>object {0} of {1} {2} objects, or objects nested {3} times</source>
         <translation>objet {0} de {1} : {2} objets, ou objets imbriqués {3} fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program_beads.py"/>
+        <location filename="../../freecad_am/core/planning/program/beads.py"/>
         <source>of an earlier version</source>
         <translation>d&apos;une version antérieure</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>of its {0} solids {1} alone turns about an axis, {2} of its surface; name the faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub</source>
         <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
     </message>
@@ -9627,12 +9627,12 @@
         <translation>écart</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>on its way from the bead before the nozzle would meet {0} at every retract distance and direction tried; move the seam or the part, or take a more slender nozzle</source>
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model_notes.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the width asked for takes a speed outside of the table&apos;s {4} to {5} mm/min; it is kept within, and the width is not held: it is {6} mm at its farthest from the {7} mm</source>
         <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm</translation>
     </message>
@@ -9662,22 +9662,22 @@
         <translation>l&apos;un après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/part_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
         <source>one object that nothing else is made from</source>
         <translation>un objet dont rien d&apos;autre n&apos;est fait</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>one of its outputs switches the deposit</source>
         <translation>une de ses sorties commute le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>only a loop over one move is understood</source>
         <translation>seule une boucle sur un mouvement est comprise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>only a loop that waits is understood</source>
         <translation>seule une boucle d&apos;attente est comprise</translation>
     </message>
@@ -9707,12 +9707,12 @@
         <translation>optimisation des axes externes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>opw gives</source>
         <translation>opw donne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>other axes beside the robot have values than in moves before, or not all in a row</source>
         <translation>d&apos;autres axes externes ont des valeurs que dans les mouvements précédents, ou ils ne se suivent pas</translation>
     </message>
@@ -9862,17 +9862,17 @@
         <translation>positionneur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>positions have a track and no remark says which axis it is, or the other way round</source>
         <translation>les positions ont un rail et aucune remarque ne dit quel axe c&apos;est, ou l&apos;inverse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>positions of more than one frame are mixed</source>
         <translation>des positions de plus d&apos;un repère sont mêlées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>positions on the part need the kinematics that M428 chooses; set it to true, or use `motion: joint`</source>
         <translation>les positions sur la pièce demandent la cinématique que choisit M428 ; mettez-le à true, ou utilisez `motion: joint`</translation>
     </message>
@@ -9887,32 +9887,32 @@
         <translation>programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>programs of {0} are not written with a positioner; plan without a program; waypoints.csv has all axes</source>
         <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; planifier sans programme ; waypoints.csv a tous les axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>programs of {0} are not written with a positioner; use one of {1}</source>
         <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; utiliser {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>programs of {0} are not written with a track and a positioner together; plan without a program; waypoints.csv has all axes</source>
         <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; planifier sans programme ; waypoints.csv a tous les axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>programs of {0} are not written with a track and a positioner together; use one of {1}</source>
         <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; utiliser {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>programs of {0} are not written with a track; plan without a program; waypoints.csv has all axes</source>
         <translation>les programmes de {0} ne sont pas écrits avec un rail ; planifier sans programme ; waypoints.csv a tous les axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>programs of {0} are not written with a track; use one of {1}</source>
         <translation>les programmes de {0} ne sont pas écrits avec un rail ; utiliser {1}</translation>
     </message>
@@ -9972,7 +9972,7 @@
         <translation>relecture et vérification</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/part_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
         <source>reading the file</source>
         <translation>lecture du fichier</translation>
     </message>
@@ -9992,7 +9992,7 @@
         <translation>recalculez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/layer_by_layer.py"/>
+        <location filename="../../freecad_am/core/planning/methods/layer_by_layer.py"/>
         <source>refining layers</source>
         <translation>affinage des couches</translation>
     </message>
@@ -10022,7 +10022,7 @@
         <translation>les robots ont besoin de tous leurs axes ; seules les machines à axes rotatifs peuvent se contenter de quatre ; utilisez none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>root and type are of two mechanisms, or the base is not the one selected</source>
         <translation>racine et type sont de deux mécanismes, ou la base n&apos;est pas celle choisie</translation>
     </message>
@@ -10042,12 +10042,12 @@
         <translation>rotation non permise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>run as fast as the axes can follow, beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm; set strategy.layer_height to what the beads make{4}</source>
         <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>run as fast as the axes can follow, beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm{4}</source>
         <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
@@ -10057,17 +10057,17 @@
         <translation>RZ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/room.py"/>
+        <location filename="../../freecad_am/core/planning/turns/fit.py"/>
         <source>seam moved for a limited axis</source>
         <translation>couture déplacée pour un axe limité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/constant.py"/>
+        <location filename="../../freecad_am/core/planning/methods/constant.py"/>
         <source>searching one RZ for all</source>
         <translation>recherche d&apos;un RZ pour tous</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/layer_by_layer.py"/>
+        <location filename="../../freecad_am/core/planning/methods/layer_by_layer.py"/>
         <source>searching rotations</source>
         <translation>recherche des rotations</translation>
     </message>
@@ -10207,7 +10207,7 @@
         <translation>vitesse, accélération et jerk sont supérieurs à 0, ou laissés vides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>speeds and radii vary only together</source>
         <translation>vitesses et rayons ne varient qu&apos;ensemble</translation>
     </message>
@@ -10227,7 +10227,7 @@
         <translation>les splines ne sont pas connues ; faites écrire des lignes et des arcs au trancheur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/room.py"/>
+        <location filename="../../freecad_am/core/planning/turns/fit.py"/>
         <source>split for a limited axis</source>
         <translation>divisé pour un axe limité</translation>
     </message>
@@ -10237,7 +10237,7 @@
         <translation>répartis</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
         <source>spread along the bead, by up to {0} deg, to turn no faster than build_direction.max_turn</source>
         <translation>étalés le long du cordon, jusqu&apos;à {0} deg, pour ne pas tourner plus vite que build_direction.max_turn</translation>
     </message>
@@ -10247,7 +10247,7 @@
         <translation>périmé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/phases.py"/>
+        <location filename="../../freecad_am/core/planning/beads/phases.py"/>
         <source>start and end take {0} mm of this bead of {1} mm; make process.start and process.end shorter, or those of its class</source>
         <translation>le début et la fin prennent {0} mm de ce cordon de {1} mm ; raccourcissez process.start et process.end, ou ceux de sa classe</translation>
     </message>
@@ -10272,47 +10272,47 @@
         <translation>symmetry-plane est pour les parois ; les couches planes croissent suivant leur normale : choisissez local ou fixed</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>symmetry-plane is not for parts of revolution; use local, layer or fixed</source>
         <translation>symmetry-plane n&apos;est pas pour les pièces de révolution ; utilisez local, layer ou fixed</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
         <source>table, row {0}</source>
         <translation>tableau, ligne {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>that VAL 3 sets several outputs to one number was not found documented</source>
         <translation>il n&apos;a pas été trouvé documenté que VAL 3 mette plusieurs sorties à un seul numéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the X of {0} points out of the flange, not its Z: it is turned there, as tool0 stands to flange</source>
         <translation>le X de {0} sort de la bride, et non son Z : il y est tourné, comme tool0 se place par rapport à flange</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange</source>
         <translation>le Z de la bride n&apos;est pas le long de l&apos;axe 6 ; prenez le repère tool0 d&apos;un URDF, ou tournez la bride</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as tool0 or fanuc_flange, or turn the flange</source>
         <translation>le Z de la bride pointe vers le poignet et non vers l’extérieur ; prendre un autre corps d’un URDF, tel que tool0 ou fanuc_flange, ou tourner la bride</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>the analogue output stops the machine within a bead</source>
         <translation>la sortie analogique arrête la machine au sein d&apos;un cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>the analogue output stops the machine within a bead, or its compressor</source>
         <translation>la sortie analogique arrête la machine au sein d&apos;un cordon, ou son compresseur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>the axes beside the robot are not told in order, or BASE is not coupled to what they move</source>
         <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à ce qu&apos;ils déplacent</translation>
     </message>
@@ -10322,27 +10322,27 @@
         <translation>les axes externes finiraient au numéro {0}, et la commande en a {1} ; prenez un premier plus petit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/table.py"/>
+        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
         <source>the axes leave the bead by {0} mm, its direction by {1} deg between two points however many are added: near a pole; tilt away from it</source>
         <translation>les axes quittent le cordon de {0} mm, sa direction de {1} deg entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;un pôle ; inclinez pour vous en éloigner</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the axis of {0} has no direction</source>
         <translation>l&apos;axe de {0} n&apos;a pas de direction</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>the axis of {0} is {1} deg off the normal of the platform</source>
         <translation>l&apos;axe de {0} est à {1} deg de la normale du plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>the axis of {0} is {1} mm off the middle of the platform and misses it</source>
         <translation>l&apos;axe de {0} est à {1} mm du milieu du plateau et le manque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the base axis {0} of the robot</source>
         <translation>l&apos;axe de base {0} du robot</translation>
     </message>
@@ -10352,12 +10352,12 @@
         <translation>le repère de base</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>the base of {0} has a diameter of {1} mm and reaches over the platform; check cell.platform_diameter (0 for none)</source>
         <translation>la base de {0} a un diamètre de {1} mm et dépasse du plateau ; vérifiez cell.platform_diameter (0 pour aucun)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>the base of {0} is {1} mm below the platform</source>
         <translation>la base de {0} est à {1} mm au-dessous du plateau</translation>
     </message>
@@ -10372,7 +10372,7 @@
         <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; omettez-la, ou prenez bead_model: none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>the calibration table cannot be read ({0}); give none, csw or the path of one</source>
         <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
     </message>
@@ -10397,17 +10397,17 @@
         <translation>le cercle à {0} mm n&apos;a pas été mesuré sur tout le tour : {1} deg entre voisins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>the closed form is for six joints, there are {0}</source>
         <translation>la forme explicite est pour six articulations, il y en a {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>the configurations that its positions name are supervised, and are none</source>
         <translation>les configurations que nomment ses positions sont surveillées, et n&apos;en sont pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>the controller has numbers up to {0}, not {1}; use one of these</source>
         <translation>la commande a des numéros jusqu&apos;à {0}, pas {1} ; prenez l&apos;un de ceux-ci</translation>
     </message>
@@ -10417,12 +10417,12 @@
         <translation>le contrôleur reçoit des programmes de soudage jusqu&apos;à {0}, non {1} ; prenez un autre numéro, là ou dans process.classes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>the controller of {0} does not read {1}; there is no post for it yet: plan without a program; waypoints.csv has its axes</source>
         <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle : planifiez sans programme ; waypoints.csv a ses axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>the controller of {0} does not read {1}; use one of {2}</source>
         <translation>la commande de {0} ne lit pas {1} ; utilisez l&apos;un de {2}</translation>
     </message>
@@ -10432,12 +10432,12 @@
         <translation>le programme de la commande lit les entrées analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens.py"/>
+        <location filename="../../freecad_am/posts/siemens/post.py"/>
         <source>the controller&apos;s program reads inputs 1 to {0}, not {1}; use one of these</source>
         <translation>le programme de la commande lit les entrées 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <location filename="../../freecad_am/posts/nc/parts.py"/>
         <source>the controller&apos;s program sets analogue outputs 1 to {0}, not {1}; use one of these</source>
         <translation>le programme de la commande règle les sorties analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
@@ -10457,7 +10457,7 @@
         <translation>le document a été fermé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/start_edges.py"/>
+        <location filename="../../freecad_am/brep/walls/start_edges.py"/>
         <source>the edge is {0} mm off the wall at {1}; choose edges of the wall&apos;s own faces</source>
         <translation>l&apos;arête est à {0} mm de la paroi en {1} ; choisissez des arêtes des faces mêmes de la paroi</translation>
     </message>
@@ -10467,22 +10467,22 @@
         <translation>les extrémités de l&apos;arc sont à {0} et {1} mm de son centre ; donnez I et J de son début à son centre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_cuts.py"/>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
         <source>the face folds back and cuts itself at {0}; a bend must have a larger radius than the tube</source>
         <translation>la face se replie et se coupe elle-même en {0} ; un coude doit avoir un plus grand rayon que le tube</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>the faces chosen of {0} turn about one axis</source>
         <translation>les faces choisies de {0} tournent autour d&apos;un axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <location filename="../../freecad_am/brep/walls/checks.py"/>
         <source>the faces form {0} separate pieces: {1} and {2} are {3} mm apart at {4}; choose connected faces, edges meeting within {5} mm</source>
         <translation>les faces forment {0} morceaux séparés : {1} et {2} sont à {3} mm l&apos;une de l&apos;autre en {4} ; choisissez des faces jointes, dont les arêtes se rencontrent à {5} mm près</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>the faces of the wall do not close around; walls that are open (half shells) cannot be deposited yet: choose a full tube</source>
         <translation>les faces de la paroi ne se ferment pas sur le tour ; les parois ouvertes (demi-coques) ne peuvent pas encore être déposées : choisissez un tube entier</translation>
     </message>
@@ -10497,12 +10497,12 @@
         <translation>l&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/apart.py"/>
+        <location filename="../../freecad_am/brep/files/apart.py"/>
         <source>the file is larger than {0} MB, the most that is read; is it the right one?</source>
         <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; est-ce le bon ?</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>the file is missing</source>
         <translation>le fichier manque</translation>
     </message>
@@ -10512,27 +10512,27 @@
         <translation>la première couche ne fait pas une fois le tour de la paroi : choisissez une boucle fermée d&apos;arêtes qui croise une fois chaque ligne montant la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
         <source>the first layer is the edge of {0} at {1}, which stands on the platform</source>
         <translation>la première couche est l&apos;arête de {0} en {1}, qui repose sur le plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
         <source>the first layer is the lowest open end of {0}, Edge1 at {1}, which does not lie on the platform</source>
         <translation>la première couche est l&apos;extrémité ouverte la plus basse de {0}, Edge1 en {1}, qui ne repose pas sur le plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the first layer lies on the wall and on {0}</source>
         <translation>la première couche repose sur la paroi et sur {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
         <source>the first layer lies on the wall and on {0} within {1} mm</source>
         <translation>la première couche repose sur la paroi et sur {0} à {1} mm près</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
         <source>the first layer runs {0} mm over the floor of {1}, which is not deposited</source>
         <translation>la première couche court à {0} mm au-dessus du fond de {1}, qui n&apos;est pas déposé</translation>
     </message>
@@ -10547,42 +10547,42 @@
         <translation>la bride</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the flange&apos;s origin does not lie on axis 6</source>
         <translation>l&apos;origine de la bride n&apos;est pas sur l&apos;axe 6</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>the four numbers of an orientation are not those of a unit quaternion</source>
         <translation>les quatre nombres d&apos;une orientation ne sont pas ceux d&apos;un quaternion unitaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/kernel.py"/>
+        <location filename="../../freecad_am/brep/kernel/limits.py"/>
         <source>the geometry kernel cannot divide this face into triangles; repair it (Part, Check geometry), or draw it anew</source>
         <translation>le noyau géométrique ne peut pas diviser cette face en triangles ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/kernel.py"/>
+        <location filename="../../freecad_am/brep/kernel/limits.py"/>
         <source>the geometry kernel cannot work with this shape ({0}); repair it (Part, Check geometry), or draw its faces anew</source>
         <translation>le noyau géométrique ne peut pas traiter cette forme ({0}) ; réparez-la (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along.py"/>
+        <location filename="../../freecad_am/core/layers/along/field.py"/>
         <source>the guide bends more tightly at {0} than the part is wide there: planes normal to it cross one another within the part, at {1}; choose a guide nearer to the inside of the bend or with a larger radius, or strategy.layers: geodesic</source>
         <translation>le guide est plus courbé en {0} que la pièce n&apos;y est étroite : ses plans normaux se croisent dans la pièce, en {1} ; choisissez un guide plus près de l&apos;intérieur du coude ou de plus grand rayon, ou strategy.layers: geodesic</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <location filename="../../freecad_am/core/layers/along/guide_edges.py"/>
         <source>the guide has no edge with a length; choose edges, a wire or a sketch</source>
         <translation>le guide n&apos;a aucune arête de longueur non nulle ; choisissez des arêtes, un fil ou une esquisse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along.py"/>
+        <location filename="../../freecad_am/core/layers/along/field.py"/>
         <source>the guide leaves the part: at layer {0} it is {1} mm beside it, at {2}; choose a guide in the part or along one of its edges, or guide: auto</source>
         <translation>le guide quitte la pièce : à la couche {0} il est à {1} mm à côté, en {2} ; choisissez un guide dans la pièce ou le long de l&apos;une de ses arêtes, ou guide: auto</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
         <source>the hub has no cylinder and no cone on its outside; choose a face of it, or give strategy.base</source>
         <translation>le moyeu n&apos;a ni cylindre ni cône à son extérieur ; choisissez une de ses faces, ou donnez strategy.base</translation>
     </message>
@@ -10592,17 +10592,17 @@
         <translation>le moyeu, un cylindre ou un cône sur lequel reposent les solides, est inconnu : choisissez-le comme substrat, choisissez-en des faces, ou donnez strategy.base ; ce qui repose sur une base plane est déposé par kind: solid</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>the instruction {0} is not understood</source>
         <translation>l&apos;instruction {0} n&apos;est pas comprise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the instructions do not begin as those of a robot&apos;s job do</source>
         <translation>les instructions ne commencent pas comme celles d&apos;un job de robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>the joint frames give</source>
         <translation>les repères articulaires donnent</translation>
     </message>
@@ -10612,47 +10612,47 @@
         <translation>la trajectoire articulaire à écrire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the joint {0} follows another one, which a serial chain cannot</source>
         <translation>l&apos;articulation {0} en suit une autre, ce qu&apos;une chaîne en série ne peut pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the joint {0} has no &lt;limit&gt;; one that turns without end is continuous</source>
         <translation>l&apos;articulation {0} n&apos;a pas de &lt;limit&gt; ; une qui tourne sans fin est continuous</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the joint {0} is {1}; only {2} and fixed ones are read</source>
         <translation>l&apos;articulation {0} est {1} ; seules {2} et fixed sont lues</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>the key {0} is missing</source>
         <translation>la clé {0} manque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>the key {0} is not known; use {1}</source>
         <translation>la clé {0} n&apos;est pas connue ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
         <source>the key {0} is there twice</source>
         <translation>la clé {0} s&apos;y trouve deux fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>the kinematics changes while the deposit is on</source>
         <translation>la cinématique change pendant que le dépôt est en marche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the limits of {0} run from {1} to {2}; give the lower one first</source>
         <translation>les limites de {0} vont de {1} à {2} ; donnez d&apos;abord la plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>the line of {0} mm leads through {1} % of the volume</source>
         <translation>la ligne de {0} mm traverse {1} % du volume</translation>
     </message>
@@ -10662,37 +10662,37 @@
         <translation>le corps de {axis} touche {what}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the link {0} carries itself</source>
         <translation>le corps {0} se porte lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the link {0} does not carry {1}; choose others</source>
         <translation>le corps {0} ne porte pas {1} ; choisissez-en d&apos;autres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the link {0} is moved by {1} already</source>
         <translation>le corps {0} est déjà mû par {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>the links of analogue inputs differ from controller to controller, and the post staubli knows none</source>
         <translation>les liens des entrées analogiques diffèrent d&apos;une commande à l&apos;autre, et le post-processeur staubli n&apos;en connaît aucun</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>the local distance between layers is {0} to {1} mm</source>
         <translation>la distance locale entre les couches est de {0} à {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; a larger strategy.tolerance says that this will do</source>
         <translation>la distance locale entre les couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; un strategy.tolerance plus grand dit que cela suffit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; spacing: constant-distance is even</source>
         <translation>la distance locale entre les couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; spacing: constant-distance est égal</translation>
     </message>
@@ -10702,12 +10702,12 @@
         <translation>la machine ne les donne pas ; voyez les écarts</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the machine file has no controller.pulses_per_degree; add them</source>
         <translation>le fichier machine n&apos;a pas de controller.pulses_per_degree ; ajoutez-les</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the machine file has no controller.speed_unit; add it</source>
         <translation>le fichier machine n&apos;a pas de controller.speed_unit ; ajoutez-le</translation>
     </message>
@@ -10727,12 +10727,12 @@
         <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, pour qu&apos;on ne revienne à aucun solide avant {4} s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/material.py"/>
+        <location filename="../../freecad_am/core/process/model/material.py"/>
         <source>the material</source>
         <translation>le matériau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>the matrix has no inverse</source>
         <translation>la matrice n&apos;a pas d&apos;inverse</translation>
     </message>
@@ -10787,42 +10787,42 @@
         <translation>le maillage n&apos;a pas de triangles, ou des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/substrate.py"/>
+        <location filename="../../freecad_am/brep/walls/substrate.py"/>
         <source>the mesh has no triangles; choose a closed mesh or a solid part</source>
         <translation>le maillage n&apos;a pas de triangles ; choisissez un maillage fermé ou une pièce solide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/substrate.py"/>
+        <location filename="../../freecad_am/brep/walls/substrate.py"/>
         <source>the mesh has points that are not numbers; export it again</source>
         <translation>le maillage a des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>the module does not set all that the move counts on</source>
         <translation>le module ne règle pas tout ce sur quoi compte le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>the move before it is to be approximated, and it stops there</source>
         <translation>le mouvement qui précède doit être lissé, et s&apos;arrête là</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <location filename="../../freecad_am/posts/nc/read.py"/>
         <source>the move is not told in the axes of the first one</source>
         <translation>le mouvement n&apos;est pas dit dans les axes du premier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the move {0} is not understood, or its position is not there</source>
         <translation>le mouvement {0} n&apos;est pas compris, ou sa position n&apos;existe pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>the name of its mechanical unit, such as STN1</source>
         <translation>le nom de son unité mécanique, comme STN1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the name of its station, such as ST1</source>
         <translation>le nom de sa station, par exemple ST1</translation>
     </message>
@@ -10842,12 +10842,12 @@
         <translation>la buse touche le plateau ou la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance_look.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
         <source>the nozzle touches {0} at {1} of {2} points; on parts of revolution it is not tilted away from fixtures: move them, or use a slimmer nozzle</source>
         <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the nozzle touches {0} on the rapid way to the bead; move it in cell.obstacles, the part or cell.deposition_point</source>
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
@@ -10862,7 +10862,7 @@
         <translation>la buse touche {0} sur {1} déplacement(s) rapide(s), qui ne le contournent pas au-dessus d’un positionneur ; déplacez-le dans cell.obstacles, ou la pièce, ou le début des cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the nozzle touches {0}; move it in cell.obstacles, the part or cell.deposition_point</source>
         <translation>la buse touche {0} ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
@@ -10877,7 +10877,7 @@
         <translation>le numéro d&apos;un programme de soudage est mis sur une sortie de 1 à {0}, non {1} ; prenez l&apos;une d&apos;elles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>the number of its MACHINE_DEF, 2 to 16</source>
         <translation>le numéro de son MACHINE_DEF, de 2 à 16</translation>
     </message>
@@ -10887,12 +10887,12 @@
         <translation>les paires de points sont sur une ligne, autour de laquelle la pièce peut tourner ; choisissez-en d&apos;autres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
@@ -10927,7 +10927,7 @@
         <translation>la trajectoire du texte entre ses points, comme la commande l’interpole</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/normal_layers.py"/>
+        <location filename="../../freecad_am/core/slicing/tubes/normal_layers.py"/>
         <source>the planes normal to its centreline do not cut it in one curve each; such layers are not for this wall</source>
         <translation>les plans normaux à sa ligne moyenne ne la coupent pas chacun en une courbe ; de telles couches ne sont pas pour cette paroi</translation>
     </message>
@@ -10947,7 +10947,7 @@
         <translation>les points de la pièce sont sur une droite, ou tous au même endroit : rien ne dit comment la pièce est tournée autour ; palpez-en un à côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>the points of {0} are not all in one frame</source>
         <translation>les points de {0} ne sont pas tous dans un repère</translation>
     </message>
@@ -10962,7 +10962,7 @@
         <translation>les points palpés sont sur une droite, ou tous au même endroit : rien ne dit comment la pièce est tournée autour ; palpez-en un à côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>the pose at all zeros is missing</source>
         <translation>la pose à zéro de tous les axes manque</translation>
     </message>
@@ -10977,42 +10977,42 @@
         <translation>le positionneur est hors d&apos;atteinte du robot : le point de la pièce le plus proche est à {0} mm de l&apos;épaule, bras et outil s&apos;étendent à {1} mm au plus ; rapprochez le positionneur (cell.external)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>the post abb cannot write {0} ({1} motion)</source>
         <translation>le post-processeur abb ne peut pas écrire {0} (mouvement {1})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>the post fanuc cannot write {0}</source>
         <translation>le post-processeur fanuc ne peut pas écrire {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>the post kuka cannot write {0}</source>
         <translation>le post-processeur kuka ne peut pas écrire {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>the post staubli cannot write {0} ({1} motion)</source>
         <translation>le post-processeur staubli ne peut pas écrire {0} (mouvement {1})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>the post ur cannot write {0}</source>
         <translation>le post-processeur ur ne sait pas écrire {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the post yaskawa cannot write {0}</source>
         <translation>le post-processeur yaskawa ne sait pas écrire {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <location filename="../../freecad_am/posts/nc/parts.py"/>
         <source>the post {0} cannot write {1} ({2} motion), only rotary-table</source>
         <translation>le post-processeur {0} ne peut pas écrire {1} (mouvement {2}), seulement rotary-table</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <location filename="../../freecad_am/posts/nc/parts.py"/>
         <source>the post {0} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has {1}: name its joints mx my mz and a, b or c</source>
         <translation>le post-processeur {0} écrit des axes linéaires X Y Z et des axes rotatifs parmi A B C, un de chaque ; la machine a {1} : nommez ses articulations mx my mz et a, b ou c</translation>
     </message>
@@ -11022,12 +11022,12 @@
         <translation>le post-processeur {0} écrit {1} axes ; utilisez un autre post-processeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>the program does not tell where the flange is, which blends count on</source>
         <translation>le programme ne dit pas où est la bride, dont dépendent les lissages</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
         <source>the program has no arm configurations; use `motion: joint`</source>
         <translation>le programme n&apos;a pas de configurations de bras ; utilisez `motion: joint`</translation>
     </message>
@@ -11037,7 +11037,7 @@
         <translation>le programme n&apos;a pas de nom ; donnez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>the program has no positions; use `motion: joint`</source>
         <translation>le programme n&apos;a pas de positions ; utilisez `motion: joint`</translation>
     </message>
@@ -11047,12 +11047,12 @@
         <translation>le programme ne contient pas de mouvements ; vérifiez où il commence</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the pulses per {0} of {1} differ, or are none</source>
         <translation>les impulsions par {0} de {1} diffèrent, ou sont nulles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_records.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>the record of P[{0}] is not understood</source>
         <translation>l&apos;enregistrement de P[{0}] n&apos;est pas compris</translation>
     </message>
@@ -11062,12 +11062,12 @@
         <translation>la région en {0} est large de {1} mm, moins qu&apos;un cordon ({2} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower process.between_layers.lift or move the part in the cell</source>
         <translation>le retrait avant ou après le cordon est hors d&apos;atteinte à chaque hauteur, direction ou rotation essayée ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>the robot has to carry either the tool or the work object</source>
         <translation>le robot doit porter soit l&apos;outil, soit l&apos;objet de travail</translation>
     </message>
@@ -11092,22 +11092,22 @@
         <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; en {3} elle serait à peu près aussi grande, donnez cela comme substrate.scan_unit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/turns.py"/>
+        <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
         <source>the seams of {0} beads were moved to keep an axis within its limits</source>
         <translation>les coutures de {0} cordons ont été déplacées pour garder un axe dans ses limites</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_records.py"/>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
         <source>the second group of P[{0}] is not understood</source>
         <translation>le deuxième groupe de P[{0}] n&apos;est pas compris</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>the set {0} is missing</source>
         <translation>le jeu {0} manque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>the shape is empty; choose an object with a shape</source>
         <translation>la forme est vide ; choisissez un objet qui a une forme</translation>
     </message>
@@ -11117,12 +11117,12 @@
         <translation>la forme à déposer, ou certaines de ses faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/substrate.py"/>
+        <location filename="../../freecad_am/brep/walls/substrate.py"/>
         <source>the solid around {0} is turned inside out (volume {1} mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)</source>
         <translation>le solide autour de {0} est retourné (volume {1} mm3) ; réparez-le (Part, Vérifier la géométrie), ou inversez-le (Part, Inverser les formes)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>the solid ends after one section</source>
         <translation>le solide finit après une section</translation>
     </message>
@@ -11132,12 +11132,12 @@
         <translation>le solide est retourné (volume {0} mm3, près de {1}) ; inversez ses normales (Mesh, Inverser les normales)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
         <source>the solid is turned inside out; repair it (Part, Check geometry)</source>
         <translation>le solide est retourné ; réparez-le (Part, Vérifier la géométrie)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/rotary.py"/>
+        <location filename="../../freecad_am/core/layers/rotary/field.py"/>
         <source>the solid reaches over the end of the hub&apos;s axis, at {0}, where equidistant surfaces have an apex or an end; let it end beside the axis</source>
         <translation>le solide dépasse la fin de l&apos;axe du moyeu, en {0}, là où les surfaces équidistantes ont un sommet ou une fin ; faites-le finir à côté de l&apos;axe</translation>
     </message>
@@ -11162,22 +11162,22 @@
         <translation>la vitesse du fil dans le texte n&apos;est pas celle planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the speed {0} is none</source>
         <translation>la vitesse {0} n&apos;en est pas une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/store.py"/>
+        <location filename="../../freecad_am/objects/results/store.py"/>
         <source>the stored result cannot be read ({0}); recompute it</source>
         <translation>le résultat enregistré ne peut pas être lu ({0}) ; recalculez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model_notes.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>the table was measured at a wire feed of {0} mm/s, the job has {1} mm/s; set process.wire.feed to auto or to that, or measure a table at it</source>
         <translation>le tableau a été mesuré avec un dévidage de {0} mm/s, le travail a {1} mm/s ; mettez process.wire.feed à auto ou à cette valeur, ou mesurez un tableau avec celle du travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model_notes.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>the table was measured at a wire feed of {0} to {1} mm/s, the job has {2} mm/s; set process.wire.feed to auto or to that, or measure a table at it</source>
         <translation>la table a été mesurée à une vitesse de fil de {0} à {1} mm/s, le travail a {2} mm/s ; mettez process.wire.feed à auto ou à une de celles-ci, ou mesurez une table à cette vitesse</translation>
     </message>
@@ -11242,17 +11242,17 @@
         <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/level.py"/>
+        <location filename="../../freecad_am/core/planning/external/level.py"/>
         <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg, and nothing turns the part; put it on a positioner, or allow more</source>
         <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg, et rien ne tourne la pièce ; mettez-la sur un positionneur, ou permettez plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/level.py"/>
+        <location filename="../../freecad_am/core/planning/external/level.py"/>
         <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg; the positioner cannot turn the part so far: mount the part otherwise, or allow more</source>
         <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg ; le positionneur ne peut pas tourner la pièce autant : montez la pièce autrement, ou permettez plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_numbers.py"/>
+        <location filename="../../freecad_am/posts/ur/numbers.py"/>
         <source>the tool goes {0} mm beside a point that is not stopped at, too little for a blend radius, and the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at every point</source>
         <translation>l&apos;outil parcourt {0} mm près d&apos;un point sans arrêt, trop peu pour un rayon de lissage, et le robot s&apos;y arrêterait en déposant ; utilisez un strategy.chord_error plus grand, ou `program.blend: 0` pour s&apos;arrêter à chaque point</translation>
     </message>
@@ -11272,7 +11272,7 @@
         <translation>la trajectoire d&apos;outil à exécuter</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>the tools of {0} are not all on one tool</source>
         <translation>les outils de {0} ne sont pas tous sur un outil</translation>
     </message>
@@ -11282,12 +11282,12 @@
         <translation>la torche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet, sur le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
@@ -11297,22 +11297,22 @@
         <translation>la torche touche {what}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>the transformation changes while the deposit is on</source>
         <translation>la transformation change pendant que le dépôt est en marche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>the unit of V is a setting of the controller of {0}, and another one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`</source>
         <translation>l&apos;unité de V est un réglage de la commande de {0}, et une autre unité est une autre vitesse ; donnez controller.speed_unit dans un fichier machine à vous, ou utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>the value of {0} is not understood</source>
         <translation>la valeur de {0} n&apos;est pas comprise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>the values of {0} are not those from 0 to its size, each once</source>
         <translation>les valeurs de {0} ne sont pas celles de 0 à sa taille, chacune une fois</translation>
     </message>
@@ -11322,12 +11322,12 @@
         <translation>les sommets d&apos;un maillage sont pris comme points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>the wall bends too sharply: {0} mm off between {1} x {2} samples; smooth it, or cut it where it has an edge</source>
         <translation>la paroi se courbe trop fort : {0} mm d&apos;écart entre {1} x {2} échantillons ; lissez-la, ou coupez-la là où elle a une arête</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_cuts.py"/>
+        <location filename="../../freecad_am/brep/walls/cuts.py"/>
         <source>the wall cuts itself at {0} ({1}); a bend must have a larger radius than the tube, and faces must not cross</source>
         <translation>la paroi se coupe elle-même en {0} ({1}) ; un coude doit avoir un plus grand rayon que le tube, et les faces ne doivent pas se croiser</translation>
     </message>
@@ -11342,27 +11342,27 @@
         <translation>la paroi ne sort pas partout du substrat (en v = {0}, par exemple) : faites-la pénétrer dans le substrat sur tout le tour, ou choisissez les arêtes de départ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
         <source>the wall does not meet {0} in a closed curve (nearest {1} mm); let it reach into it all around</source>
         <translation>la paroi ne rencontre pas {0} en une courbe fermée (au plus près {1} mm) ; faites-la pénétrer sur tout le tour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the wall does not touch {0}: it comes nearest at {1}, {2} mm away; move it so that it reaches in, at most {3} mm may be missing</source>
         <translation>la paroi ne touche pas {0} : elle en est au plus près en {1}, à {2} mm ; déplacez-la pour qu&apos;elle y pénètre, il peut manquer {3} mm au plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/smooth_spacing.py"/>
+        <location filename="../../freecad_am/core/slicing/tubes/smooth_spacing.py"/>
         <source>the wall has no point at {0} mm from the layer below: use a smaller layer height or a narrower band</source>
         <translation>la paroi n&apos;a pas de point à {0} mm de la couche du dessous : prenez une plus petite hauteur de couche ou une bande plus étroite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the wall lies wholly in {0} (at {1} it is {2} mm deep, and nowhere less); a wall starts on the substrate and ends outside of it</source>
         <translation>la paroi est tout entière dans {0} (en {1} à {2} mm de profondeur, et nulle part moins) ; une paroi commence sur le substrat et finit en dehors</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the wall meets {0} in no curve that a layer can start from (shorter than a few {1} mm); let it reach in all around, or choose the edges to start from</source>
         <translation>la paroi ne rencontre {0} en aucune courbe d&apos;où une couche puisse partir (plus courte que quelques fois {1} mm) ; faites-la pénétrer sur tout le tour, ou choisissez les arêtes de départ</translation>
     </message>
@@ -11377,22 +11377,22 @@
         <translation>le chemin entre deux cordons s&apos;écarte jusqu&apos;à {0} mm de celui qui a été vérifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <location filename="../../freecad_am/posts/nc/read.py"/>
         <source>the way of the move, and so its time, is not known</source>
         <translation>le chemin du mouvement, et donc son temps, n&apos;est pas connu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/wire.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>the wire feeds {0} mm3/s, but beads of these classes, at their own travel speeds, take {1} mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the travel speed of the others</source>
         <translation>le fil apporte {0} mm3/s, mais les cordons de ces classes, à leurs propres vitesses d&apos;avance, en demandent {1} mm3/s : il y a là plus ou moins de matière que de place ; donnez-leur un programme de soudage qui alimente ainsi le fil, ou la vitesse d&apos;avance des autres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/wire.py"/>
+        <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>the wire feeds {0} mm3/s, {1} mm/s of {2} mm wire, but beads of {3} x {4} mm at {5} mm/s take {6} mm3/s; set process.wire.feed to {7} mm/s, or to auto, or make width, layer height and travel speed what they are</source>
         <translation>le fil apporte {0} mm3/s, {1} mm/s d&apos;un fil de {2} mm, mais des cordons de {3} x {4} mm à {5} mm/s en demandent {6} mm3/s ; mettez process.wire.feed à {7} mm/s, ou à auto, ou donnez à la largeur, à la hauteur de couche et à la vitesse d&apos;avance leurs vraies valeurs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the wrist centre lies above axis 3, without a forearm along axis 4</source>
         <translation>le centre du poignet est au-dessus de l&apos;axe 3, sans avant-bras le long de l&apos;axe 4</translation>
     </message>
@@ -11402,32 +11402,32 @@
         <translation>le poignet n&apos;est pas sphérique, et l&apos;axe 4 passe à {0} mm à côté de l&apos;axe 1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots</source>
         <translation>le poignet n’est pas sphérique : l’axe 4 est parallèle aux axes 2 et 3, comme sur les bras d’Universal Robots</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the wrist is not spherical: axis {0} passes {1} mm beside the point where axes 4 and 5 meet</source>
         <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 4 et 5 se rencontrent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the wrist is not spherical: axis {0} passes {1} mm beside the point where axes 5 and 6 meet</source>
         <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 5 et 6 se rencontrent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>there are files that belong to no project, or to two</source>
         <translation>il y a des fichiers qui n&apos;appartiennent à aucun projet, ou à deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>there are modules that are never run, or run twice</source>
         <translation>il y a des modules qui ne sont jamais exécutés, ou le sont deux fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>there are no moves</source>
         <translation>il n&apos;y a pas de mouvements</translation>
     </message>
@@ -11437,32 +11437,32 @@
         <translation>il n&apos;y a pas de points dedans ; donnez des lignes de x y z</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>there are {0} applications, expected one with its parts</source>
         <translation>il y a {0} applications, une seule attendue avec ses parties</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>there are {0} files, expected one script</source>
         <translation>il y a {0} fichiers, un seul script est attendu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>there are {0} main programs, expected one with its parts</source>
         <translation>il y a {0} programmes principaux, un seul attendu avec ses parties</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>there are {0} programs that are not subs, expected one</source>
         <translation>il y a {0} programmes qui ne sont pas des sous-programmes, un seul attendu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>there are {0} robots in it, the last axes of which are {1}; name one in `cell.machine`, with base and tip, and what stands beside it in `{2}`</source>
         <translation>il y a {0} robots dedans, dont les derniers axes sont {1} ; nommez-en un dans `cell.machine`, avec base et tip, et ce qui se trouve à côté dans `{2}`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>there are {0}; a machine needs at least 3 joint vectors with their flange poses</source>
         <translation>il y en a {0} ; une machine demande au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
     </message>
@@ -11477,27 +11477,27 @@
         <translation>il y a déjà une machine {0} ; choisissez un autre nom</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>there is a {0} {1} already, in line {2}</source>
         <translation>il y a déjà un {0} {1}, à la ligne {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>there is no &lt;{0}&gt;</source>
         <translation>il n&apos;y a pas de &lt;{0}&gt;</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>there is no URDF {0}</source>
         <translation>il n’y a pas d’URDF {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program.py"/>
+        <location filename="../../freecad_am/core/planning/program/build.py"/>
         <source>there is no bead {0} in a layer {1}; the job has layers 0 to {2}</source>
         <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; le travail a les couches 0 à {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
         <source>there is no calibration {0}; give the path of the YAML file that ur_calibration wrote of this arm</source>
         <translation>il n&apos;y a pas d&apos;étalonnage {0} ; donner le chemin du fichier YAML que ur_calibration a écrit pour ce bras</translation>
     </message>
@@ -11512,7 +11512,7 @@
         <translation>il n&apos;y a pas de dossier {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>there is no joint</source>
         <translation>il n&apos;y a pas d&apos;articulation</translation>
     </message>
@@ -11527,17 +11527,17 @@
         <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} est {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>there is no link {0}</source>
         <translation>il n&apos;y a pas de corps {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>there is no machine file {0}</source>
         <translation>il n&apos;y a pas de fichier machine {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>there is no model in it ({0})</source>
         <translation>il n&apos;y a pas de modèle dedans ({0})</translation>
     </message>
@@ -11547,37 +11547,37 @@
         <translation>il n&apos;y a pas de motif {0} ; utilisez l&apos;un de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/stored.py"/>
+        <location filename="../../freecad_am/objects/results/stored.py"/>
         <source>there is no result yet; recompute it</source>
         <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>there is no robot in it: no chain has six turning axes on nothing but axes that slide; the longest is {0}</source>
         <translation>il n&apos;y a pas de robot dedans : aucune chaîne n&apos;a six axes qui tournent portés par des axes qui glissent seulement ; la plus longue est {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
         <source>there is no row; give one per joint</source>
         <translation>il n&apos;y a pas de ligne ; donnez-en une par articulation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>there is no such file; check the name and the folder</source>
         <translation>il n&apos;y a pas de tel fichier ; vérifiez le nom et le dossier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/part_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
         <source>there is no such file; check the path</source>
         <translation>il n&apos;y a pas de tel fichier ; vérifiez le chemin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>there is no {0}; mend the row, or leave it out</source>
         <translation>il n&apos;y a pas de {0} ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/faults.py"/>
+        <location filename="../../freecad_am/objects/work/faults.py"/>
         <source>there is not enough memory to compute it; give larger steps, such as layer height and chord error, or a smaller part</source>
         <translation>la mémoire ne suffit pas pour le calculer ; donnez des pas plus grands, comme la hauteur de couche et l&apos;erreur de corde, ou une pièce plus petite</translation>
     </message>
@@ -11587,7 +11587,7 @@
         <translation>il n&apos;y a rien à voir dans ces couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>there is nothing to grow on: none of its edges lies on the platform, the plane Z = {0} mm through its lowest place {1}; choose a substrate, or the edges to start from</source>
         <translation>il n&apos;y a rien sur quoi croître : aucune de ses arêtes n&apos;est sur le plateau, le plan Z = {0} mm par son point le plus bas {1} ; choisissez un substrat, ou les arêtes d&apos;où partir</translation>
     </message>
@@ -11602,7 +11602,7 @@
         <translation>cela fait {0} poses, plus que {1} ; donnez un pas plus grand ou une boîte plus petite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
         <source>theta, d, a and alpha must be numbers</source>
         <translation>theta, d, a et alpha doivent être des nombres</translation>
     </message>
@@ -11622,7 +11622,7 @@
         <translation>celle-ci et la plupart des autres lignes ne sont pas des points ; donnez des lignes de x y z</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>this cannot be planned for: {0}</source>
         <translation>on ne peut pas planifier pour cela : {0}</translation>
     </message>
@@ -11632,9 +11632,14 @@
         <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>this is &lt;{0}&gt;, not the &lt;robot&gt; of a URDF</source>
         <translation>c&apos;est &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
+        <source>this is not XML: {0}</source>
+        <translation>ce n&apos;est pas du XML : {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
@@ -11642,22 +11647,17 @@
         <translation>ceci n&apos;est pas une cellule ; choisissez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
-        <source>this is not XML: {0}</source>
-        <translation>ce n&apos;est pas du XML : {0}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/file_content.py"/>
         <source>this is not a file but a device, a pipe or a folder; name a file</source>
         <translation>ce n&apos;est pas un fichier mais un périphérique, un tube ou un dossier ; nommez un fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>this is xacro; make a URDF of it first, with the program xacro of ROS</source>
         <translation>c&apos;est du xacro ; faites-en d&apos;abord un URDF, avec le programme xacro de ROS</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
         <source>this key is missing; give the file as ur_calibration wrote it</source>
         <translation>cette clé manque ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
@@ -11667,7 +11667,7 @@
         <translation>cette machine n&apos;a pas de condition</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_fronts.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>this wall has no closed parameter whose lines layers could follow (several faces, openings, a side or a slanted end); use constant-distance or smooth</source>
         <translation>cette paroi n&apos;a pas de paramètre fermé dont les lignes puissent guider des couches (plusieurs faces, ouvertures, un côté ou une extrémité oblique) ; utilisez constant-distance ou smooth</translation>
     </message>
@@ -11702,12 +11702,12 @@
         <translation>à</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/notes.py"/>
         <source>to keep the nozzle clear, tool axes turn by up to {0} deg/mm, faster than build_direction.max_turn ({1} deg/mm); use a slimmer nozzle or allow a faster turn</source>
         <translation>pour tenir la buse éloignée, les axes de l&apos;outil tournent jusqu&apos;à {0} deg/mm, plus vite que build_direction.max_turn ({1} deg/mm) ; utilisez une buse plus fine ou permettez une rotation plus rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
         <source>tool axes are {0}</source>
         <translation>les axes de l&apos;outil sont {0}</translation>
     </message>
@@ -11727,7 +11727,7 @@
         <translation>outil sur le robot, pièce sur un positionneur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>tool or platform is set anew</source>
         <translation>l&apos;outil ou le plateau est redéfini</translation>
     </message>
@@ -11782,7 +11782,7 @@
         <translation>rotation par longueur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
         <source>turned back by up to {0} deg to stay within build_direction.max_tilt</source>
         <translation>ramenés jusqu&apos;à {0} deg pour rester dans build_direction.max_tilt</translation>
     </message>
@@ -11797,7 +11797,7 @@
         <translation>une rotation autour du centre de la sphère</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>two files hold a program of the same name</source>
         <translation>deux fichiers contiennent un programme du même nom</translation>
     </message>
@@ -11822,7 +11822,7 @@
         <translation>à jour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>up to {0} mm of the wall are left above the last whole layer</source>
         <translation>jusqu&apos;à {0} mm de la paroi restent au-dessus de la dernière couche entière</translation>
     </message>
@@ -11837,17 +11837,17 @@
         <translation>utilisez 1 ou -1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>use mount: feature</source>
         <translation>utilisez mount: feature</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>use mount: feature, or move the part</source>
         <translation>utilisez mount: feature, ou déplacez la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
         <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
     </message>
@@ -11892,7 +11892,7 @@
         <translation>volume de la pièce moins ce que les cordons couvrent de chaque couche, à la largeur comptée, fois la hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model_notes.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>w = {0} v^(-1/3) + {1} / r + {2} with R2 = {3} and RMSE = {4} mm; a width of {5} mm takes travel speeds of {6} to {7} mm/min</source>
         <translation>w = {0} v^(-1/3) + {1} / r + {2} avec R2 = {3} et RMSE = {4} mm ; une largeur de {5} mm demande des vitesses d&apos;avance de {6} à {7} mm/min</translation>
     </message>
@@ -11947,7 +11947,7 @@
         <translation>ce que lit la commande de la machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>what the robot&apos;s own base is on, which is not told by a MACHINE_DEF</source>
         <translation>ce qui porte la base du robot lui-même, qu&apos;aucun MACHINE_DEF ne dit</translation>
     </message>
@@ -11962,12 +11962,12 @@
         <translation>ce qui a été palpé est {0} fois plus grand que ce qui est prévu ; ce sont des points d&apos;une autre pièce, ou dans un autre ordre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>whether WAIT FOR looks at $ANIN until it changes was not found documented</source>
         <translation>que WAIT FOR regarde $ANIN jusqu&apos;à ce qu&apos;il change n&apos;a été trouvé documenté nulle part</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up, and was not confirmed; use `motion: joint`, whose times hold the speed</source>
         <translation>si la vitesse des mouvements linéaires compte le chemin dont un rail porte le robot dépend de la manière dont ce rail a été configuré, et n&apos;a pas été confirmé ; utiliser `motion: joint`, dont les durées tiennent la vitesse</translation>
     </message>
@@ -11982,7 +11982,7 @@
         <translation>largeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>wire feed {0} m/min is not a positive number; mend the row, or leave it out</source>
         <translation>le dévidage {0} m/min n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
@@ -11992,7 +11992,7 @@
         <translation>les fils sont écrits en .step ou .dxf ; terminez le nom par l&apos;un d&apos;eux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>with TRAORI a move needs X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS and a work offset</source>
         <translation>avec TRAORI un mouvement demande X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS et un décalage d&apos;origine</translation>
     </message>
@@ -12002,12 +12002,12 @@
         <translation>avec des arêtes de {0} mm, une hauteur de couche, le maillage de la paroi a plus de {1} triangles ; prenez des couches plus hautes, ou déposez la paroi en plusieurs parties</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/sheet.py"/>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>with edges of {0} mm, by layer height and smallest radius, the mesh of the wall has more than {1} triangles, about {2}; use a larger layer height, round sharp bends more, or deposit the wall in parts</source>
         <translation>avec des arêtes de {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, le maillage de la paroi a plus de {1} triangles, environ {2} ; prenez une plus grande hauteur de couche, arrondissez davantage les coudes serrés, ou déposez la paroi par parties</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>with the part on the robot linear moves of KRL have a fixed tool ($IPO_MODE #TCP), and whether points are then the nozzle seen from the part or the part seen from the nozzle was not confirmed; use `setup: tool-on-robot`</source>
         <translation>avec la pièce sur le robot, les mouvements linéaires de KRL ont un outil fixe ($IPO_MODE #TCP), et que les points soient alors la buse vue de la pièce ou la pièce vue de la buse n&apos;a pas été confirmé ; prenez `setup: tool-on-robot`</translation>
     </message>
@@ -12037,17 +12037,17 @@
         <translation>avec {0}, ce travail est faisable ; il a été planifié ainsi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>within {0} mm</source>
         <translation>à {0} mm près</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned.py"/>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
         <source>without a bead model the travel speed does not vary, and the wire has nothing to follow; use constant, or a process.bead_model</source>
         <translation>sans modèle de cordon la vitesse d&apos;avance ne varie pas, et le fil n&apos;a rien à suivre ; utilisez constant, ou un process.bead_model</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>work offset {0} is not there for the part; use 1 to {1} (G54 to G59.2; the ninth, {2}, is set to zero for moves of the axes)</source>
         <translation>le décalage d&apos;origine {0} n&apos;existe pas pour la pièce ; utilisez 1 à {1} (G54 à G59.2 ; le neuvième, {2}, est mis à zéro pour les mouvements des axes)</translation>
     </message>
@@ -12087,17 +12087,17 @@
         <translation>zigzag</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>{0} % of it hang together with nothing that stands on the platform or the substrate; deposit these by themselves, or set strategy.direction</source>
         <translation>{0} % de la pièce ne tiennent à rien de ce qui repose sur le plateau ou le substrat ; déposez-les à part, ou donnez strategy.direction</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>{0} % of the joint speeds is none of 1 to 100</source>
         <translation>{0} % des vitesses articulaires n&apos;est pas de 1 à 100</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model_notes.py"/>
+        <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>{0} % of the length bends more than the table&apos;s beads, of {1} mm or more, and counts as bent like these; widths are only estimated there</source>
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
     </message>
@@ -12107,12 +12107,12 @@
         <translation>{0} (et {1} couches de solides de plus)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>{0} a flange {1} mm and {2} (largest entry of the rotation) from it; correct the geometry or the pose</source>
         <translation>{0} une bride à {1} mm et {2} (plus grand terme de la rotation) de celle-ci ; corrigez la géométrie ou la pose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0} all have a wall; name the faces of the one to deposit</source>
         <translation>{0} ont toutes une paroi ; nommez les faces de celle à déposer</translation>
     </message>
@@ -12127,7 +12127,7 @@
         <translation>{0} et {1} sont deux mécanismes d&apos;un même nom, {2} ; donnez un autre id à l&apos;un des fichiers</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <location filename="../../freecad_am/brep/walls/checks.py"/>
         <source>{0} and {1} are {2} mm apart at {3}; close the gap: edges must meet within {4} mm</source>
         <translation>{0} et {1} sont à {2} mm l&apos;une de l&apos;autre en {3} ; fermez le jour : les arêtes doivent se rencontrer à {4} mm près</translation>
     </message>
@@ -12142,7 +12142,7 @@
         <translation>{0} et {1} se rejoignent avec un angle de {2} deg en {3} : les couches au-dessus de la première entrent l&apos;une dans l&apos;autre, jusqu&apos;à {4} mm au-dessus des faces ; arrondissez l&apos;arête, ou recouvrez les faces l&apos;une après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <location filename="../../freecad_am/brep/walls/checks.py"/>
         <source>{0} and {1} meet at an angle of {2} deg at {3}; a wall&apos;s faces must run on smoothly, within {4} deg: round the edge, or deposit the faces one after the other</source>
         <translation>{0} et {1} se rencontrent sous un angle de {2} deg en {3} ; les faces d&apos;une paroi doivent se prolonger sans cassure, à {4} deg près : arrondissez l&apos;arête, ou déposez les faces l&apos;une après l&apos;autre</translation>
     </message>
@@ -12152,12 +12152,12 @@
         <translation>{0} ne sont pas {1} nombres ; {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/external_rule.py"/>
+        <location filename="../../freecad_am/core/planning/external/rule.py"/>
         <source>{0} are polynomials per bead, the method {1} has none; use method: {2}, or external_axes: {3}</source>
         <translation>{0} : ce sont des polynômes par cordon, la méthode {1} n&apos;en a pas ; utiliser method : {2}, ou external_axes : {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
         <source>{0} at layer {1}</source>
         <translation>{0} à la couche {1}</translation>
     </message>
@@ -12172,32 +12172,32 @@
         <translation>{0} cordon(s) seuls dans des régions plus étroites qu&apos;un cordon de {1} mm en dépassent, jusqu&apos;à {2} mm en {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>{0} bead(s) at the end shorter than half a layer height are left out</source>
         <translation>{0} cordon(s) à la fin plus courts qu&apos;une demi-hauteur de couche sont laissés de côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_fronts.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>{0} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the first in layer {1}</source>
         <translation>{0} cordon(s) comblent les jours entre des fronts qui se rencontrent, à moins d&apos;une hauteur de couche d&apos;eux ; le premier dans la couche {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} bead(s) of a radius of no more than the chord error ({1} mm) are left out</source>
         <translation>{0} cordon(s) d&apos;un rayon ne dépassant pas l&apos;erreur de corde ({1} mm) sont laissés de côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>{0} bead(s) where the wall closes are run at down to {1} mm/s: the axes turn no faster</source>
         <translation>{0} cordon(s) là où la paroi se ferme sont parcourus jusqu&apos;à {1} mm/s seulement : les axes ne tournent pas plus vite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/turns.py"/>
+        <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
         <source>{0} beads were split because an axis has not the stroke for a whole bead</source>
         <translation>{0} cordons ont été divisés parce qu&apos;un axe n&apos;a pas la course d&apos;un cordon entier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>{0} calls itself</source>
         <translation>{0} s&apos;appelle lui-même</translation>
     </message>
@@ -12222,12 +12222,12 @@
         <translation>{0} ne peut pas être lu ({1}) ; choisissez le fichier de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
         <source>{0} cannot be the name of a machine; use a to z, digits and -</source>
         <translation>{0} ne peut pas être le nom d&apos;une machine ; utilisez a à z, chiffres et -</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/sheet.py"/>
+        <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>{0} cannot be turned to one side (a twisted band has no outside); divide the band, or leave one of its faces out</source>
         <translation>{0} ne peuvent pas être tournées d&apos;un même côté (une bande vrillée n&apos;a pas d&apos;extérieur) ; divisez la bande, ou laissez une de ses faces de côté</translation>
     </message>
@@ -12237,7 +12237,7 @@
         <translation>{0} ne peut pas être {1} sur la commande : {2} ; utilisez {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <location filename="../../freecad_am/posts/nc/parts.py"/>
         <source>{0} cannot switch both on and off; give two different words</source>
         <translation>{0} ne peut pas à la fois mettre en marche et arrêter ; donnez deux mots différents</translation>
     </message>
@@ -12247,7 +12247,7 @@
         <translation>{0} porte le robot et n&apos;est pas un rail, c&apos;est-à-dire un axe qui coulisse ; rien d&apos;autre ne peut être planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>{0} chains move beside the robot ({1}), and one can carry the part; name it in `{2}`, with base and tip</source>
         <translation>{0} chaînes bougent à côté du robot ({1}), et une seule peut porter la pièce ; nommez-la dans `{2}`, avec base et tip</translation>
     </message>
@@ -12262,32 +12262,32 @@
         <translation>{0} ne change aucun écart : les points ne le disent pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/in_sequence.py"/>
+        <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
         <source>{0} cm3 of it are within {1} and would be deposited twice; cut one from the other</source>
         <translation>{0} cm3 de lui se trouvent dans {1} et seraient déposés deux fois ; découpez l&apos;un de l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/scan.py"/>
+        <location filename="../../freecad_am/objects/planned/scan.py"/>
         <source>{0} compares with {1}; choose an inspection of the part that is deposited on</source>
         <translation>{0} compare avec {1} ; choisissez un contrôle de la pièce sur laquelle on dépose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>{0} do not belong together</source>
         <translation>{0} ne vont pas ensemble</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0} do not join to one wall; name the faces of the wall, or deposit them one by one</source>
         <translation>{0} ne se joignent pas en une paroi ; nommez les faces de la paroi, ou déposez-les une à une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0} does not wait for the moves before it</source>
         <translation>{0} n&apos;attend pas les mouvements qui le précèdent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/equidistant.py"/>
+        <location filename="../../freecad_am/core/slicing/solids/equidistant.py"/>
         <source>{0} edges have not two faces, one at ({1}, {2}, {3}) mm from the hub&apos;s base; close the mesh</source>
         <translation>{0} arêtes n&apos;ont pas deux faces, l&apos;une à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
     </message>
@@ -12297,12 +12297,12 @@
         <translation>{0} arêtes de plus de deux triangles ont été dédoublées, par exemple en {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0} face(s) ({1}) of {2} are not deposited</source>
         <translation>{0} face(s) ({1}) de {2} ne sont pas déposées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0} face(s) ({1}), about {2} cm3 of the {3} cm3 of {4}, are not deposited</source>
         <translation>{0} face(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposées</translation>
     </message>
@@ -12312,32 +12312,32 @@
         <translation>{0} remplit tout, non pas {1} % ; choisissez 100 %, ou fill : contours, lines, zigzag, grid, triangles, honeycomb ou gyroid</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/expressions.py"/>
+        <location filename="../../freecad_am/objects/fields/expressions.py"/>
         <source>{0} follows the expression {1}, which gives nothing any more; give {2} a value or another one</source>
         <translation>{0} suit l&apos;expression {1}, qui ne donne plus rien ; donnez à {2} une valeur ou une autre expression</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
         <source>{0} from {1} to {2}: {3}</source>
         <translation>{0} de {1} à {2} : {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
         <source>{0} from {1} to {2}: {3}; the robot begins at the link {4}; or write `external: {5}`, which takes track and positioner of the file</source>
         <translation>{0} de {1} à {2} : {3} ; le robot commence au corps {4} ; ou écrivez `external: {5}`, qui prend rail et positionneur du fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
         <source>{0} fronts merge</source>
         <translation>{0} fronts se rejoignent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/expressions.py"/>
+        <location filename="../../freecad_am/objects/fields/expressions.py"/>
         <source>{0} gives {1}, which is not a number</source>
         <translation>{0} donne {1}, qui n&apos;est pas un nombre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} has a 0; give the pulses of a degree of each axis, negative where they count down</source>
         <translation>{0} contient un 0 ; donnez les impulsions d&apos;un degré de chaque axe, négatives là où elles décroissent</translation>
     </message>
@@ -12347,12 +12347,12 @@
         <translation>{0} a un axe linéaire et porte la pièce, ce qui ne peut pas encore être planifié ; utilisez des axes rotatifs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} has another dimension; give {1}</source>
         <translation>{0} a une autre dimension ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} has edges and no faces, which are laid as beads</source>
         <translation>{0} a des arêtes et pas de faces ; elles sont déposées comme cordons</translation>
     </message>
@@ -12362,22 +12362,22 @@
         <translation>{0} n&apos;a ni I et J ni R ; un arc a besoin de son centre ou de son rayon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>{0} has no limits {1}; use {2}</source>
         <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
         <source>{0} has no link {1}; it has {2}</source>
         <translation>{0} n’a pas de corps {1} ; il a {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0} has no number</source>
         <translation>{0} n&apos;a pas de numéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>{0} has no spherical wrist, and what its controller calls the configurations of cartesian positions is not known; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
     </message>
@@ -12407,7 +12407,7 @@
         <translation>{0} a {1} points avec son approche, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} holds {1} solids</source>
         <translation>{0} contient {1} solides</translation>
     </message>
@@ -12417,27 +12417,27 @@
         <translation>{0} trous ont été bouchés, le plus grand large de {1} mm en {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>{0} in a loop that waits for an input</source>
         <translation>{0} dans une boucle qui attend une entrée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/document_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/document_file.py"/>
         <source>{0} in it does not begin as XML; save it again</source>
         <translation>{0} n&apos;y commence pas comme du XML ; enregistrez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/document_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/document_file.py"/>
         <source>{0} in it has a document type, which no document of FreeCAD has, and is not read; save it again</source>
         <translation>{0} y a un type de document, qu&apos;aucun document de FreeCAD n&apos;a, et n&apos;est pas lu ; enregistrez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} in or about a loop that waits for an analogue input</source>
         <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/controllers.py"/>
+        <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>{0} is a URDF, which does not tell what the controller shows; plan without a program, or make a machine file of it with New Machine…</source>
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
     </message>
@@ -12447,12 +12447,12 @@
         <translation>{0} est un maillage, qui n&apos;a ni arêtes ni faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is a mesh, which is filled</source>
         <translation>{0} est un maillage, qui est rempli</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is a module or a routine of this program and is not loaded</source>
         <translation>{0} est un module ou une routine de ce programme et n&apos;est pas chargé</translation>
     </message>
@@ -12467,92 +12467,92 @@
         <translation>{0} est un robot ; utilisez {1}, ou choisissez une autre machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is a skin that turns about one axis</source>
         <translation>{0} est une peau qui tourne autour d&apos;un axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is a solid</source>
         <translation>{0} est un solide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is a solid; it turns about one axis, but a wall of one bead would leave out {1} of its {2} cm3</source>
         <translation>{0} est un solide ; il tourne autour d&apos;un axe, mais une paroi d&apos;un cordon laisserait de côté {1} de ses {2} cm3</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0} is a surface: it has no {1} wall, and is taken as it is</source>
         <translation>{0} est une surface : elle n&apos;a pas de paroi {1}, et est prise telle quelle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is a thin shell, one bead of {1} mm, on {2}</source>
         <translation>{0} est une coque mince, un cordon de {1} mm, sur {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is a thin wall that grows on {1}</source>
         <translation>{0} est une paroi mince qui croît sur {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is an open mesh that cuts itself at {1} pairs of its triangles, as at {2}, so it is not a wall of one bead: it is filled, with its {3} holes of up to {4} mm closed</source>
         <translation>{0} est un maillage ouvert qui se coupe lui-même en {1} paires de ses triangles, par exemple en {2}, ce n&apos;est donc pas une paroi d&apos;un cordon : il est rempli, ses {3} trous jusqu&apos;à {4} mm étant fermés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is an open mesh that lies rather than stands, {1} of it at less than 45 deg to the platform, so it is a face that is covered</source>
         <translation>{0} est un maillage ouvert qui est couché plutôt que debout, dont {1} à moins de 45 deg du plateau, c&apos;est donc une face qui est recouverte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is an open mesh, so it is a thin wall that grows on {1}</source>
         <translation>{0} est un maillage ouvert, donc une paroi mince qui croît sur {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is an open mesh, so it is a thin wall that starts on the platform</source>
         <translation>{0} est un maillage ouvert, donc une paroi mince qui part du plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is an open skin and not of revolution, and nothing else serves it; it needs a substrate, or edges to start from, and what does not grow from there is left out</source>
         <translation>{0} est une peau ouverte et non de révolution, et rien d&apos;autre ne lui convient ; il lui faut un substrat, ou des arêtes d&apos;où partir, et ce qui n&apos;en croît pas est laissé de côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is an open skin and not of revolution, so it is a thin wall, which starts on the platform where nothing carries it</source>
         <translation>{0} est une peau ouverte qui n&apos;est pas de révolution, donc une paroi mince, qui part du plateau là où rien ne la porte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is an open skin that lies rather than stands, {1} of it at less than 45 deg to the platform, so it is a face that is covered</source>
         <translation>{0} est une peau ouverte qui est couchée plutôt que debout, dont {1} à moins de 45 deg du plateau, c&apos;est donc une face qui est recouverte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>{0} is called before it is defined</source>
         <translation>{0} est appelé avant d&apos;être défini</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0} is called before it is loaded</source>
         <translation>{0} est appelé avant d&apos;être chargé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>{0} is carried by {1}, as the robot is; a positioner must stand on the floor</source>
         <translation>{0} est porté par {1}, comme le robot ; un positionneur doit être posé au sol</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>{0} is defined again, or within a part</source>
         <translation>{0} est défini à nouveau, ou dans une partie</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>{0} is for a machine that is the URDF of the whole cell, such as machine: bay.urdf; or give a list of mechanisms</source>
         <translation>{0} est pour une machine qui est l&apos;URDF de toute la cellule, comme machine: bay.urdf ; ou donnez une liste de mécanismes</translation>
     </message>
@@ -12562,17 +12562,17 @@
         <translation>{0} est connu à {1} mm près, par des triangles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0} is loaded while depositing, is not there, or {1} is not a library</source>
         <translation>{0} est chargé pendant le dépôt, n&apos;existe pas, ou {1} n&apos;est pas une bibliothèque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is loaded without being run and removed</source>
         <translation>{0} est chargé sans être exécuté puis retiré</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0} is missing in it</source>
         <translation>il y manque {0}</translation>
     </message>
@@ -12587,7 +12587,7 @@
         <translation>{0} manque ; choisissez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>{0} is more than the rounding of a display leaves; give 0 to {1}</source>
         <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
     </message>
@@ -12602,159 +12602,19 @@
         <translation>{0} n&apos;est ni une longueur ni six nombres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]</source>
-        <translation>{0} n&apos;est pas un axe ; donnez un point et une direction comme [[0, 0, 0], [0, 0, 1]]</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
-        <source>{0} is not a bend of a torus, so its plane of symmetry is not known; give its normal as build_direction.plane, or use local, layer or fixed</source>
-        <translation>{0} n&apos;est pas le coude d&apos;un tore, son plan de symétrie n&apos;est donc pas connu ; donnez sa normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
-        <source>{0} is not a colour; give red, green and blue from 0 to 1</source>
-        <translation>{0} n&apos;est pas une couleur ; donnez rouge, vert et bleu de 0 à 1</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
-        <source>{0} is not a digital input of the project</source>
-        <translation>{0} n&apos;est pas une entrée logique du projet</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
-        <source>{0} is not a digital output of the project</source>
-        <translation>{0} n&apos;est pas une sortie logique du projet</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>{0} is not a direction; give three numbers such as 0 1 0, or auto</source>
-        <translation>{0} n&apos;est pas une direction ; donnez trois nombres comme 0 1 0, ou auto</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>{0} is not an edge of {1}; choose edges of it</source>
-        <translation>{0} n&apos;est pas une arête de {1} ; choisissez ses arêtes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>{0} is not a face of {1}; choose faces of the hub</source>
-        <translation>{0} n&apos;est pas une face de {1} ; choisissez des faces du moyeu</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/feature.py"/>
-        <source>{0} is not a face; choose faces or the whole shape</source>
-        <translation>{0} n&apos;est pas une face ; choisissez des faces ou toute la forme</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>{0} is not a height; give numbers in mm</source>
-        <translation>{0} n&apos;est pas une hauteur ; donnez des nombres en mm</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc_parsed.py"/>
-        <source>{0} is not an instruction</source>
-        <translation>{0} n&apos;est pas une instruction</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
-        <source>{0} is not a library of the project</source>
-        <translation>{0} n&apos;est pas une bibliothèque du projet</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
-        <source>{0} is not a name; use words without = and ;</source>
-        <translation>{0} n&apos;est pas un nom ; utilisez des mots sans = ni ;</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
-        <source>{0} is not an obstacle; {1}</source>
-        <translation>{0} n&apos;est pas un obstacle ; {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>{0} is not a pair of points; give x y z &gt; x y z in mm</source>
-        <translation>{0} n&apos;est pas une paire de points ; donnez x y z &gt; x y z en mm</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0} is not a positioner of this controller; give {1}</source>
-        <translation>{0} n&apos;est pas un positionneur de cette commande ; indiquez {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
-        <source>{0} is not a program of it, or calls itself</source>
-        <translation>{0} n&apos;est pas un de ses programmes, ou s&apos;appelle lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} is not a robot and takes no external axes; leave them out</source>
-        <translation>{0} n&apos;est pas un robot et n&apos;admet pas d&apos;axes externes ; omettez-les</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
-        <source>{0} is not a scale; give 1 for mm, 1000 for m</source>
-        <translation>{0} n&apos;est pas une échelle ; donnez 1 pour mm, 1000 pour m</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
-        <source>{0} is not a shape that can be drawn; use {1}</source>
-        <translation>{0} n&apos;est pas une forme qui puisse être dessinée ; utilisez {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
-        <source>{0} is not a sign; use 1 or -1</source>
-        <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
-        <source>{0} is not a speed of the module, or the move is told otherwise than by \T or \V</source>
-        <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb_modules.py"/>
-        <source>{0} is not a tool of the module, or {1} no work object</source>
-        <translation>{0} n&apos;est pas un outil du module, ou {1} n&apos;est pas un objet de travail</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/wall.py"/>
-        <source>{0} is not a torus, cylinder or cone: a wall of several faces must be of one of these; choose one face</source>
-        <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône : une paroi de plusieurs faces doit être de l&apos;un d&apos;eux ; choisissez une seule face</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/touched.py"/>
-        <source>{0} is not a touched point; {1}</source>
-        <translation>{0} n&apos;est pas un point palpé ; {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/nc_parts.py"/>
-        <source>{0} is not a word such as M7 or H2=1; give one for on and one for off</source>
-        <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
-        <source>{0} is not a zone of the module</source>
-        <translation>{0} n&apos;est pas une zone du module</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} is not a {1}; choose one</source>
-        <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} is not an {1}; choose one</source>
-        <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/feature_kinds.py"/>
+        <location filename="../../freecad_am/objects/planned/feature_kinds.py"/>
         <source>{0} is none of {1}</source>
         <translation>{0} n&apos;est aucun de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
         <source>{0} is not `key: value`; give the file as ur_calibration wrote it</source>
         <translation>{0} n&apos;est pas de la forme `clé: valeur` ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
+        <source>{0} is not a bend of a torus, so its plane of symmetry is not known; give its normal as build_direction.plane, or use local, layer or fixed</source>
+        <translation>{0} n&apos;est pas le coude d&apos;un tore, son plan de symétrie n&apos;est donc pas connu ; donnez sa normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -12767,27 +12627,72 @@
         <translation>{0} n&apos;est pas une classe de cordons ; {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
+        <source>{0} is not a colour; give red, green and blue from 0 to 1</source>
+        <translation>{0} n&apos;est pas une couleur ; donnez rouge, vert et bleu de 0 à 1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>{0} is not a digital input of the project</source>
+        <translation>{0} n&apos;est pas une entrée logique du projet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>{0} is not a digital output of the project</source>
+        <translation>{0} n&apos;est pas une sortie logique du projet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>{0} is not a direction; give three numbers such as 0 1 0, or auto</source>
+        <translation>{0} n&apos;est pas une direction ; donnez trois nombres comme 0 1 0, ou auto</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a direction; {1}</source>
         <translation>{0} n&apos;est pas une direction ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/spiral.py"/>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>{0} is not a face of {1}; choose faces of the hub</source>
+        <translation>{0} n&apos;est pas une face de {1} ; choisissez des faces du moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>{0} is not a face; choose faces or the whole shape</source>
+        <translation>{0} n&apos;est pas une face ; choisissez des faces ou toute la forme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution/spiral.py"/>
         <source>{0} is not a full turn; use path: layers</source>
         <translation>{0} n&apos;est pas un tour entier ; utilisez path: layers</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>{0} is not a height; give numbers in mm</source>
+        <translation>{0} n&apos;est pas une hauteur ; donnez des nombres en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>{0} is not a library of the project</source>
+        <translation>{0} n&apos;est pas une bibliothèque du projet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a list</source>
         <translation>{0} n&apos;est pas une liste</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a list of {1}</source>
         <translation>{0} n&apos;est pas une liste de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0} is not a name; use words without = and ;</source>
+        <translation>{0} n&apos;est pas un nom ; utilisez des mots sans = ni ;</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
         <source>{0} is not a number</source>
         <translation>{0} n&apos;est pas un nombre</translation>
     </message>
@@ -12807,9 +12712,14 @@
         <translation>{0} n&apos;est pas un nombre ; donnez {1} comme nombre à point décimal</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} is not a number{1}</source>
         <translation>{0} n&apos;est pas un nombre{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>{0} is not a pair of points; give x y z &gt; x y z in mm</source>
+        <translation>{0} n&apos;est pas une paire de points ; donnez x y z &gt; x y z en mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
@@ -12822,7 +12732,7 @@
         <translation>{0} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ{1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} is not a pose; give x y z in mm and RX RY RZ in deg</source>
         <translation>{0} n&apos;est pas une pose ; donnez x y z en mm et RX RY RZ en deg</translation>
     </message>
@@ -12832,7 +12742,17 @@
         <translation>{0} n&apos;est pas une pose ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0} is not a positioner of this controller; give {1}</source>
+        <translation>{0} n&apos;est pas un positionneur de cette commande ; indiquez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>{0} is not a program of it, or calls itself</source>
+        <translation>{0} n&apos;est pas un de ses programmes, ou s&apos;appelle lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a range; give the smaller one first, or null for endless</source>
         <translation>{0} n&apos;est pas une plage ; donnez d&apos;abord la plus petite valeur, ou null pour un axe sans fin</translation>
     </message>
@@ -12852,22 +12772,62 @@
         <translation>{0} n&apos;est pas une plage ; donnez deux pourcentages, le plus petit d&apos;abord</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} is not a robot and takes no external axes; leave them out</source>
+        <translation>{0} n&apos;est pas un robot et n&apos;admet pas d&apos;axes externes ; omettez-les</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
+        <source>{0} is not a scale; give 1 for mm, 1000 for m</source>
+        <translation>{0} n&apos;est pas une échelle ; donnez 1 pour mm, 1000 pour m</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
+        <source>{0} is not a shape that can be drawn; use {1}</source>
+        <translation>{0} n&apos;est pas une forme qui puisse être dessinée ; utilisez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
+        <source>{0} is not a sign; use 1 or -1</source>
+        <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} is not a speed of the module, or the move is told otherwise than by \T or \V</source>
+        <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a text</source>
         <translation>{0} n&apos;est pas un texte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
+        <source>{0} is not a tool of the module, or {1} no work object</source>
+        <translation>{0} n&apos;est pas un outil du module, ou {1} n&apos;est pas un objet de travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>{0} is not a torus, cylinder or cone: a wall of several faces must be of one of these; choose one face</source>
+        <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône : une paroi de plusieurs faces doit être de l&apos;un d&apos;eux ; choisissez une seule face</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/touched.py"/>
+        <source>{0} is not a touched point; {1}</source>
+        <translation>{0} n&apos;est pas un point palpé ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not a type of joint; use revolute or prismatic</source>
         <translation>{0} n&apos;est pas un type d&apos;articulation ; utilisez revolute ou prismatic</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not a unit of path speeds; use {1}</source>
         <translation>{0} n&apos;est pas une unité de vitesse ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not a unit vector</source>
         <translation>{0} n&apos;est pas un vecteur unitaire</translation>
     </message>
@@ -12877,19 +12837,59 @@
         <translation>{0} n&apos;est pas un nombre entier</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/nc/parts.py"/>
+        <source>{0} is not a word such as M7 or H2=1; give one for on and one for off</source>
+        <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} is not a zone of the module</source>
+        <translation>{0} n&apos;est pas une zone du module</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>{0} is not a {1}; choose one</source>
+        <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/interop/export.py"/>
         <source>{0} is not above 0</source>
         <translation>{0} n&apos;est pas supérieur à 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>{0} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]</source>
+        <translation>{0} n&apos;est pas un axe ; donnez un point et une direction comme [[0, 0, 0], [0, 0, 1]]</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>{0} is not an edge of {1}; choose edges of it</source>
+        <translation>{0} n&apos;est pas une arête de {1} ; choisissez ses arêtes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/parsed.py"/>
+        <source>{0} is not an instruction</source>
+        <translation>{0} n&apos;est pas une instruction</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not an object</source>
         <translation>{0} n&apos;est pas un objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not an object with the keys {1}</source>
         <translation>{0} n&apos;est pas un objet avec les clés {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/obstacles.py"/>
+        <source>{0} is not an obstacle; {1}</source>
+        <translation>{0} n&apos;est pas un obstacle ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>{0} is not an {1}; choose one</source>
+        <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
@@ -12902,7 +12902,7 @@
         <translation>{0} n&apos;est pas pour les solides sur moyeu, qui croissent le long de ses normales ; utilisez local</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/part_file.py"/>
+        <location filename="../../freecad_am/objects/shapes/part_file.py"/>
         <source>{0} is not found among the objects with a shape ({1}); name one</source>
         <translation>{0} n&apos;est pas trouvé parmi les objets à forme ({1}) ; nommez-en un</translation>
     </message>
@@ -12922,17 +12922,17 @@
         <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}, ou none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>{0} is not known; {1}</source>
         <translation>{0} n&apos;est pas connu ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>{0} is not position {1}</source>
         <translation>{0} n&apos;est pas la position {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>{0} is not position {1} of {2}</source>
         <translation>{0} n&apos;est pas la position {1} de {2}</translation>
     </message>
@@ -12942,22 +12942,22 @@
         <translation>{0} n&apos;est pas lu comme des points ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/read.py"/>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>{0} is not read; use {1}</source>
         <translation>{0} n&apos;est pas lu ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not the length of an arm; give more than 0 mm</source>
         <translation>{0} n&apos;est pas la longueur d&apos;un bras ; donnez plus de 0 mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>{0} is not the name of the file, {1}</source>
         <translation>{0} n&apos;est pas le nom du fichier, {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is not there, has no routine {1}, is run already, or loaded while depositing</source>
         <translation>{0} manque, n&apos;a pas de routine {1}, a déjà été exécuté, ou est chargé pendant le dépôt</translation>
     </message>
@@ -12967,27 +12967,27 @@
         <translation>{0} n&apos;est ni vrai ni faux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} is not understood</source>
         <translation>{0} n&apos;est pas compris</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/expressions.py"/>
+        <location filename="../../freecad_am/objects/fields/expressions.py"/>
         <source>{0} is not understood ({1}); write it as in {2}Spreadsheet.height / 2</source>
         <translation>{0} n&apos;est pas compris ({1}) ; écrivez-le comme {2}Spreadsheet.height / 2</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} is not understood here</source>
         <translation>{0} n&apos;est pas compris ici</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} is not understood, or a second output is switched</source>
         <translation>{0} n&apos;est pas compris, ou une seconde sortie est commandée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>{0} is not understood, or declares a name again</source>
         <translation>{0} n&apos;est pas compris, ou déclare un nom une seconde fois</translation>
     </message>
@@ -13002,7 +13002,7 @@
         <translation>{0} n&apos;est pas compris ; donnez couche/cordon:constante:pente avec jusqu&apos;à {1} coefficients en deg et deg par tour, comme 12/0:-35:360 ; * vaut pour tout autre cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} is not understood; give {1}</source>
         <translation>{0} n&apos;est pas compris ; donnez {1}</translation>
     </message>
@@ -13012,17 +13012,17 @@
         <translation>{0} n&apos;est pas compris ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0} is not {1} data of the project, or has not so many values</source>
         <translation>{0} n&apos;est pas une donnée {1} du projet, ou n&apos;a pas autant de valeurs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} is not {1}; give more than 0, or null where not known</source>
         <translation>{0} n&apos;est pas {1} ; donnez plus de 0, ou null si elle n&apos;est pas connue</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/properties.py"/>
+        <location filename="../../freecad_am/objects/fields/properties.py"/>
         <source>{0} is out of range; give -360 to 360 deg</source>
         <translation>{0} est hors de la plage ; donnez de -360 à 360 deg</translation>
     </message>
@@ -13032,27 +13032,27 @@
         <translation>{0} est hors de la plage ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is reached before the move before it ends</source>
         <translation>{0} est atteint avant la fin du mouvement qui précède</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>{0} is read ahead of the motion: no wait stands before it</source>
         <translation>{0} est lu en avance sur le mouvement : aucune attente ne le précède</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>{0} is run already, or called while depositing</source>
         <translation>{0} a déjà été exécuté, ou est appelé pendant le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/stacking.py"/>
+        <location filename="../../freecad_am/core/layers/planes/stacking.py"/>
         <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than {5} deg, and it is {6} mm high</source>
         <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de {5} deg, et sa hauteur est de {6} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/stacking.py"/>
+        <location filename="../../freecad_am/core/layers/planes/stacking.py"/>
         <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than {5} deg, and it is {6} mm high; along (0, 0, 1) it would be {7} mm^2 and {8} mm</source>
         <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de {5} deg, et sa hauteur est de {6} mm ; suivant (0, 0, 1) ce serait {7} mm^2 et {8} mm</translation>
     </message>
@@ -13082,17 +13082,17 @@
         <translation>{0} est {1} ; donnez un nombre d&apos;au plus {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>{0} jobs are called by none of the others, expected one</source>
         <translation>{0} jobs ne sont appelés par aucun autre, un seul est attendu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/support.py"/>
+        <location filename="../../freecad_am/core/process/deposit/support.py"/>
         <source>{0} layers more have beads over nothing, {1} mm of them</source>
         <translation>{0} autres couches ont des cordons au-dessus du vide, sur {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/turn.py"/>
+        <location filename="../../freecad_am/brep/revolution/turn.py"/>
         <source>{0} leave more than one opening around the axis; choose one of them</source>
         <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez-en une</translation>
     </message>
@@ -13102,17 +13102,17 @@
         <translation>{0} ne lie à rien, ce qu&apos;il montrait a disparu ou n&apos;a pas été chargé ; choisissez un autre {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>{0} may be a program of this very job; call one of another name</source>
         <translation>{0} peut être un programme de ce travail même ; appelez-en un d&apos;un autre nom</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} may be read in two ways; write decimals with a point and one kind of separator, as in 10.5 20.5</source>
         <translation>{0} peut se lire de deux façons ; écrivez les décimales avec un point et une seule sorte de séparateur, comme dans 10.5 20.5</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <location filename="../../freecad_am/posts/nc/parts.py"/>
         <source>{0} means something else to the controller; use another word</source>
         <translation>{0} veut dire autre chose pour la commande ; utilisez un autre mot</translation>
     </message>
@@ -13122,7 +13122,7 @@
         <translation>{0} mécanismes portent le robot ; un seul rail peut être planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
         <source>{0} meets {1} in {2} loops; layers start at the uppermost</source>
         <translation>{0} rencontre {1} en {2} boucles ; les couches commencent à la plus haute</translation>
     </message>
@@ -13147,17 +13147,17 @@
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>{0} mm is too fine for curved layers of {1}, {2} cm3; give at least {3} mm, or layers: planes</source>
         <translation>{0} mm est trop fin pour des couches courbes de {1}, {2} cm3 ; donnez au moins {3} mm, ou layers: planes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/planes.py"/>
+        <location filename="../../freecad_am/core/layers/planes/field.py"/>
         <source>{0} mm is too much for {1}, {2} mm high along strategy.direction (the highest place is at {3}): no layer is cut in its {4}; give at most {5} mm</source>
         <translation>{0} mm est trop pour {1}, haut de {2} mm suivant strategy.direction (le point le plus haut est en {3}) : aucune couche n&apos;est coupée ({4}) ; donnez {5} mm au plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along.py"/>
+        <location filename="../../freecad_am/core/layers/along/field.py"/>
         <source>{0} mm is too much for {1}, {2} mm long along the guide: no layer is cut in its {3}; give at most {4} mm</source>
         <translation>{0} mm, c&apos;est trop pour {1}, long de {2} mm le long du guide : aucune couche n&apos;est coupée en son {3} ; donnez au plus {4} mm</translation>
     </message>
@@ -13172,17 +13172,17 @@
         <translation>{0} mm font environ {1} points, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/support.py"/>
+        <location filename="../../freecad_am/core/process/deposit/support.py"/>
         <source>{0} mm of beads lie over nothing, {1} mm of them in a row from here: what is below is more than {2} mm away, or they overhang it by more than half of their width; deposit what carries them first, let the part grow from another side, or leave them out</source>
         <translation>{0} mm de cordons sont au-dessus du vide, dont {1} mm à la suite à partir d&apos;ici : ce qui est dessous est à plus de {2} mm, ou ils le débordent de plus de la moitié de leur largeur ; déposez d&apos;abord ce qui les porte, faites croître la pièce d&apos;un autre côté, ou laissez-les de côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} mm of the height are left at the top, less than a layer</source>
         <translation>{0} mm de la hauteur restent en haut, moins qu&apos;une couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} mm of the wall are left at the top, less than a layer</source>
         <translation>{0} mm de la paroi restent en haut, moins qu&apos;une couche</translation>
     </message>
@@ -13197,7 +13197,7 @@
         <translation>à {0} mm de sa pointe elle s&apos;étend à {1} mm de son axe, la buse en cône à {2} mm, et c&apos;est le cône qui est tenu à l&apos;écart du dépôt ; donnez un cell.nozzle.half_angle d&apos;au moins {3} deg, ou une cell.nozzle.length plus petite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>{0} mm/s cannot be written in {1}; use {2} to {3} mm/s</source>
         <translation>{0} mm/s ne s&apos;écrit pas en {1} ; utilisez {2} à {3} mm/s</translation>
     </message>
@@ -13207,17 +13207,17 @@
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez une vitesse entre {1} et {2} mm/s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_numbers.py"/>
+        <location filename="../../freecad_am/posts/staubli/numbers.py"/>
         <source>{0} mm/s cannot be written; use at least {1} mm/s</source>
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez au moins {1} mm/s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_numbers.py"/>
+        <location filename="../../freecad_am/posts/nc/numbers.py"/>
         <source>{0} mm/s cannot be written; use {1} to {2} mm/s</source>
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez {1} à {2} mm/s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/material.py"/>
+        <location filename="../../freecad_am/core/process/model/material.py"/>
         <source>{0} mm/s is more than the fastest, {1} mm/s; give the slower speed here</source>
         <translation>{0} mm/s est plus que le plus rapide, {1} mm/s ; donnez ici la vitesse la plus lente</translation>
     </message>
@@ -13232,22 +13232,22 @@
         <translation>{0} mm^2 surplombent la couche du dessous de plus de {1} deg, le plus grand morceau en {2} ; déposez d&apos;abord ce qui le porte, choisissez une autre strategy.direction, ou augmentez strategy.max_overhang</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} modules have a routine main, expected one</source>
         <translation>{0} modules ont une routine main, un seul était attendu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
         <source>{0} moves take {1} s in all and cannot be shorter than 1 ms each; use a larger chord error or a lower speed</source>
         <translation>{0} mouvements prennent {1} s en tout et ne peuvent pas durer moins de 1 ms chacun ; prenez une plus grande erreur de corde ou une vitesse plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} must be 1 or -1 each</source>
         <translation>{0} doivent être 1 ou -1 chacun</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_entries.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
         <source>{0} must lie within +-180</source>
         <translation>{0} doit être compris entre -180 et 180</translation>
     </message>
@@ -13257,7 +13257,7 @@
         <translation>{0} ne désigne pas d&apos;axes externes ; {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} names the edges that it starts from</source>
         <translation>{0} nomme les arêtes d&apos;où elle part</translation>
     </message>
@@ -13282,37 +13282,37 @@
         <translation>{0} d&apos;entre eux s&apos;appellent {1} ; donnez à chacun son propre nom</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/table.py"/>
+        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
         <source>{0} of {1} directions cannot be turned to the torch by this machine; tilt less, or mount the part otherwise</source>
         <translation>{0} de {1} directions ne peuvent pas être tournées vers la torche par cette machine ; inclinez moins, ou montez la pièce autrement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>{0} of {1} fronts have corners, first layer {2}; the sharpest turns by {3} deg. The robot slows down there</source>
         <translation>{0} de {1} fronts ont des angles, d&apos;abord la couche {2} ; le plus vif tourne de {3} deg. Le robot y ralentit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0} of {1} is a step of {2} mm in the wall; it is kept</source>
         <translation>{0} de {1} est une marche de {2} mm dans la paroi ; elle est gardée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} of {1} is chosen, which the rest of it stands on</source>
         <translation>{0} de {1} est choisie, sur laquelle se dresse le reste</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} of {1} layers are more than 20 % off the layer height of {2} mm, first layer {3}; layer {4} is {5} mm from the one below; layers along the wall (spacing: arc-length) are even</source>
         <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, d&apos;abord la couche {3} ; la couche {4} est à {5} mm de celle du dessous ; des couches le long de la paroi (spacing: arc-length) sont égales</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/along.py"/>
+        <location filename="../../freecad_am/core/layers/along/field.py"/>
         <source>{0} of {1} layers are not as high everywhere as asked for: layer {2} is {3} to {4} mm high, farthest off the {5} mm at {6}; strategy.band allows {7} %, and {8} % would be needed: raise it, or choose a guide in the middle of the part or one that bends less</source>
         <translation>{0} couches sur {1} ne sont pas partout de la hauteur demandée : la couche {2} a {3} à {4} mm, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, et il faudrait {8} % : augmentez-le, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/on_part.py"/>
+        <location filename="../../freecad_am/core/process/deposit/on_part.py"/>
         <source>{0} of {1} places looked at are off the part, this one at {2} by {3} mm, and {4} mm are allowed: this toolpath deposits something else; choose another strategy, or other faces, and report the part</source>
         <translation>{0} des {1} endroits regardés sont hors de la pièce, celui-ci en {2} de {3} mm, et {4} mm sont permis : cette trajectoire dépose autre chose ; choisissez une autre stratégie, ou d&apos;autres faces, et signalez la pièce</translation>
     </message>
@@ -13332,7 +13332,7 @@
         <translation>{0} de {1} solides ou groupes de solides ne reçoivent qu&apos;une couche, sur le moyeu : ils ne sont pas plus hauts que strategy.layer_height, {2} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>{0} or CNT{1} is not understood here</source>
         <translation>{0} ou CNT{1} n&apos;est pas compris ici</translation>
     </message>
@@ -13392,27 +13392,27 @@
         <translation>{0} points sans coordonnées finies sont laissés de côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>{0} programs are called by none of the others, expected one</source>
         <translation>{0} programmes ne sont appelés par aucun autre, un seul attendu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>{0} reaches {1} mm below the platform, at {2}</source>
         <translation>{0} descend à {1} mm au-dessous du plateau, en {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>{0} row {1} (line {2})</source>
         <translation>{0} ligne {1} (ligne {2} du fichier)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0} solid(s) ({1}) of {2} are not deposited</source>
         <translation>{0} solide(s) ({1}) de {2} ne sont pas déposés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0} solid(s) ({1}), about {2} cm3 of the {3} cm3 of {4}, are not deposited</source>
         <translation>{0} solide(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposés</translation>
     </message>
@@ -13427,17 +13427,17 @@
         <translation>{0} solides étaient retournés et ont été remis à l&apos;endroit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} stands on a cylinder or cone of {1}</source>
         <translation>{0} se dresse sur un cylindre ou un cône de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>{0} stands outside of its function</source>
         <translation>{0} est en dehors de sa fonction</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>{0} stands there twice</source>
         <translation>{0} y est deux fois</translation>
     </message>
@@ -13447,17 +13447,17 @@
         <translation>{0} s&apos;y trouve deux fois ; retirez-en un, ou donnez au second du même type sa propre pose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>{0} starts in {1} curves, about {2}: layers grow from all of them; choose the edges to start from if only some are meant</source>
         <translation>{0} commence en {1} courbes, vers {2} : les couches croissent à partir de toutes ; choisissez les arêtes de départ si seules certaines sont voulues</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_cell.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>{0} takes all of the file; leave out base and tip of the machine, or name the mechanisms one by one</source>
         <translation>{0} prend tout le fichier ; retirez base et tip de la machine, ou nommez les mécanismes un par un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>{0} takes no calibration; those of Universal Robots do: leave it out</source>
         <translation>{0} n&apos;admet pas d&apos;étalonnage ; seuls les robots d&apos;Universal Robots en ont un : omettez-le</translation>
     </message>
@@ -13467,12 +13467,12 @@
         <translation>{0} dit lui-même son unité ; retirez l&apos;échelle, elle est pour STL et OBJ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>{0} that stands in the world</source>
         <translation>{0} qui est dans le monde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_moves.py"/>
+        <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>{0} that stands on the flange</source>
         <translation>{0} qui est sur la bride</translation>
     </message>
@@ -13497,27 +13497,27 @@
         <translation>{0} triangles sans surface ont été écartés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} turns about one axis, and its wall is one bead of {1} mm</source>
         <translation>{0} tourne autour d&apos;un axe, et sa paroi est un cordon de {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/turn.py"/>
+        <location filename="../../freecad_am/brep/revolution/turn.py"/>
         <source>{0} turns {1} and {2} {3}; choose faces that turn alike</source>
         <translation>{0} tourne {1} et {2} {3} ; choisissez des faces qui tournent pareillement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0} unpacks to more than {1} MB</source>
         <translation>{0} occupe plus de {1} Mo une fois décomprimé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>{0} with a move is not understood</source>
         <translation>{0} avec un mouvement n&apos;est pas compris</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>{0} would be at {1} {2} on the retract before or after the bead, its limit is {3} {4}, and no other height, direction or rotation keeps within limits; lower process.between_layers.lift or move the part in the cell</source>
         <translation>{0} serait à {1} {2} au retrait avant ou après le cordon, sa limite est {3} {4}, et aucune autre hauteur, direction ou rotation ne reste dans les limites ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>
@@ -13527,9 +13527,14 @@
         <translation>{0} serait à {1} {2}, sa limite est {3} {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/table.py"/>
+        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
         <source>{0} would be at {1} {2}, its limit is {3} {4}; move the part on the table</source>
         <translation>{0} serait à {1} {2}, sa limite est {3} {4} ; déplacez la pièce sur la table</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model/bead_table.py"/>
+        <source>{0} {1} is not a number; mend the row, or leave it out</source>
+        <translation>{0} {1} n&apos;est pas un nombre ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -13537,117 +13542,112 @@
         <translation>{0} {1} n&apos;est pas une droite ; choisissez une arête droite ou un axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_table.py"/>
-        <source>{0} {1} is not a number; mend the row, or leave it out</source>
-        <translation>{0} {1} n&apos;est pas un nombre ; corrigez la ligne, ou retirez-la</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>{0} {1} {2} is not a positive number; mend the row, or leave it out</source>
         <translation>{0} {1} {2} n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and layers have the bend of {1} where it stands</source>
         <translation>{0}, et les couches ont la courbure de {1} là où elle repose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and less than 1% of its surface hangs over by more than 45 deg</source>
         <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and less than 1% of its surface hangs over by more than 45 deg, stacked along {1}</source>
         <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg, empilé suivant {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}, which layers along the way through it carry</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}, which layers along the way through it carry; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline pourrait déposer des couches : {3}, qui se passent de support</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support; stacked along {4} it would be {5}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline pourrait déposer des couches : {3}, qui se passent de support ; empilé suivant {4}, ce serait {5}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not</source>
         <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg, empilée suivant {2} ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg, stacked along {2}; curved layers need a flat face that it stands on, which it has not; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg, empilée suivant {2} ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas ; empilée suivant {3} ce serait {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg, which layers along the way through it carry</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg, which layers along the way through it carry; stacked along {2} it would be {3}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle ; empilé suivant {2}, ce serait {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline pourrait déposer des couches : {2}, qui se passent de support</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline pourrait déposer des couches : {2}, qui se passent de support ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg; curved layers need a flat face that it stands on, which it has not</source>
         <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg; curved layers need a flat face that it stands on, which it has not; stacked along {2} it would be {3}</source>
         <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas ; empilée suivant {2} ce serait {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
         <source>{0}, in {1} places,</source>
         <translation>{0}, en {1} endroits,</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0}, {1} of {2} cm3 of {3}, are not deposited</source>
         <translation>{0}, {1} des {2} cm3 de {3}, ne sont pas déposés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0}/{1}.pgx line {2}</source>
         <translation>{0}/{1}.pgx ligne {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0}: a wall of one bead, {1} mm wide, is planned</source>
         <translation>{0} : une paroi d’un seul cordon, de {1} mm de large, est prévue</translation>
     </message>
@@ -13657,12 +13657,12 @@
         <translation>{0} : des axes à côté du robot demandent l&apos;outil sur le robot ; utilisez setup: tool-on-robot, ou omettez external</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0}: beads of {1} mm do not reach into what is narrower, layers not above the last cut, and nothing is laid within a hub; use narrower beads, or lower layers</source>
         <translation>{0} : les cordons de {1} mm n&apos;entrent pas dans ce qui est plus étroit, les couches ne montent pas au-dessus de la dernière coupe, et rien n&apos;est déposé dans un moyeu ; prenez des cordons plus étroits, ou des couches plus basses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
         <source>{0}: controller.matrix</source>
         <translation>{0} : controller.matrix</translation>
     </message>
@@ -13677,7 +13677,7 @@
         <translation>{0} : donnez source, et au besoin {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/scan.py"/>
+        <location filename="../../freecad_am/objects/planned/scan.py"/>
         <source>{0}: how far a part has grown is told by a scan in the part&apos;s own coordinates alone; give none</source>
         <translation>{0} : seule une numérisation dans les coordonnées de la pièce dit jusqu&apos;où une pièce a grandi ; donnez none</translation>
     </message>
@@ -13702,7 +13702,7 @@
         <translation>{0} : sans effet sur une machine à deux axes rotatifs, qui ne laisse pas de rotation autour de l&apos;outil à choisir ; retirez ce qui est fait pour les robots</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <location filename="../../freecad_am/core/process/deposit/balance.py"/>
         <source>{0}: solids are built up on the hub, which is there before</source>
         <translation>{0} : les solides sont construits sur le moyeu, qui est là avant</translation>
     </message>
@@ -13727,12 +13727,12 @@
         <translation>{0} : {1} mm n&apos;est pas une boîte ; donnez trois longueurs de plus de 0 mm, au plus {2} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0}: {1} mm off; choose other faces</source>
         <translation>{0} : écart de {1} mm ; choisissez d&apos;autres faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution.py"/>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0}: {1} mm off; name the faces of the wall if it is not part of it</source>
         <translation>{0} : écart de {1} mm ; nommez les faces de la paroi si elle n&apos;en fait pas partie</translation>
     </message>
@@ -13757,17 +13757,17 @@
         <translation>{0} ; choisissez un dossier où vous pouvez écrire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0}; export the part again</source>
         <translation>{0} ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>{0}; measure at least two speeds</source>
         <translation>{0} ; mesurez au moins deux vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>{0}; measure at least two speeds and two radii</source>
         <translation>{0} ; mesurez au moins deux vitesses et deux rayons</translation>
     </message>
@@ -13792,7 +13792,7 @@
         <translation>{0} ; utilisez process.between_layers.input, strategy.wait, ou une autre commande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>{0}; write the program anew</source>
         <translation>{0} ; écrivez le programme de nouveau</translation>
     </message>
@@ -13807,12 +13807,12 @@
         <translation>{0} ; {1} de {2} mouvements</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>{0}={1} of &lt;{2}&gt; holds {3}, which is not a number</source>
         <translation>{0}={1} de &lt;{2}&gt; contient {3}, qui n&apos;est pas un nombre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>{0}={1} of &lt;{2}&gt; is not {3} numbers</source>
         <translation>{0}={1} de &lt;{2}&gt; n&apos;est pas {3} nombres</translation>
     </message>
