@@ -20,7 +20,6 @@ _FACE = re.compile(r"Face[1-9]\d*", re.ASCII)
 _SOLID = re.compile(r"Solid[1-9]\d*", re.ASCII)
 
 
-
 @dataclass(frozen=True)
 class PartSource:
     """Where a shape comes from. `settings` are (object, property, text) set in an FCStd part before it is used. scale: mm

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry.columns import columns, lengths
+from ..geometry.columns import columns, lengths, unit_rows
 from ..types import Array, Index, Mask
 from .frustum import Frustum
 from .obstacles import Obstacles
@@ -68,7 +68,7 @@ def of_beads(
     along /= size[:, None]
     wide, tall = 0.5 * (wide[begin] + wide[end]), 0.5 * (tall[begin] + tall[end])
     round_ = 0.5 * np.minimum(wide, tall)
-    sideways = [_unit(np.cross(build[each], along)) for each in (begin, end)]
+    sideways = [unit_rows(np.cross(build[each], along)) for each in (begin, end)]
     corners = []
     for at, side in zip((begin, end), sideways):
         middle = points[at] + (0.5 * tall)[:, None] * build[at]
@@ -136,9 +136,3 @@ class InParts:
         size = float(self.width[part].max() + self.height[part].max())
         half, centre = 0.5 * (high - low)[:, None], 0.5 * (low + high)
         return solid.near_box(columns(centre - tip), columns(axis), half, np.full(len(tip), size))
-
-
-def _unit(vectors: Array) -> Array:
-    size = lengths(vectors)[:, None]
-    unit: Array = vectors / np.where(size > 0.0, size, 1.0)
-    return unit

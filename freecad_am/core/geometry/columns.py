@@ -41,3 +41,10 @@ def lengths(vectors: Array) -> Array:
         total += vectors[:, column] * vectors[:, column]
     found: Array = np.sqrt(total, out=total)
     return found
+
+
+def unit_rows(vectors: Array) -> Array:
+    """Vectors (n, k) at unit length; those of no length stay."""
+    size = lengths(vectors)[:, None]
+    unit: Array = vectors / np.where(size > 0.0, size, 1.0)
+    return unit

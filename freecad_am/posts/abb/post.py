@@ -141,8 +141,6 @@ def _refuse(program: Program) -> None:
             program_name(block.program, block.where)
 
 
-
-
 def _own_remarks(program: Program) -> Iterator[str]:
     for axis in np.flatnonzero(program.slides).tolist():
         letter = "abcdef"[program.first_external + axis - AXES - 1]

@@ -59,14 +59,12 @@ def refuse_wire_output(program: Program, last: int) -> None:
         )
 
 
-
 def refuse_setup(post: str, motion: str, setup: str) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what is not a machine with rotary axes; both motions of these can be said."""
     if setup != "rotary-table":
         raise InputError(
             "UNSUPPORTED_SETUP", "cell.setup", f"the post {post} cannot write {setup} ({motion} motion), only rotary-table"
         )
-
 
 
 def dwell(address: str, seconds: float) -> list[str]:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.columns import lengths
+from ...geometry.columns import lengths, unit_rows
 from ...geometry.curves.outline import derivatives
 from ...types import Array, Index, Mask
 
@@ -175,7 +175,7 @@ def columns_of(points: Array, closed: bool, tangents: Array | None = None) -> tu
     smooth = ~_corners(before, after, closed)  # at the start of each segment
     smooth[0] &= closed
     # the tangent of the parabola through three points: the nearer neighbour counts more
-    tangent = _unit(before * length[:, None] + after * np.roll(length, 1)[:, None])
+    tangent = unit_rows(before * length[:, None] + after * np.roll(length, 1)[:, None])
     at_start, at_end = tangent, np.roll(tangent, -1, axis=0)
     smooth_end = np.roll(smooth, -1)
     # where the curve ends or has a corner, the arc through both points that has the tangent of the other end
@@ -208,9 +208,3 @@ def _mirrored(tangent: Array, chord: Array) -> Array:
     """The tangent at the other end of the arc with this chord."""
     other: Array = 2.0 * np.einsum("ij,ij->i", tangent, chord)[:, None] * chord - tangent
     return other
-
-
-def _unit(vectors: Array) -> Array:
-    length = lengths(vectors)[:, None]
-    unit: Array = vectors / np.where(length > 0.0, length, 1.0)
-    return unit
