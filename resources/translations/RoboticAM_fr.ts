@@ -415,8 +415,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part and on hubs; where they would turn faster, at corners, they are spread, and how far they depart is told. (deg/mm)</source>
-        <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante et sur les moyeux ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit. (deg/mm)</translation>
+        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; where they would turn faster, at corners, they are spread, and how far they depart is told. (deg/mm)</source>
+        <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante, sur les moyeux et dans les couches courbes ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit. (deg/mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -3128,8 +3128,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part and on hubs; where they would turn faster, at corners, they are spread, and how far they depart is told.</source>
-        <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante et sur les moyeux ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit.</translation>
+        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; where they would turn faster, at corners, they are spread, and how far they depart is told.</source>
+        <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante, sur les moyeux et dans les couches courbes ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>

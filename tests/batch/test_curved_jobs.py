@@ -101,6 +101,17 @@ def deepest(rows, half_angle):
     return worst
 
 
+def turns(rows, *names):
+    """How fast (n - 1,) deg/mm directions turn from row to row, 0 from bead to bead."""
+    points, ways = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, *names)
+    angle = np.arctan2(np.linalg.norm(np.cross(ways[1:], ways[:-1]), axis=1), (ways[1:] * ways[:-1]).sum(axis=1))
+    one = np.array([(row["layer"], row["bead"]) for row in rows])
+    return np.degrees(angle) / np.linalg.norm(np.diff(points, axis=0), axis=1) * (one[1:] == one[:-1]).all(axis=1)
+
+
+BUILD, TOOL = ("bx", "by", "bz"), ("tx", "ty", "tz")
+
+
 @pytest.mark.parametrize("shape", [tee, wye, mushroom])
 def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(planned, shape):
     """To a program: nothing over nothing, and the nozzle is clear of what stands; one of 80 deg would not be, but for the
@@ -111,6 +122,7 @@ def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(pla
     assert report["programs"] and report["unsupported_mm"] == 0.0
     assert not [issue for issue in report["issues"] if issue["code"] in ("UNSUPPORTED", "OFF_PART", "OPEN_GAP")]
     assert deepest(rows, HALF_ANGLE) < 0.1
+    assert max(turns(rows, *BUILD).max(), turns(rows, *TOOL).max()) < 30.03  # deg/mm, beyond which TURN_PASSED were told
     assert shape is mushroom or deepest(rows, np.radians(80.0)) > 0.1
     points, build, layer = places(rows)
     assert np.abs(points[layer == 0][:, 2]).max() < 0.01
@@ -124,6 +136,35 @@ def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(pla
     assert len(outside) == 0
     volume = report["totals"]["volume_cm3"] * 1000.0
     assert volume == pytest.approx(part.Volume, rel=0.12)  # cut in steps of a whole layer, arms of 12 mm in beads of 4
+
+
+LEADING = ", max_turn: 9 deg/mm, lead: 10 deg"
+
+
+@pytest.mark.parametrize(("shape", "asked"), [
+    (tee, {"": 30.0, ", max_turn: 5 deg/mm": 5.0, LEADING: 9.0}), (mushroom, {", max_turn: 5 deg/mm": 5.0}),
+])
+def test_directions_turn_no_faster_than_asked_and_depart_no_farther_than_told(planned, shape, asked):
+    """Those of the field turn by a radian per layer height next to a corner; beads that turn slower are as they were."""
+    _, _, free = planned(shape(), mode=", max_turn: inf")
+    beads = np.array([(row["layer"], row["bead"]) for row in free])
+    for mode, most in asked.items():
+        done, report, rows = planned(shape(), mode=mode)
+        assert done.status == 0, done.err
+        assert max(turns(rows, *BUILD).max(), turns(rows, *TOOL).max()) < most + 0.03, mode  # rows have six decimals
+        if mode == LEADING:
+            away = (column(rows, *BUILD) * column(rows, *TOOL)).sum(axis=1)
+            assert np.median(np.degrees(np.arccos(np.clip(away, -1.0, 1.0)))) == pytest.approx(10.0, abs=0.1)
+            continue
+        assert (column(rows, "x_mm", "y_mm", "z_mm") == column(free, "x_mm", "y_mm", "z_mm")).all()
+        fast = np.unique(beads[1:][turns(free, *BUILD) > most], axis=0)
+        assert 0 < len(fast) < len(np.unique(beads, axis=0))
+        slower = (beads[:, None] == fast).all(axis=2).any(axis=1)
+        assert [row for row, one in zip(rows, slower) if not one] == [row for row, one in zip(free, slower) if not one]
+        now, before = column(rows, *BUILD), column(free, *BUILD)
+        apart = np.arctan2(np.linalg.norm(np.cross(now, before), axis=1), (now * before).sum(axis=1)).max()
+        (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "TURN_LIMITED"]
+        assert float(told.split("by up to ")[1].split(" deg")[0]) == pytest.approx(np.degrees(apart), rel=0.01)
 
 
 def test_layers_are_as_far_apart_everywhere_as_asked_for(planned):

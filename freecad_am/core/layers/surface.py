@@ -35,6 +35,10 @@ class LayerSurface(Protocol):
     def period(self) -> Period | None:
         """What a turn round the surface is on the plane; None where there is none."""
 
+    @property
+    def bends_freely(self) -> bool:
+        """Whether it bends as it comes, so that directions may depart from its normals to turn slower."""
+
     def unroll(self, points: Array) -> Array:
         """Points (n, 3) of the surface laid flat, (n, 2) mm."""
 

@@ -32,8 +32,9 @@ class BuildDirectionParameters:
         math.pi / 2, f.ANGLE, "Largest angle between the tool axis and the vertical of the part.", low=0.0, high=math.pi
     )
     max_turn: float | str = f.parameter(
-        "auto", f.TURN_RATE, "Largest turn of build direction and tool axis along a bead, on walls on an existing part "
-        "and on hubs; where they would turn faster, at corners, they are spread, and how far they depart is told.",
+        "auto", f.TURN_RATE, "Largest turn of build direction and tool axis along a bead, on walls on an existing part, "
+        "on hubs and in curved layers; where they would turn faster, at corners, they are spread, and how far they depart "
+        "is told.",
         low=0.0, open_low=True, words=("auto", "inf"),
     )
     plane: str = f.parameter(

@@ -44,6 +44,11 @@ class Charted:
         """Nothing goes round it: what would is cut in pieces."""
         return None
 
+    @property
+    def bends_freely(self) -> bool:
+        """It bends as the faces do."""
+        return False
+
     def unroll(self, points: Array) -> Array:
         """(n, 2) mm, the nearest places of the chart."""
         return self.chart.flat[np.asarray(self.chart.mesh.tree.query(points)[1], dtype=np.intp)]

@@ -26,6 +26,11 @@ class ChartLayer(Charted):
         """A step of the grid."""
         return CHORD * self.field.grid.step
 
+    @property
+    def bends_freely(self) -> bool:
+        """It bends as ways through the part lead round corners."""
+        return True
+
     def laid(self, place: Place) -> tuple[Array, Array]:
         """Through the chart onto the cut, and along the way through the part to where beads lie."""
         cut = self.chart.at(place)

@@ -21,6 +21,11 @@ class Flat:
         """Nothing goes round it."""
         return None
 
+    @property
+    def bends_freely(self) -> bool:
+        """It does not bend."""
+        return False
+
     def turned(self, azimuth: float) -> float:
         """It lies one way alone."""
         return 0.0

@@ -35,6 +35,11 @@ class RoundLayer:
             return Period(TURN * self.surface.radius)
         return Period(self.surface.flat_turn, self.surface.slant)
 
+    @property
+    def bends_freely(self) -> bool:
+        """It bends as its hub does."""
+        return False
+
     def unroll(self, points: Array) -> Array:
         """(n, 2) mm."""
         return self.surface.flat(points, self.middle)

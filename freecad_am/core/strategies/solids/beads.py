@@ -23,8 +23,9 @@ from ...process.model.bead_speed import followed, radii
 from ...process.model.held_width import at_speed, of_segments
 from ...toolpath import Bead
 from ...types import Array, Mask
+from .course import Course
 from .filling import bead_width
-from .lean import Course, Lean, Turned, held
+from .lean import Lean, Turned, held
 from .outlines import leaning
 
 ROLLED = 0.5  # share of the chord error between a bead's chords and the surface

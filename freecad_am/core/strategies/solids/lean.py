@@ -19,20 +19,18 @@ from ...geometry.angles import TURN
 from ...geometry.columns import columns
 from ...geometry.regions.region import simplified
 from ...layers.surface import LayerSurface
-from ...parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
+from ...parameters.build_direction import BuildDirectionParameters
 from ...slicing.directions.wall import turn_rates
 from ...types import Array, Mask
+from .course import OF_NORMAL, TOLD, WITHIN, Course, evened, limit
 from .spread import Line, Zones, means, too_fast
 
-OF_NORMAL = 1.5  # a torch that leans may turn faster than the normals by that, whatever is asked
-WITHIN = 0.98  # of the turn asked for, so that points added later keep to it too
 GROWTH, SHRINK = 1.1, 0.9
 ROUNDS = 100
 ASTRAY = math.radians(40.0)  # largest mean of how far the heading of the lean may be from the bead's
 LONGEST = 0.7  # of a bead; no stretch reaches farther
 FEWEST = 0.02  # share of the lean asked for below which it is none
 STEEPEST = math.radians(300.0)  # rad/mm; without a limit, so that lean and bead agree next to corners
-TOLD = math.radians(0.1)  # a departure from what is asked that counts
 FINE, FLAT = math.radians(0.02), 1e4  # what of a direction may be lost between points; mm stretched so that only that counts
 SHORT = 4e-3  # mm; no shorter are the pieces of a segment on which the torch goes round the normal
 EDGE = 1e-3  # mm over which a deflection ends before it is spread
@@ -82,34 +80,19 @@ class Held(NamedTuple):
     turned: Turned
 
 
-@dataclass(frozen=True)
-class Course:
-    """A bead laid flat (n, 2), and its surface; a closed one repeats its first point, or ends a period from it."""
-
-    flat: Array
-    closed: bool
-    surface: LayerSurface
-
-    def at(self, s: Array, way: Array) -> tuple[Array, Array, Array, Array]:
-        """Flat places (n, 2), points (n, 3), normals (n, 3) and the angle phi (n,) of the way round on the plane."""
-        flat = np.stack([np.interp(s, way, column) for column in self.flat.T], axis=-1)
-        points, normals, turn = self.surface.wrap(flat)
-        if self.closed:
-            points[-1], normals[-1] = points[0], normals[0]
-        return flat, points, normals, turn
-
-
 def held(course: Course, lean: Lean, build: BuildDirectionParameters, chord_error: float) -> Held:
     """The bead with its tool axes, and points added where they turn."""
     step = np.linalg.norm(np.diff(course.flat, axis=0), axis=1)
     way = np.r_[0.0, np.cumsum(step)]
+    asked = lean.most
+    course, off, over = evened(course, way, build, asked > 0.0)
     flat, points, normal, phi = course.at(way, way)
     own = float(turn_rates(points, normal).max())
-    most, asked = build.turn(max(TURN_ON_HUBS, OF_NORMAL * own)), lean.most
+    most = limit(course.surface, build, own)
     lacking = own if own > (WITHIN if asked else 1.0) * most else 0.0
     most = OF_NORMAL * own if lacking else most
     if asked == 0.0:
-        return Held(flat, points, normal, normal, Turned(1.0, 0.0, 0.0, 0.0, lacking))
+        return Held(flat, points, normal, normal, Turned(1.0, 0.0, off, over, lacking))
     limited, most = most < math.inf, min(most, STEEPEST)
     line, period = _line(course, way, float(phi[-1] - phi[0]), chord_error)
     share = 1.0
@@ -118,10 +101,10 @@ def held(course: Course, lean: Lean, build: BuildDirectionParameters, chord_erro
     while share > FEWEST:
         found = _spread(course, way, line, lean.less(share), most, max(most - own, 0.1 * most))
         if found is not None:
-            departure = found.turned.departure if limited else 0.0
-            return found._replace(turned=Turned(share, asked, departure, found.turned.length, lacking))
+            departure = max(found.turned.departure, off) if limited else off
+            return found._replace(turned=Turned(share, asked, departure, max(found.turned.length, over), lacking))
         share *= SHRINK
-    return Held(flat, points, normal, normal, Turned(0.0, asked, 0.0, 0.0, lacking))
+    return Held(flat, points, normal, normal, Turned(0.0, asked, off, over, lacking))
 
 
 def _line(course: Course, way: Array, round_: float, chord_error: float) -> tuple[Line, float]:

@@ -10,7 +10,8 @@ from ...issues import NOTE, WARNING, Issue
 from ...parameters.build_direction import BuildDirectionParameters
 from ...toolpath import Layer
 from .beads import Rolled
-from .lean import TOLD, Turned
+from .course import TOLD
+from .lean import Turned
 
 
 def lean_notes(made: Sequence[Rolled], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
