@@ -46,16 +46,14 @@ class KdlArm:
         self.kdl = _kdl()
         self.axes = len(machine.axes)
         self.order = machine.chain.order  # which of the joint values each joint takes
-        # a fixed segment to each joint's frame, then the joint about its axis through that frame's origin
+        # a fixed segment to the first joint's frame, then each joint about its axis, with the way to the next frame behind it
         self.chain = self.kdl.Chain()
-        for index, (origin, direction) in enumerate(zip(machine.chain.origins, machine.chain.directions, strict=True)):
-            self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(origin)))
-            axis = self.kdl.Vector(*direction)
-            value = int(machine.chain.order[index])
+        self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(machine.chain.origins[0])))
+        behind = [*machine.chain.origins[1:], machine.chain.flange]
+        for value, direction, link in zip(machine.chain.order.tolist(), machine.chain.directions, behind, strict=True):
             kind = self.kdl.Joint.TransAxis if machine.chain.sliding[value] else self.kdl.Joint.RotAxis
-            joint = self.kdl.Joint(f"q{value + 1}", self.kdl.Vector(), axis, kind)
-            self.chain.addSegment(self.kdl.Segment(joint, self.kdl.Frame()))
-        self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(machine.chain.flange)))
+            joint = self.kdl.Joint(f"q{value + 1}", self.kdl.Vector(), self.kdl.Vector(*direction), kind)
+            self.chain.addSegment(self.kdl.Segment(joint, self.frame(link)))
         self._forward = self.kdl.ChainFkSolverPos_recursive(self.chain)
         self._jacobian = self.kdl.ChainJntToJacSolver(self.chain)
 

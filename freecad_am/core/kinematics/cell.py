@@ -207,10 +207,12 @@ class Cell:
         sx = t[:, 1] * cos + t[:, 0] * sin
         sy = -(t[:, 0] * cos - t[:, 1] * sin)
         cx = np.sqrt(sy * sy + t[:, 2] ** 2)
-        ry = np.arctan2(sy, columns(t)[2])
-        rotation = frames.about_x(np.arctan2(sx, cx)) @ frames.about_y(ry) @ frames.about_z(rz)
-        spun = rotation @ np.swapaxes(frames.smallest_rotation(t, UP), 1, 2)
-        first = columns(spun[:, :, 0])
+        level = np.where(cx > 0.0, cx, 1.0)
+        # Rx Ry Rz on the first row of the rotation that brings the tool upright, of which two entries tell the angle
+        x, y, z = columns(frames.smallest_rotation(t, UP)[:, 0])
+        x, y = cos * x - sin * y, sin * x + cos * y
+        cos_y, sin_y = np.where(cx > 0.0, t[:, 2], 1.0) / level, sy / level
+        first = cos_y * x + sin_y * z, cx * y - sx * (cos_y * z - sin_y * x)
         return np.arctan2(first[1], first[0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
 
     def rz_of_phi(self, tool: Array, phi: Array) -> Array:

@@ -20,6 +20,7 @@ Bits = NDArray[np.int64]
 
 PIECE = 8192  # numbers that have one order of differences, and are packed together
 HIGHEST = 8  # order; another one would double what is left of rounding, and foretell no better
+SHARE = 8  # a part in so many of a piece tells its order: the whole tells the same, in a fifth of the time of all that is done
 _BUT_SIGN = np.int64(0x7FFFFFFFFFFFFFFF)
 _ONE = np.uint64(1)
 _MANTISSA, _BIAS = 52, 1022  # of a float64: bits after the exponent, and its exponent of numbers from a half to one
@@ -58,17 +59,23 @@ class Unpacked:
 
 def _packed(numbers: Array) -> bytes:
     """The order of differences, then the bytes of what is left: first the lowest of all, the highest last."""
-    order, least = 0, -1
-    differences = chosen = _turned(np.ascontiguousarray(numbers).view(np.int64))
-    for k in range(HIGHEST + 1):
-        if k:
-            differences = _once_more(differences)
-        size = _bits_of(differences) + k * len(numbers)  # to sum once more takes as long as to read a bit
-        if not k or size < least:
-            order, least, chosen = k, size, differences
+    bits = _turned(np.ascontiguousarray(numbers).view(np.int64))
+    order = _order_of(bits[: len(bits) // SHARE] if len(bits) >= SHARE * HIGHEST**2 else bits)
+    chosen = bits
+    for _ in range(order):
+        chosen = _once_more(chosen)
     folded = (chosen << 1) ^ (chosen >> 63)  # small ones are near 0, of either sign
     planes = np.ascontiguousarray(folded.astype("<i8", copy=False).view(np.uint8).reshape(-1, 8).T)
     return bytes([order]) + zlib.compress(planes, 1)
+
+
+def _order_of(differences: Bits) -> int:
+    """How many times differences are to be taken."""
+    sizes = []
+    for k in range(HIGHEST + 1):
+        sizes.append(_bits_of(differences) + k * len(differences))  # to sum once more takes as long as to read a bit
+        differences = _once_more(differences)
+    return sizes.index(min(sizes))
 
 
 def _once_more(differences: Bits) -> Bits:
