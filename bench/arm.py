@@ -32,7 +32,7 @@ EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
 CLEARANCE, TIMES = 10.0, 3.0  # mm that are kept, and times the planning may take
 BETWEEN = 10  # places looked at from one row to the next, the row's own among them
 ROUNDS = 5  # of both jobs in turns
-ROBOT, STATION, LEAN = "fanuc-arcmate120ic", (900.0, 0.0, -100.0), 45.0
+ROBOT, STATION, LEAN = "fanuc-arcmate120ic", (1000.0, 0.0, -100.0), 45.0
 JOB = """version: 1
 name: arm
 part: {{file: {step}}}

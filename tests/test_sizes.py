@@ -16,7 +16,6 @@ LONG_FUNCTIONS = {
     "brep/revolution/axis.py from_normals": 41,
     "brep/walls/sheet.py sheet": 41,
     "core/collision/deposit.py of_beads": 64,
-    "core/collision/separation.py bounds": 41,
     "core/geometry/mesh/refined.py refined": 46,
     "core/geometry/regions/chained.py chained": 49,
     "core/geometry/walls/contact.py _rounded": 47,

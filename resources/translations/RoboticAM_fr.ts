@@ -5058,8 +5058,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>The arm stays clear of part, deposit, platform and nozzle</source>
-        <translation>Le bras reste dégagé de la pièce, du dépôt, du plateau et de la buse</translation>
+        <source>The arm stays clear of part, deposit, platform, nozzle and itself</source>
+        <translation>Le bras reste dégagé de la pièce, du dépôt, du plateau, de la buse et de lui-même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
@@ -10098,23 +10098,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, every {0} deg of the whole motion: they come nearer than {1} mm to nothing; links against each other are not checked</source>
-        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils ne s’approchent à moins de {1} mm de rien ; les corps entre eux ne sont pas vérifiés</translation>
+        <source>shapes of all links, against each other too, every {0} deg of the whole motion: they come nearer than {1} mm to nothing</source>
+        <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils ne s’approchent à moins de {1} mm de rien</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, every {0} deg of the whole motion: they come nearer than {1} mm to {2} with {3}; links against each other are not checked</source>
-        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils s’approchent à moins de {1} mm de {2} avec {3} ; les corps entre eux ne sont pas vérifiés</translation>
+        <source>shapes of all links, against each other too, every {0} deg of the whole motion: they come nearer than {1} mm to {2} with {3}</source>
+        <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils s’approchent à moins de {1} mm de {2} avec {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, every {0} deg of the whole motion: they touch nothing; links against each other are not checked</source>
-        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils ne touchent rien ; les corps entre eux ne sont pas vérifiés</translation>
+        <source>shapes of all links, against each other too, every {0} deg of the whole motion: they touch nothing</source>
+        <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils ne touchent rien</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, every {0} deg of the whole motion: they touch {1} with {2}; links against each other are not checked</source>
-        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils touchent {1} avec {2} ; les corps entre eux ne sont pas vérifiés</translation>
+        <source>shapes of all links, against each other too, every {0} deg of the whole motion: they touch {1} with {2}</source>
+        <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils touchent {1} avec {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -10342,9 +10342,24 @@
         <translation>l&apos;axe de {0} est à {1} mm du milieu du plateau et le manque</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <source>the base</source>
+        <translation>la base</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the base axis {0} of the robot</source>
         <translation>l&apos;axe de base {0} du robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the base comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
@@ -10655,6 +10670,11 @@
         <location filename="../../freecad_am/core/layers/along/centre_line.py"/>
         <source>the line of {0} mm leads through {1} % of the volume</source>
         <translation>la ligne de {0} mm traverse {1} % du volume</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <source>the link of {axis}</source>
+        <translation>le corps de {axis}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>

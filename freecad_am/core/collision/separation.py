@@ -8,6 +8,8 @@ farther apart, or nearer, than matters is done at once.
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from ..geometry.columns import dots
@@ -28,17 +30,25 @@ FEW = 500  # pairs that are done as soon together as in two parts
 MOST = 64  # steps of a pair; what is not settled then is near to grazing and keeps its bounds
 
 
+class Hull(Protocol):
+    """Convex things, k of them, of which some can be taken, and the points (k, 3) that lie farthest along directions."""
+
+    def __len__(self) -> int: ...
+    def __getitem__(self, rows: Index) -> Hull: ...
+    def farthest(self, direction: Array) -> Array: ...
+
+
 def bounds(
-    solid: Frustum, axis: Array, points: Array, nearer: Array | float = 0.0, farther: Array | float = np.inf,
+    solid: Frustum, axis: Array, points: Array | Hull, nearer: Array | float = 0.0, farther: Array | float = np.inf,
     start: Array | None = None,
 ) -> tuple[Array, Array]:
     """Lower and upper bounds (k,) mm of the distance between solids about unit axes (k, 3) and the hulls of points
     (k, c, 3), seen from the tips; they agree within CONVERGED, unless the distance is surely below `nearer`, or above
-    `farther`, both (k,) mm. 0 where the two meet. start: the ways (k, 3) `from_middles`, where they are known."""
+    `farther`, both (k,) mm. 0 where the two meet. start: the ways (k, 3) `from_middles`, which only points go without."""
     count = len(points)
     low = np.zeros(count)
     nearer, farther = np.broadcast_to(nearer, count), np.broadcast_to(farther, count)
-    place = from_middles(solid, axis, points) if start is None else start
+    place = from_middles(solid, axis, np.asarray(points)) if start is None else start
     high = np.sqrt(dots(place, place))
     rows = np.flatnonzero(high > np.maximum(nearer, CONVERGED))
     place = place[rows]
@@ -47,8 +57,7 @@ def bounds(
     for _ in range(MOST):
         if not len(rows):
             break
-        own = np.einsum("kcj,kj->kc", points, place).argmax(axis=1)
-        newest = solid.farthest(-place, axis) - points[np.arange(len(rows)), own]
+        newest = solid.farthest(-place, axis) - _farthest(points, place)
         size = high[rows]
         low[rows] = np.maximum(low[rows], dots(place, newest) / size)
         going = np.flatnonzero(low[rows] < np.minimum(farther[rows], size - CONVERGED))
@@ -69,6 +78,15 @@ def bounds(
         rows, simplex, place = rows[going], simplex[going], place[going]
         solid, axis, points = solid.rows(going), axis[going], points[going]
     return np.minimum(low, high), high
+
+
+def _farthest(points: Array | Hull, direction: Array) -> Array:
+    """The points (k, 3) of hulls that lie farthest along directions (k, 3)."""
+    if not isinstance(points, np.ndarray):
+        return points.farthest(direction)
+    own = np.einsum("kcj,kj->kc", points, direction).argmax(axis=1)
+    found: Array = points[np.arange(len(points)), own]
+    return found
 
 
 def within(solid: Frustum, axis: Array, points: Array, radius: Array, start: Array | None = None) -> Mask:

@@ -181,23 +181,25 @@ def best_branches(
 
 def _ranked(
     beads: Sequence[Bead], places: Sequence[Place], asked: Task, among: Sequence[int]
-) -> list[tuple[int, float, float, int]]:
-    """Of each branch what ranks it, the best first: beads looked at that it serves (less than 0), objective, margin (less
-    than 0), and itself."""
+) -> list[tuple[int, int, float, float, int]]:
+    """Of each branch what ranks it, the best first: beads looked at that it serves (less than 0), those that it would serve
+    if no link came too near (less than 0), objective, margin (less than 0), and itself."""
     some = np.unique(np.round(np.linspace(0, len(beads) - 1, SCREENED)).astype(int))
     points = gather([beads[k] for k in some], asked.cell, search.POINTS_PER_BEAD)
     ranks = []
     for branch in among:
         task = dataclasses.replace(asked, branch=branch)
         found = search.everywhere(task, points, task.thresholds(points))
+        within = 0
         if task.kept is not None:
+            within = int((found.margin.max(axis=0) >= 0.0).sum())
             found = arm_clear.without_touching(task, task.kept, points, [places[k] for k in some], found)
         best, each = found.best(), np.arange(len(some))
         margin, objective = found.margin[best, each], found.objective[best, each]
         feasible = margin >= 0.0
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
         # rounded, so that of branches that are mirror images the same comes first everywhere
-        ranks.append((-int(feasible.sum()), float(f"{worth:.8e}"), round(-float(margin.min()), 9), branch))
+        ranks.append((-int(feasible.sum()), -within, float(f"{worth:.8e}"), round(-float(margin.min()), 9), branch))
     return sorted(ranks)
 
 

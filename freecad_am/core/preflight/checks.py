@@ -22,7 +22,7 @@ from .written import ReadBack
 OF_MOTION = (
     "Every axis stays within its limits", "The joints bring the tool to every point",
     "No axis is asked for more than its largest speed", "The tool keeps away from singularities while it deposits",
-    clearance.ON_RAPIDS, "The arm stays clear of part, deposit, platform and nozzle",
+    clearance.ON_RAPIDS, "The arm stays clear of part, deposit, platform, nozzle and itself",
 )
 
 

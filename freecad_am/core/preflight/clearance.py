@@ -10,7 +10,7 @@ import numpy as np
 
 from ..issues import Issue
 from ..kinematics.cell import Cell
-from ..kinematics.links.contact import NONE
+from ..kinematics.links.rounds import NONE
 from ..motion import Motion
 from ..simulation.arm import ArmTouches
 from ..simulation.rapid_look import RapidsLooked
@@ -49,7 +49,7 @@ def rapids(issues: Sequence[Issue], looked: RapidsLooked) -> Promise:
 
 def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: bool) -> Promise:
     """Of the links. Plain ones, drawn from the kinematics alone, can neither keep the promise nor break it."""
-    what = "The arm stays clear of part, deposit, platform and nozzle"
+    what = "The arm stays clear of part, deposit, platform, nozzle and itself"
     if touches is None:
         return Promise(what, "not checked: the machine file tells no shapes of its links", None)
     rows, met = np.flatnonzero(touches.link != NONE), "nothing"
@@ -66,8 +66,5 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
             f"{step} deg"
         )
         return Promise(what, how, None, float(len(rows)), "points", None, place)
-    how = (
-        f"shapes of all links, every {step} deg of the whole motion: they {near} {met}; links against each other are not "
-        "checked"
-    )
+    how = f"shapes of all links, against each other too, every {step} deg of the whole motion: they {near} {met}"
     return Promise(what, how, not len(rows), float(len(rows)), "points", 0.0, place)

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..collision.bead_ends import LINK_GRAIN, Beads
 from ..collision.obstacles import Obstacles
-from ..kinematics.links.contact import NONE, ArmContact
+from ..kinematics.links.contact import ArmContact
+from ..kinematics.links.rounds import NONE
 from ..motion import Motion
 from ..types import Array, Index, Mask
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..issues import NOTE, Issue
 from ..kinematics.cell import Cell
-from ..kinematics.links.contact import NONE
+from ..kinematics.links.rounds import NONE
 from ..motion import Motion
 from ..types import Array
 from .arm import ArmTouches

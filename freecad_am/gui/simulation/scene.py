@@ -19,7 +19,7 @@ from pivy import coin
 from freecad_am.core.types import Array
 
 from ...core.geometry import frames
-from ...core.kinematics.links.contact import NONE
+from ...core.kinematics.links.rounds import NONE
 from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of

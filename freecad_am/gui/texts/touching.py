@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
-from ...core.kinematics.links.contact import DEPOSIT, NOZZLE, PART, PLATFORM, TORCH
+from ...core.kinematics.links.contact import BASE, DEPOSIT, NOZZLE, OWN, PART, PLATFORM, TORCH
 from .translation import tr
 
 
 def link_touches(link: str, what: str) -> str:
     """link: as `ArmContact.links` has it; what: as `ArmContact.names` has it, a body by its own name."""
     names = {NOZZLE: tr("the nozzle"), PLATFORM: tr("the platform"), DEPOSIT: tr("the deposit"), TORCH: tr("the torch")}
-    if link == "base":
+    names[BASE] = tr("the base")
+    if what.startswith(OWN):
+        names[what] = tr("the link of {axis}").format(axis=what[len(OWN):])
+    if link == BASE:
         return tr("the base touches {what}").format(what=names.get(what, what))
     if link == PART:
         return tr("the part touches {what}").format(what=names.get(what, what))

@@ -11,8 +11,9 @@ import numpy as np
 from ...core.issues import Issue
 from ...core.kinematics.cell import Cell
 from ...core.kinematics.links import rods as link_rods
-from ...core.kinematics.links.contact import NONE, ArmContact
+from ...core.kinematics.links.contact import ArmContact
 from ...core.kinematics.links.rods import Mesh
+from ...core.kinematics.links.rounds import NONE
 from ...core.motion import Motion
 from ...core.parameters.process import ProcessParameters
 from ...core.planning.arm import kept as arm_kept

@@ -13,7 +13,8 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import contact as arm_contact
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.links import rods as link_rods
-from freecad_am.core.kinematics.links.contact import DEPOSIT, NONE, NOZZLE, PLATFORM, ArmContact
+from freecad_am.core.kinematics.links.contact import DEPOSIT, NOZZLE, PLATFORM, ArmContact
+from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.simulation.placing import placing
 from tests.posts.driven import bead_body
@@ -159,10 +160,10 @@ def test_links_touch_beads_as_wide_and_high_as_they_are(setup):
 def test_platform_and_nozzle_are_looked_at():
     cell = cell_of(PART_ON_ROBOT, platform_diameter=400.0, nozzle=NozzleParameters(length=500.0, half_angle=0.6))
     arm = ArmContact(cell, rods_of(cell))
-    assert arm.names == (NOZZLE, PLATFORM)
+    assert arm.names[:2] == (NOZZLE, PLATFORM)
     q = anywhere(cell, 2000, 7)
     found = arm.touches(q)
-    assert set(np.unique(found.what)) == {NONE, 0, 1}
+    assert {0, 1} <= set(np.unique(found.what)) <= {NONE, 0, 1, *range(2, 9)}  # and links each other
     # the forearm meets a large platform where the wrist is bent most, whatever the other joints
     bent = np.abs(q[:, 4])
     platform = (found.what == 1) & (found.link == 4)

@@ -12,7 +12,8 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import torch
 from freecad_am.core.kinematics.links import rods as link_rods
-from freecad_am.core.kinematics.links.contact import NONE, TORCH, ArmContact
+from freecad_am.core.kinematics.links.contact import TORCH, ArmContact
+from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 
 NOZZLE = NozzleParameters(half_angle=np.radians(30.0), diameter=4.0, length=50.0)

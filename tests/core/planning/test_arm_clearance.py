@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import PyKDL
 import pytest
+from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.surroundings import Body
@@ -32,7 +33,7 @@ from tests.core.planning.conftest import sphere
 CLEARANCE = 10.0
 SIZE = np.array([60.0, 60.0, 400.0])  # of a post, mm
 CELL = {
-    "limits": "paper", "setup": "tool-on-robot", "deposition_point": (900.0, 0.0, -100.0, 0.0, 0.0, 0.0),
+    "limits": "paper", "setup": "tool-on-robot", "deposition_point": (1000.0, 0.0, -100.0, 0.0, 0.0, 0.0),
     "nozzle": NozzleParameters(length=60.0, tool=(120.0, 0.0, 200.0, 0.0, np.radians(45.0), 0.0)),
 }
 DOWN, UP = ("front", "down", "noflip"), ("front", "up", "flip")
@@ -123,12 +124,59 @@ def test_links_that_met_a_post_keep_clear_of_it(dome, radius, azimuth, branch):
 def test_what_cannot_be_cleared_is_named(dome):
     wall = box(np.array([-400.0, 75.0, -5.0]), np.array([800.0, 40.0, 900.0]), "back wall")
     job = dataclasses.replace(dome, surroundings=(*dome.surroundings, wall))
-    cell = cells.resolve(CellParameters(**CELL, branch=DOWN, arm_clearance=150.0), job.frame)
+    cell = cells.resolve(CellParameters(**CELL, branch=DOWN, arm_clearance=60.0), job.frame)
     _, issues = planned(job, cell)
     told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
     assert {issue.layer for issue in told} == set(range(len(job.layers)))
-    assert all(issue.message.startswith("link q") and "150 mm" in issue.message for issue in told)
+    assert all(issue.message.startswith("link q") and "60 mm" in issue.message for issue in told)
     assert any("back wall" in issue.message for issue in told)
+
+
+# a UR whose wrist is bent onto its own forearm where the nozzle lies across, and one whose forearm meets its base, mm
+ACROSS = {
+    "setup": "tool-on-robot", "platform_diameter": 0.0,
+    "nozzle": NozzleParameters(length=60.0, tool=(0.0, 0.0, 200.0, 0.0, np.radians(90.0), 0.0)),
+}
+OWN = [("ur-ur5e", (470.0, 20.0, -80.0)), ("ur-ur10e", (590.0, -260.0, -180.0))]
+
+
+def apart(motion, cell):
+    """The least mm between forearm and last link, by PyKDL, at ten places of each move of a motion."""
+    arm, frame = KdlArm(cell.machine), PyKDL.Frame()
+    rods = link_rods.of_robot(cell.robot.chain)
+    parts = [motion.joints[:-1] + share * np.diff(motion.joints, axis=0) for share in np.linspace(0.1, 1.0, 10)]
+    least = np.inf
+    for q in np.concatenate(parts)[::17]:
+        clouds = []
+        for number in (3, 6):
+            arm._forward.JntToCart(arm.angles(q), frame, 2 * number)
+            turned = np.array([[frame.M[i, j] for j in range(3)] for i in range(3)])
+            clouds.append(on_rods(rods[number], 6.0) @ turned.T + [frame.p.x(), frame.p.y(), frame.p.z()])
+        least = min(least, cKDTree(clouds[0]).query(clouds[1])[0].min())
+    return least
+
+
+@pytest.mark.parametrize(("robot", "place"), OWN)
+def test_links_that_met_each_other_keep_apart(dome, robot, place):
+    cell = {**ACROSS, "machine": robot, "deposition_point": (*place, 0.0, 0.0, 0.0)}
+    without = cells.resolve(CellParameters(**cell), dome.frame)
+    motion, issues = planned(dome, without)
+    assert not has_errors(issues) and apart(motion, without) < CLEARANCE
+    kept = cells.resolve(CellParameters(**cell, arm_clearance=CLEARANCE), dome.frame)
+    motion, issues = planned(dome, kept)
+    assert not has_errors(issues) and apart(motion, kept) >= CLEARANCE
+
+
+def test_links_that_cannot_keep_apart_are_named_with_their_place(dome):
+    """The forearm meets the base however the tool is turned: told is this, and not what another configuration lacks."""
+    nozzle = NozzleParameters(length=60.0, tool=(0.0, 0.0, 100.0, 0.0, np.radians(45.0), 0.0))
+    cell = cells.resolve(CellParameters(
+        machine="ur-ur10e", setup="tool-on-robot", platform_diameter=0.0, nozzle=nozzle, arm_clearance=CLEARANCE,
+        deposition_point=(250.0, 0.0, -200.0, 0.0, 0.0, 0.0)), dome.frame)
+    _, issues = planned(dome, cell)
+    errors = [issue for issue in issues if issue.level == "error"]
+    assert {issue.code for issue in errors} == {"ARM_CLEARANCE"} and (errors[0].layer, errors[0].bead) == (0, 0)
+    assert errors[0].message.startswith("link q3 comes nearer than 10 mm to base, or touches it;")
 
 
 def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, monkeypatch):

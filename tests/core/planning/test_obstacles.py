@@ -119,7 +119,7 @@ def test_rapids_of_a_carried_nozzle_go_over_an_obstacle_that_links_are_not_kept_
     }, tangents=None, closed=False) for some in (slice(0, 4), slice(half, half + 4))]
     job = dataclasses.replace(dome, layers=(dataclasses.replace(dome.layers[0], beads=tuple(ends)),))
     size = (20.0, 60.0, 60.0)
-    pose = frames.pose(np.eye(3), np.array([900.0, 0.0, -60.0]))
+    pose = frames.pose(np.eye(3), np.array([1000.0, 0.0, -60.0]))
     values = {**CELL, "branch": DOWN}
     for obstacles_, low in (((), 0.0), (cell_with(dome, pose, size=size, **values).obstacles, 1e-3)):
         cell = dataclasses.replace(cells.resolve(CellParameters(**values), dome.frame), obstacles=obstacles_)

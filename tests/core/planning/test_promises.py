@@ -164,7 +164,7 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
             "looked": clearance_look.Looked(100, 1, (2, 0, 7))}),
         ("The tool keeps away from singularities while it deposits", lambda e: {"condition": np.where(
             np.arange(len(e.condition)) == 40, 0.05, e.condition)}),
-        ("The arm stays clear of part, deposit, platform and nozzle", lambda e: {"arm": ArmTouches(
+        ("The arm stays clear of part, deposit, platform, nozzle and itself", lambda e: {"arm": ArmTouches(
             np.where(np.arange(len(e.motion)) == 40, 3, -1), np.where(np.arange(len(e.motion)) == 40, 0, -1),
             ("platform",), 0.02, LINKS)}),
         ("The text takes the tool to the planned points", lambda e: {"read": dataclasses.replace(e.read, at_points=3e-3)}),
@@ -223,8 +223,8 @@ def without(evidence, **parts):
         ("No axis is asked for more than its largest speed", lambda e: {"motion": None}),
         ("The tool keeps away from singularities while it deposits", lambda e: {"condition": None}),
         ("The nozzle stays clear on the rapids", lambda e: {"rapids": None}),
-        ("The arm stays clear of part, deposit, platform and nozzle", lambda e: {"arm": None}),
-        ("The arm stays clear of part, deposit, platform and nozzle", lambda e: {"true_shapes": False}),
+        ("The arm stays clear of part, deposit, platform, nozzle and itself", lambda e: {"arm": None}),
+        ("The arm stays clear of part, deposit, platform, nozzle and itself", lambda e: {"true_shapes": False}),
         ("The text takes the tool to the planned points", lambda e: {"read": None}),
         ("Between its points the text keeps to the planned path", lambda e: {"read": None}),
     ],

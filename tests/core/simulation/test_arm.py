@@ -10,7 +10,8 @@ from freecad_am.core.geometry.surroundings import disc
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.links import rods as link_rods
-from freecad_am.core.kinematics.links.contact import NONE, ArmContact
+from freecad_am.core.kinematics.links.contact import ArmContact
+from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation import arm as arms
 

@@ -7,7 +7,7 @@ wide and high as they are. So what is not told to touch does not touch, as far a
 carries is not looked at against the last two links, which hold it and can hardly move against it, nor what stands still
 against the base. A part that moves is all there from the beginning: rods about its bodies and beads. The nozzle is looked
 at as it is against bodies, without clearance: it deposits next to them. What holds the nozzle is looked at where
-`cell.nozzle.shape` shows it. Links against each other, the floor and cables are not looked at at all.
+`cell.nozzle.shape` shows it. Links against each other: `own`. The floor and cables are not looked at at all.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...collision.bodies import of_bodies
-from ...collision.frustum import Frustum
 from ...collision.nozzle import depositing
 from ...collision.obstacles import Obstacles
 from ...collision.scene import Scene
@@ -30,10 +30,12 @@ from ...geometry.rods import Rod, about, row
 from ...geometry.surroundings import Body, disc
 from ...types import Array, Index, Mask
 from ..cell import Cell
+from .own import OwnLinks
+from .rounds import NONE, Solid, about_link, ball, of_rod
 
-NOZZLE, PLATFORM, DEPOSIT, PART, TORCH = "nozzle", "platform", "deposit", "part", "torch"
+BASE, NOZZLE, PLATFORM, DEPOSIT, PART, TORCH = "base", "nozzle", "platform", "deposit", "part", "torch"
 WORLD = "world"
-NONE = -1
+OWN = "link "  # before the axis of a link, as it is touched
 PIECE = 4096  # joint vectors done together
 SIDES = 24  # of a nozzle
 LINK_PIECE, SHARE = 50.0, 0.01  # longest edge of a triangle that links are looked at against, mm, and of the body's size
@@ -66,23 +68,11 @@ class Group:
 
 
 @dataclass(frozen=True)
-class Solid:
-    """A solid of revolution that a link is, or a piece of it: tip and unit axis (3,) in the frame of the link, and the ball
-    about it."""
-
-    solid: Frustum
-    tip: Array
-    axis: Array
-    centre: Array
-    radius: float
-
-
-@dataclass(frozen=True)
 class ArmContact:
     """A robot in its cell. rods: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
     deposit: in part coordinates. clearance: mm, links that are nearer touch.
 
-    names: what can be touched, links: what touches it, as messages call them: base, axes, then part, nozzle and torch.
+    names: what can be touched, in the end links; links: what touches it: base, axes, then part, nozzle and torch.
     groups: what can be touched; solids: of each of `links`, in its frame; balls: centre and radius of one about these.
     """
 
@@ -107,22 +97,27 @@ class ArmContact:
         groups = [*(_of_body(body, holder, NOZZLE) for body in about_nozzle), *(_of_body(body, part) for body in around)]
         names = [body.name for body in (*about_nozzle, *around)]
         more = ABOUT_FACES + self.clearance
-        solids = [[_of_rod(rod, more) for rod in link] for link in self.rods]
-        solids += [[_of_rod(rod, more) for rod in self._part_rods(around)], [_of_nozzle(self.cell)]]
-        solids += [[_of_rod(rod, more) for rod in (() if held is None else held.rods)]]
+        solids = [[of_rod(rod, more) for rod in link] for link in self.rods]
+        solids += [[of_rod(rod, more) for rod in self._part_rods(around)], [_of_nozzle(self.cell)]]
+        solids += [[of_rod(rod, more) for rod in (() if held is None else held.rods)]]
         if self.deposit is not None:
             names.append(DEPOSIT)
             points = self.deposit.corners.reshape(-1, 3)
-            centre, radius = _ball(points)
+            centre, radius = ball(points)
             wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
             groups.append(Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide))
         groups += [_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
         names += [body.name for body in self.cell.obstacles]
-        object.__setattr__(self, "names", tuple(names))
-        object.__setattr__(self, "links", ("base", *self.cell.robot.axes, PART, NOZZLE, TORCH))
+        object.__setattr__(self, "links", (BASE, *self.cell.robot.axes, PART, NOZZLE, TORCH))
+        object.__setattr__(self, "names", (*names, BASE, *(OWN + axis for axis in self.cell.robot.axes)))
         object.__setattr__(self, "groups", tuple(groups))
         object.__setattr__(self, "solids", tuple(map(tuple, solids)))
-        object.__setattr__(self, "balls", tuple(_about(link) for link in solids))
+        object.__setattr__(self, "balls", tuple(about_link(link) for link in solids))
+
+    @cached_property
+    def own(self) -> OwnLinks:
+        """The links against each other."""
+        return OwnLinks.of(self.cell.robot.chain, self.cell.limits, self.rods, self.clearance)
 
     @property
     def _carries_part(self) -> bool:
@@ -195,6 +190,9 @@ class ArmContact:
                     seen = frames.inverse(frame[rows]) @ links[rows, number]
                     met = rows[_meets(group, self.solids[number], seen, moment[rows])]
                     link[met], what[met] = number, place
+        left = np.flatnonzero(link == NONE)
+        outer, inner = self.own.touches(links[left])
+        link[left], what[left] = outer, np.where(inner == NONE, NONE, len(self.groups) + inner)
         return link, what
 
 
@@ -214,13 +212,6 @@ def _meets(group: Group, solids: Sequence[Solid], seen: Array, moment: Index) ->
         near = np.flatnonzero(np.einsum("ij,ij->i", off, off) < within**2)
         met[left[near]] = group.scene.touched(one.solid, tip[near], axis[near], moment[left[near]])
     return met
-
-
-def _of_rod(rod: Rod, more: float) -> Solid:
-    """A rod, larger by so many mm on all sides."""
-    centre, axis = 0.5 * (rod.start + rod.end), (rod.end - rod.start) / rod.length
-    solid = Frustum(rod.radius + more, 0.0, -more, rod.length + more)
-    return Solid(solid, rod.start, axis, centre, float(np.hypot(0.5 * rod.length + more, rod.radius + more)))
 
 
 def _of_nozzle(cell: Cell) -> Solid:
@@ -262,20 +253,6 @@ def _nozzle(cell: Cell) -> Body:
 
 
 def _of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> Group:
-    centre, radius = _ball(body.vertices)
+    centre, radius = ball(body.vertices)
     scene = Scene(of_bodies([body], body.vertices, 0.0, max(LINK_PIECE, SHARE * 2.0 * radius)))
     return Group(scene, links, centre, radius, seen_from)
-
-
-def _about(link: Sequence[Solid]) -> tuple[Array, float]:
-    """Centre and radius of a ball about the solids of a link."""
-    if not link:
-        return np.zeros(3), 0.0
-    centre, _ = _ball(np.array([one.centre for one in link]))
-    return centre, max(float(np.linalg.norm(one.centre - centre)) + one.radius for one in link)
-
-
-def _ball(points: Array) -> tuple[Array, float]:
-    """Centre and radius of a ball about points (n, 3)."""
-    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    return centre, float(np.linalg.norm(points - centre, axis=1).max())

@@ -8,14 +8,15 @@ from numpy.typing import ArrayLike
 
 from ...geometry import frames
 from ...types import Array, Index
-from .contact import NOZZLE, ArmContact, Group, Solid
+from .contact import NOZZLE, ArmContact, Group
+from .rounds import NONE, Solid
 
 FIRST = 8  # joint vectors looked at before the others: what is known of these leaves most of the rest out
 
 
 def least_distance(contact: ArmContact, joints: ArrayLike, moment: Index, reach: float) -> float:
     """mm between links, or a part that is carried, and the nearest of what they are looked at against, the least with joints
-    (k, axes): no more than it is, at most `reach`, and 0 where they touch. Joints that are NaN do not count.
+    (k, axes): no more than it is, at most `reach`, and 0 where they touch, each other too. Joints that are NaN do not count.
 
     moment: (k,) how many points of the deposit are there. The nozzle, which deposits next to bodies, does not count; the
     contact's own clearance is taken off.
@@ -26,6 +27,8 @@ def least_distance(contact: ArmContact, joints: ArrayLike, moment: Index, reach:
     if not len(values):
         return reach
     links, seen_from = contact.seen(values)
+    if (contact.own.touches(links)[0] != NONE).any():
+        return 0.0
     best, nozzle = reach, contact.links.index(NOZZLE)
     pairs = [
         (group, number, solid) for group in contact.groups for number in group.links if number != nozzle

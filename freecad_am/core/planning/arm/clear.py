@@ -13,7 +13,7 @@ import numpy as np
 
 from ...geometry.angles import TURN
 from ...issues import Issue
-from ...kinematics.links.contact import NONE
+from ...kinematics.links.rounds import NONE
 from ...toolpath import Bead
 from ...types import Array, Mask
 from ..joint_path import BeadPath
@@ -28,11 +28,13 @@ FEW, TURNS = 4, 72  # candidates of a bead looked at before there is a map, and 
 ENDS = 3  # points of a bead looked at before all of them: where no rotation serves one of these, none serves the bead
 POINTS_PER_BEAD = 24  # and turn, at which the links are looked at
 SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way from where the local search began to what it found
+TOUCHING = -1e-3  # margin of the candidate that is planned where none is clear, so that what is in its way can be named
 
 
 def without_touching(task: Task, kept: ArmKept, points: Points, places: Sequence[Place], found: Found) -> Found:
     """The candidates, without a margin where a link comes too near: of each bead the best ones are looked at themselves,
-    until one is clear; where the first few are not, all by a map of the rotations at which links come too near."""
+    until one is clear; where the first few are not, all by a map of the rotations at which links come too near. Where none
+    is clear the one that was best has next to none."""
     margin, each = found.margin.copy(), np.arange(points.beads)
     left = np.ones(points.beads, dtype=bool)
     for attempt in range(3 * FEW):
@@ -44,6 +46,9 @@ def without_touching(task: Task, kept: ArmKept, points: Points, places: Sequence
             break
         left &= _touched(task, kept, points, places, found.coefficients[best, each], left)
         margin[best[left], each[left]] = UNREACHABLE
+    first = found.best()
+    lost = np.flatnonzero((margin < 0.0).all(axis=0) & (found.margin[first, each] >= 0.0))
+    margin[first[lost], lost] = TOUCHING
     return Found(found.coefficients, found.objective, margin)
 
 

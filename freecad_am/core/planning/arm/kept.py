@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The links of a robot in its cell, as `cell.arm_clearance` keeps them clear while joint paths and rapids are planned."""
+"""The links of a robot in its cell, and against each other, as `cell.arm_clearance` keeps them clear while planning."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...geometry.rods import Rod
 from ...geometry.surroundings import Body
 from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
-from ...kinematics.links.contact import NOZZLE, PART, TORCH, ArmContact, Touches
+from ...kinematics.links.contact import BASE, NOZZLE, PART, TORCH, ArmContact, Touches
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from ..points import Points
@@ -87,7 +87,9 @@ def clearance_issue(
     if link == NOZZLE:
         return Issue(ERROR, CODE, f"the nozzle touches {what}{where}; move it in cell.obstacles, the part or "
                      "cell.deposition_point", layer, bead)
-    name = "the part" if link == PART else "the torch" if link == TORCH else f"link {link}"
+    name = (
+        "the part" if link == PART else "the torch" if link == TORCH else "the base" if link == BASE else f"link {link}"
+    )
     return Issue(
         ERROR, CODE, f"{name} comes nearer than {cell.arm_clearance:g} mm to {what}, or touches it"
         f"{where}; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance",

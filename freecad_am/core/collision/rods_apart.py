@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Which pairs of rods, round straight bodies with flat ends, are nearer to each other than they may be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.columns import dots, lengths
+from ..types import Array, Index, Mask
+from . import separation
+from .frustum import Frustum
+from .tolerances import CONVERGED
+
+PARALLEL = 1e-9  # of the square of a sine
+
+
+@dataclass(frozen=True)
+class PlacedRods:
+    """One rod in k places: where it starts (k, 3), its unit axes (k, 3), its length and radius; mm."""
+
+    start: Array
+    axis: Array
+    length: float
+    radius: float
+
+    def of(self, rows: Index) -> PlacedRods:
+        """It in some of the places."""
+        return PlacedRods(self.start[rows], self.axis[rows], self.length, self.radius)
+
+    @property
+    def solid(self) -> Frustum:
+        """It about its axis, seen from where it starts."""
+        return Frustum(self.radius, 0.0, 0.0, self.length)
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """The second rods as `separation.bounds` asks for points, seen from where the first ones start."""
+
+    rods: PlacedRods
+
+    def __len__(self) -> int:
+        return len(self.rods.start)
+
+    def __getitem__(self, rows: Index) -> _Beside:
+        return _Beside(self.rods.of(rows))
+
+    def farthest(self, direction: Array) -> Array:
+        """The points (k, 3) that lie farthest along directions (k, 3)."""
+        found: Array = self.rods.start + self.rods.solid.farthest(direction, self.rods.axis)
+        return found
+
+
+def nearer(one: PlacedRods, other: PlacedRods, gap: float) -> Mask:
+    """(k,) whether two rods are nearer to each other than `gap` mm, which is more than nothing, or meet."""
+    apart = _between_axes(one, other)
+    found: Mask = apart < gap  # the axes themselves are in the rods
+    left = np.flatnonzero(~found & (apart < gap + one.radius + other.radius))
+    if len(left):
+        first, second = one.of(left), other.of(left)
+        beside = _Beside(PlacedRods(second.start - first.start, second.axis, second.length, second.radius))
+        middle = beside.rods.start + 0.5 * second.length * second.axis
+        start = first.solid.nearest(middle, first.axis) - middle
+        # where that middle is in the rod the way is none, and they meet
+        inside = dots(start, start) <= CONVERGED**2
+        found[left[inside]] = True
+        rows = np.flatnonzero(~inside)
+        low, _ = separation.bounds(first.solid, first.axis[rows], beside[rows], gap, gap, start[rows])
+        found[left[rows]] = low < gap  # what is in doubt counts
+    return found
+
+
+def _between_axes(one: PlacedRods, other: PlacedRods) -> Array:
+    """(k,) mm between the axes of rods, from end to end."""
+    off = one.start - other.start
+    lean, first, second = dots(one.axis, other.axis), dots(one.axis, off), dots(other.axis, off)
+    square = 1.0 - lean * lean
+    crossing = square > PARALLEL
+    along = np.where(crossing, (lean * second - first) / np.where(crossing, square, 1.0), 0.0)
+    along = np.clip(along, 0.0, one.length)
+    there = np.clip(lean * along + second, 0.0, other.length)
+    along = np.clip(lean * there - first, 0.0, one.length)
+    away: Array = lengths(off + along[:, None] * one.axis - there[:, None] * other.axis)
+    return away

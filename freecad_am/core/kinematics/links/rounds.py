@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Links as they are looked at: solids of revolution about their rods, and balls about these."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...collision.frustum import Frustum
+from ...geometry.rods import Rod
+from ...types import Array
+
+NONE = -1  # no link
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A solid of revolution that a link is, or a piece of it: tip and unit axis (3,) in the frame of the link, and the ball
+    about it."""
+
+    solid: Frustum
+    tip: Array
+    axis: Array
+    centre: Array
+    radius: float
+
+
+def of_rod(rod: Rod, more: float) -> Solid:
+    """A rod, larger by so many mm on all sides."""
+    centre, axis = 0.5 * (rod.start + rod.end), (rod.end - rod.start) / rod.length
+    solid = Frustum(rod.radius + more, 0.0, -more, rod.length + more)
+    return Solid(solid, rod.start, axis, centre, float(np.hypot(0.5 * rod.length + more, rod.radius + more)))
+
+
+def about_link(link: Sequence[Solid]) -> tuple[Array, float]:
+    """Centre and radius of a ball about the solids of a link."""
+    if not link:
+        return np.zeros(3), 0.0
+    centre, _ = ball(np.array([one.centre for one in link]))
+    return centre, max(float(np.linalg.norm(one.centre - centre)) + one.radius for one in link)
+
+
+def ball(points: Array) -> tuple[Array, float]:
+    """Centre and radius of a ball about points (n, 3)."""
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    return centre, float(np.linalg.norm(points - centre, axis=1).max())

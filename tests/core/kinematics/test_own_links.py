@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Links of a robot against each other: what is told is near, and what is near is told, by PyKDL's frames and by points on
+what links are; and which pairs are left out."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links.contact import ArmContact
+from freecad_am.core.kinematics.links.distance import least_distance
+from freecad_am.core.kinematics.links.own import OwnLinks, positions
+from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.kinematics.machines import machine
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.kdl.chain import KdlArm
+from tests.core.planning.test_arm_clearance import on_rods
+
+SPACING, CLEARANCE = 12.0, 10.0
+
+
+def own_of(name, clearance=CLEARANCE):
+    robot = machine.load(name)
+    limits = robot.limits("maker")
+    rods = link_rods.of_robot(robot.chain)
+    return robot, limits, rods, OwnLinks.of(robot.chain, limits, rods, clearance)
+
+
+def clouds(robot, rods, q):
+    """Points on all links, by PyKDL, from where the robot's base frame is."""
+    import PyKDL
+    arm, frame, found = KdlArm(robot), PyKDL.Frame(), []
+    for number, link in enumerate(rods):
+        arm._forward.JntToCart(arm.angles(q), frame, 2 * number)
+        turn = np.array([[frame.M[i, j] for j in range(3)] for i in range(3)])
+        found.append(on_rods(link, SPACING) @ turn.T + [frame.p.x(), frame.p.y(), frame.p.z()])
+    return found
+
+
+@pytest.mark.parametrize("name", ["ur-ur5e", "fanuc-arcmate120ic"])
+def test_what_is_told_is_near_and_what_is_near_is_told(name):
+    from scipy.spatial import cKDTree
+    robot, limits, rods, own = own_of(name)
+    q = np.random.default_rng(5).uniform(np.maximum(limits.lower, -np.pi), np.minimum(limits.upper, np.pi), (1500, 6))
+    outer, inner = own.touches(robot.chain.links(q))
+    told = np.flatnonzero(outer != NONE)
+    assert len(told) > 20
+    for k in [*told[:25], *np.flatnonzero(outer == NONE)[:40]]:
+        points = clouds(robot, rods, q[k])
+        trees = [cKDTree(cloud) for cloud in points]
+        apart = {
+            (one, other): trees[other].query(points[one])[0].min() for one, other in own.pairs
+        }
+        if outer[k] != NONE:
+            assert apart[outer[k], inner[k]] < CLEARANCE + 2.0 * SPACING
+        else:
+            assert min(apart.values()) >= CLEARANCE, (k, min(apart, key=apart.get))
+
+
+def test_pairs_that_are_left_out_are_those_of_the_rule():
+    every = {(outer, inner) for outer in range(7) for inner in range(outer)}
+    joined = {(outer, inner) for outer, inner in every if outer - inner == 1}
+    for name in ("ur-ur5e", "fanuc-arcmate120ic", "abb-irb4600-40-255"):
+        assert every - set(own_of(name)[-1].pairs) == joined | {(2, 0), (6, 4)}
+    # what is nearer than the clearance nearly everywhere cannot be asked for
+    wide = own_of("fanuc-arcmate120ic", 300.0)[-1]
+    assert every - set(wide.pairs) == joined | {(2, 0), (4, 2), (6, 4)}
+
+
+def test_positions_are_in_all_parts_of_all_ranges_and_keep_coupled_limits():
+    robot = machine.load("fanuc-arcmate120ic")
+    limits = robot.limits("maker")
+    assert len(limits.coupled_lower)
+    found = positions(limits, 6)
+    assert len(found) > 50 and not limits.exceeded(found).any()
+    share = (found - limits.lower) / (limits.upper - limits.lower)
+    assert all(np.histogram(column, 5, (0.0, 1.0))[0].min() > 3 for column in share.T)
+    assert (positions(limits, 6) == found).all()
+
+
+def test_links_of_each_other_have_names_and_leave_no_distance():
+    """A wrist that is folded onto the forearm."""
+    cell = cells.resolve(CellParameters(machine="ur-ur5e", setup="tool-on-robot",
+                                        deposition_point=(400.0, 0.0, 0.0, 0.0, 0.0, 0.0)), np.eye(4))
+    rods = link_rods.of_robot(cell.robot.chain)
+    contact = ArmContact(cell, rods)
+    q = np.random.default_rng(7).uniform(-np.pi, np.pi, (600, 6))
+    met = contact.touches(q)
+    told = {(contact.links[a], contact.names[b]) for a, b in zip(met.link, met.what) if a != NONE}
+    assert {("Elbow", "base"), ("Wrist 3", "link Elbow")} <= told
+    near = met.what >= len(contact.groups)
+    assert near.sum() > 20 and all(
+        least_distance(contact, q[[k]], np.zeros(1, dtype=np.int64), 500.0) == 0.0 for k in np.flatnonzero(near)[:5])
