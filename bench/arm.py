@@ -23,7 +23,7 @@ import numpy as np
 
 from freecad_am.core.kinematics.links import rods as link_rods
 from freecad_am.core.kinematics.machines import machine
-from freecad_am.kdl.chain import KdlArm
+from tests.kdl_links import KdlLinks
 
 from rows import Row
 
@@ -134,18 +134,15 @@ def _nearest(table: Path, body: Standing) -> float | None:
     shares = np.linspace(0.0, 1.0, BETWEEN, endpoint=False)[:, None, None]
     joints = (joints[:-1] + shares * np.diff(joints, axis=0)).reshape(-1, 6)
     robot = machine.load(ROBOT)
-    arm, frame, least = KdlArm(robot), None, np.inf
-    frame = arm.kdl.Frame()
+    arm, least = KdlLinks(robot), np.inf
     # the part stands at the deposition point, its frame as that of the base
     middle = robot.base[:3, :3] @ (np.add(body.low, 0.5 * np.array(body.size)) + STATION) + robot.base[:3, 3]
     box = fcl.CollisionObject(fcl.Box(*body.size), fcl.Transform(middle))
     links = [(number, [_rod(fcl, rod) for rod in rods]) for number, rods in enumerate(link_rods.of_robot(robot.chain))]
     for q in joints:
-        angles = arm.angles(q)
         for number, rods in links[1:]:
-            arm._forward.JntToCart(angles, frame, 2 * number)
-            turn = np.array([[frame.M[i, j] for j in range(3)] for i in range(3)])
-            place = np.array([frame.p.x(), frame.p.y(), frame.p.z()])
+            pose = arm.frame(q, number)
+            turn, place = pose[:3, :3], pose[:3, 3]
             for cylinder, turned, at in rods:
                 moving = fcl.CollisionObject(cylinder, fcl.Transform(turn @ turned, place + turn @ at))
                 least = min(least, fcl.distance(moving, box, fcl.DistanceRequest(), fcl.DistanceResult()))

@@ -46,7 +46,7 @@ class KdlArm:
         self.kdl = _kdl()
         self.axes = len(machine.axes)
         self.order = machine.chain.order  # which of the joint values each joint takes
-        # a fixed segment to the first joint's frame, then each joint about its axis, with the way to the next frame behind it
+        # a fixed segment to the first joint's frame, then each joint about its axis, the way to the next frame behind it
         self.chain = self.kdl.Chain()
         self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(machine.chain.origins[0])))
         behind = [*machine.chain.origins[1:], machine.chain.flange]

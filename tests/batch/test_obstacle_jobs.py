@@ -8,19 +8,17 @@ import shutil
 
 import numpy as np
 import Part
-import PyKDL
 import pytest
 import yaml
 
 from freecad_am.core.kinematics.links import rods as link_rods
 from freecad_am.core.kinematics.machines import machine
-from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_arm_clearance import on_rods
-from tests.core.planning.test_obstacles import kdl_pose
+from tests.kdl_links import KdlLinks
 
 ROBOT, CLEARANCE = "fanuc-arcmate120ic", 10.0
 POST, TABLE = (60.0, 60.0, 400.0), (1000.0, 800.0, 30.0)
-POST_AT, TABLE_AT = (980.0, 138.564, 95.0), (1000.0, 0.0, -116.0)  # their middles, mm in the robot's base
+POST_AT, TABLE_AT = (1080.0, 138.564, 95.0), (1000.0, 0.0, -116.0)  # their middles, mm in the robot's base
 
 
 @pytest.fixture
@@ -33,7 +31,7 @@ def job(workshop, root):
     def plan(**cell):
         corner = [middle - 0.5 * edge for middle, edge in zip(POST_AT, POST)]
         told = {
-            "machine": ROBOT, "limits": "paper", "setup": "tool-on-robot", "deposition_point": [900, 0, -100, 0, 0, 0],
+            "machine": ROBOT, "limits": "paper", "setup": "tool-on-robot", "deposition_point": [1000, 0, -100, 0, 0, 0],
             "nozzle": {"length": "60 mm", "tool": [120, 0, 200, 0, 45, 0]}, "branch": ["front", "down", "noflip"],
             "obstacles": [{"name": "post", "file": "a post.step", "pose": [*corner, 0, 0, 0]}], **cell,
         }
@@ -53,15 +51,13 @@ def nearest(folder, middle, size):
     with open(folder / "waypoints.csv", encoding="utf-8", newline="") as file:
         rows = np.radians([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in csv.DictReader(file)])
     robot = machine.load(ROBOT)
-    arm, frame, best = KdlArm(robot), PyKDL.Frame(), np.inf
+    arm, best = KdlLinks(robot), np.inf
     links = [(k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(robot.chain)) if k and rods]
     dense = np.concatenate([rows[:-1] + share * np.diff(rows, axis=0) for share in np.linspace(0.1, 1.0, 10)])[::17]
     place = robot.base[:3, :3] @ np.array(middle) + robot.base[:3, 3]
     for q in dense:
-        angles = arm.angles(q)
         for number, points in links:
-            arm._forward.JntToCart(angles, frame, 2 * number)
-            pose = kdl_pose(frame)
+            pose = arm.frame(q, number)
             seen = points @ pose[:3, :3].T + pose[:3, 3] - place
             best = min(best, np.linalg.norm(np.maximum(np.abs(seen) - 0.5 * np.array(size), 0.0), axis=1).min())
     return best
@@ -86,7 +82,7 @@ def test_links_of_a_written_path_keep_clear_of_a_post_that_is_a_file(job):
 
 
 @pytest.mark.parametrize(("obstacle", "told"), [
-    ({"box": [200, 200, 400], "pose": [945, 0, 0, 0, 0, 0]}, "cell.obstacles box 1: it touches the nozzle"),
+    ({"box": [200, 200, 400], "pose": [1045, 0, 0, 0, 0, 0]}, "cell.obstacles box 1: it touches the nozzle"),
     ({"file": "none.step"}, "error[NO_FILE] dome.yaml: cell.obstacles[0].file"),
     ({"file": "dome.yaml"}, "error[UNSUPPORTED_FILE] dome.yaml: cell.obstacles dome"),
     ({"box": [1, 2], "pose": [0, 0, 0, 0, 0, 0]}, "error[BAD_VALUE] dome.yaml: cell.obstacles[0].box"),

@@ -6,15 +6,13 @@ import csv
 import json
 
 import numpy as np
-import PyKDL
 import pytest
 
 from freecad_am.batch.job import cell as job_cell
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.interop import cell_file
-from freecad_am.kdl.chain import KdlArm
-from tests.core.planning.test_obstacles import kdl_pose
+from tests.kdl_links import KdlLinks
 
 PART = np.array([[0.0, 0.0, 0.0], [40.0, 0.0, 0.0], [0.0, 40.0, 0.0], [0.0, 0.0, 40.0]])
 MOVED = frames.bryant((905.0, 12.0, -96.0, *np.radians([1.0, -2.0, 15.0])))
@@ -49,11 +47,11 @@ def test_what_is_written_stands_where_it_was_touched(shop):
     with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     known = machine.load("fanuc-arcmate120ic")
-    arm, frame, worst = KdlArm(known), PyKDL.Frame(), 0.0
+    arm, worst = KdlLinks(known), 0.0
     tool = frames.bryant((*TOOL[:3], *np.radians(TOOL[3:])))
     for row in rows[:: max(1, len(rows) // 60)]:
-        arm._forward.JntToCart(arm.angles(np.radians([float(row[f"q{k}_deg"]) for k in range(1, 7)])), frame)
-        tip = (np.linalg.inv(known.base) @ kdl_pose(frame) @ tool)[:3, 3]
+        flange = arm.frame(np.radians([float(row[f"q{k}_deg"]) for k in range(1, 7)]))
+        tip = (np.linalg.inv(known.base) @ flange @ tool)[:3, 3]
         point = np.array([float(row[f"{axis}_mm"]) for axis in "xyz"])
         worst = max(worst, float(np.linalg.norm(tip - (MOVED[:3, :3] @ point + MOVED[:3, 3]))))
     assert 0.001 < worst < 0.6  # what was touched is 0.2 mm off at two points

@@ -20,7 +20,7 @@ Bits = NDArray[np.int64]
 
 PIECE = 8192  # numbers that have one order of differences, and are packed together
 HIGHEST = 8  # order; another one would double what is left of rounding, and foretell no better
-SHARE = 8  # a part in so many of a piece tells its order: the whole tells the same, in a fifth of the time of all that is done
+SHARE = 8  # a part in so many of a piece tells its order: the whole tells the same, in a fifth of the time of all that is
 _BUT_SIGN = np.int64(0x7FFFFFFFFFFFFFFF)
 _ONE = np.uint64(1)
 _MANTISSA, _BIAS = 52, 1022  # of a float64: bits after the exponent, and its exponent of numbers from a half to one

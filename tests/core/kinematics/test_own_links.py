@@ -13,8 +13,8 @@ from freecad_am.core.kinematics.links.own import OwnLinks, positions
 from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_arm_clearance import on_rods
+from tests.kdl_links import KdlLinks
 
 SPACING, CLEARANCE = 12.0, 10.0
 
@@ -28,12 +28,10 @@ def own_of(name, clearance=CLEARANCE):
 
 def clouds(robot, rods, q):
     """Points on all links, by PyKDL, from where the robot's base frame is."""
-    import PyKDL
-    arm, frame, found = KdlArm(robot), PyKDL.Frame(), []
+    arm, found = KdlLinks(robot), []
     for number, link in enumerate(rods):
-        arm._forward.JntToCart(arm.angles(q), frame, 2 * number)
-        turn = np.array([[frame.M[i, j] for j in range(3)] for i in range(3)])
-        found.append(on_rods(link, SPACING) @ turn.T + [frame.p.x(), frame.p.y(), frame.p.z()])
+        pose = arm.frame(q, number)
+        found.append(on_rods(link, SPACING) @ pose[:3, :3].T + pose[:3, 3])
     return found
 
 

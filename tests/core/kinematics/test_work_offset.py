@@ -4,7 +4,6 @@
 import dataclasses
 
 import numpy as np
-import PyKDL
 import pytest
 from scipy.spatial.transform import Rotation
 
@@ -14,8 +13,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import work_offset as module
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.touched import Touched, touched
-from freecad_am.kdl.chain import KdlArm
-from tests.core.planning.test_obstacles import kdl_pose
+from tests.kdl_links import KdlLinks
 
 POINTS = np.array([[0.0, 0.0, 0.0], [120.0, 0.0, 5.0], [0.0, 80.0, 0.0], [110.0, 90.0, -3.0]])
 
@@ -76,13 +74,12 @@ def test_points_of_the_toolpath_are_met_where_they_were_touched():
     cell = cells.resolve(settings, frames.pose(np.eye(3), [3.0, -4.0, 10.0]))
     position, tool = POINTS + [0.0, 0.0, 20.0], np.tile([0.0, 0.0, 1.0], (4, 1))
     flange = cell.pose_frames(position, tool).at(np.zeros(4))
-    arm, frame = KdlArm(cell.machine), PyKDL.Frame()
+    arm = KdlLinks(cell.machine)
     wanted = turn.apply(position) + move
     joints = cell.machine.arm.inverse_branch(flange, cell.branch)
     assert np.isfinite(joints).all()
     for q, point in zip(joints, wanted, strict=True):
-        arm._forward.JntToCart(arm.angles(q), frame)
-        pose = np.linalg.inv(cell.machine.base) @ kdl_pose(frame) @ cell.carried
+        pose = np.linalg.inv(cell.machine.base) @ arm.frame(q) @ cell.carried
         assert np.abs(pose[:3, 3] - point).max() < 1e-6
 
 

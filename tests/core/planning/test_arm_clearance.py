@@ -5,7 +5,6 @@ frames of the links, and by how far points on these are from a box, at ten times
 import dataclasses
 
 import numpy as np
-import PyKDL
 import pytest
 from scipy.spatial import cKDTree
 
@@ -29,6 +28,7 @@ from freecad_am.core.planning.task import Task
 from freecad_am.core.strategies.revolution import plan as revolution
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.conftest import sphere
+from tests.kdl_links import KdlLinks
 
 CLEARANCE = 10.0
 SIZE = np.array([60.0, 60.0, 400.0])  # of a post, mm
@@ -85,18 +85,16 @@ def on_rods(rods, spacing=8.0):
 
 def nearest(motion, cell, low):
     """(n,) mm between the links, by PyKDL, and the post in part coordinates, at ten places of each move of a motion."""
-    arm = KdlArm(cell.machine)
+    arm, found = KdlLinks(cell.machine), []
     joints = motion.joints
     parts = [joints[:-1] + share * np.diff(joints, axis=0) for share in np.linspace(0.1, 1.0, 10)]
     mount = cell.station @ np.linalg.inv(cell.mount)
-    frame, found = PyKDL.Frame(), []
     links = [(number, on_rods(rods)) for number, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if number and rods]
     for q in np.concatenate(parts)[::23]:
-        angles, best = arm.angles(q), np.inf
+        best = np.inf
         for number, points in links:
-            arm._forward.JntToCart(angles, frame, 2 * number)
-            turned = np.array([[frame.M[i, j] for j in range(3)] for i in range(3)])
-            place = points @ turned.T + [frame.p.x(), frame.p.y(), frame.p.z()]
+            link = arm.frame(q, number)
+            place = points @ link[:3, :3].T + link[:3, 3]
             seen = (place - mount[:3, 3]) @ mount[:3, :3]
             best = min(best, np.linalg.norm(np.maximum(np.maximum(low - seen, seen - low - SIZE), 0.0), axis=1).min())
         found.append(best)
@@ -142,16 +140,15 @@ OWN = [("ur-ur5e", (470.0, 20.0, -80.0)), ("ur-ur10e", (590.0, -260.0, -180.0))]
 
 def apart(motion, cell):
     """The least mm between forearm and last link, by PyKDL, at ten places of each move of a motion."""
-    arm, frame = KdlArm(cell.machine), PyKDL.Frame()
+    arm = KdlLinks(cell.machine)
     rods = link_rods.of_robot(cell.robot.chain)
     parts = [motion.joints[:-1] + share * np.diff(motion.joints, axis=0) for share in np.linspace(0.1, 1.0, 10)]
     least = np.inf
     for q in np.concatenate(parts)[::17]:
         clouds = []
         for number in (3, 6):
-            arm._forward.JntToCart(arm.angles(q), frame, 2 * number)
-            turned = np.array([[frame.M[i, j] for j in range(3)] for i in range(3)])
-            clouds.append(on_rods(rods[number], 6.0) @ turned.T + [frame.p.x(), frame.p.y(), frame.p.z()])
+            link = arm.frame(q, number)
+            clouds.append(on_rods(rods[number], 6.0) @ link[:3, :3].T + link[:3, 3])
         least = min(least, cKDTree(clouds[0]).query(clouds[1])[0].min())
     return least
 

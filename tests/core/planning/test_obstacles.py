@@ -5,7 +5,6 @@ and by how far points on links, part and nozzle are from a box, at ten times as 
 import dataclasses
 
 import numpy as np
-import PyKDL
 import pytest
 
 from freecad_am.core.geometry import frames
@@ -20,6 +19,7 @@ from freecad_am.core.planning import nozzle_beside
 from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_arm_clearance import CELL, CLEARANCE, DOWN, SIZE, dome, on_rods, planned
+from tests.kdl_links import KdlLinks
 from tests.posts.planned_jobs import planned as planned_job
 
 __all__ = ["dome"]  # a fixture
@@ -33,27 +33,19 @@ def cell_with(dome, pose, name="post", size=SIZE, **values):
     return dataclasses.replace(cell, obstacles=(box(tuple(size), pose, name),))
 
 
-def kdl_pose(frame):
-    pose = np.eye(4)
-    pose[:3, :3] = [[frame.M[i, j] for j in range(3)] for i in range(3)]
-    pose[:3, 3] = [frame.p.x(), frame.p.y(), frame.p.z()]
-    return pose
-
-
 def nearest(motion, cell, pose, carried, size=SIZE, every=23):
     """(n,) mm between a box at a pose in the maker's base frame and the links, by PyKDL, or points (k, 3) carried on the
     flange, at places of a motion ten times as dense as its rows."""
-    arm, frame, found = KdlArm(cell.machine), PyKDL.Frame(), []
+    arm, found = KdlLinks(cell.machine), []
     joints = motion.joints
     dense = np.concatenate([joints[:-1] + share * np.diff(joints, axis=0) for share in np.linspace(0.1, 1.0, 10)])
     links = [(k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if k and rods]
     to_box = np.linalg.inv(cell.machine.base @ pose)
     half = 0.5 * np.asarray(size)
     for q in dense[::every]:
-        angles, best = arm.angles(q), np.inf
+        best = np.inf
         for number, points in [*links, (None, carried)]:
-            arm._forward.JntToCart(angles, frame, *(() if number is None else (2 * number,)))
-            place = to_box @ kdl_pose(frame)
+            place = to_box @ arm.frame(q, number)
             seen = points @ place[:3, :3].T + place[:3, 3]
             best = min(best, np.linalg.norm(np.maximum(np.abs(seen) - half, 0.0), axis=1).min())
         found.append(best)
@@ -145,15 +137,13 @@ def test_a_floor_is_a_box_that_the_elbow_stays_above(dome):
         cell = cell_with(dome, pose, "floor", size, **CELL, **more)
         motion, issues = planned(dome, cell)
         assert not has_errors(issues)
-        arm, frame, above = KdlArm(cell.machine), PyKDL.Frame(), np.inf
+        arm, above = KdlLinks(cell.machine), np.inf
         links = [(k, on_rods(rods)) for k, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if k and rods]
         joints, shares = motion.joints, np.linspace(0.1, 1.0, 10)
         dense = np.concatenate([joints[:-1] + share * np.diff(joints, axis=0) for share in shares])
         for q in dense[::23]:
-            angles = arm.angles(q)
             for number, points in links:
-                arm._forward.JntToCart(angles, frame, 2 * number)
-                place = kdl_pose(frame)
+                place = arm.frame(q, number)
                 above = min(above, (points @ place[2, :3] + place[2, 3]).min())
         lowest.append(above)
     assert lowest[0] < 0.0 and lowest[1] >= CLEARANCE
