@@ -1252,9 +1252,19 @@
         <translation>0, ou 1 si l&apos;articulation glisse le long de z : une machine à axes rotatifs en a trois</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <source>1 face</source>
+        <translation>1 face</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>1 solid on {1} ({2})</source>
         <translation>1 solide sur {1} ({2})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <source>1 solid, {:.4g} mm high</source>
+        <translation>1 solide, {:.4g} mm de haut</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -6492,6 +6502,11 @@
         <translation>une seconde sortie est commandée</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
+        <source>a solid was inside out and was turned</source>
+        <translation>un solide était à l’envers et a été retourné</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>a speed such as 6 mm/s or 360 mm/min</source>
         <translation>une vitesse comme 6 mm/s ou 360 mm/min</translation>
@@ -7635,6 +7650,16 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>first layer</source>
         <translation>première couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <source>first layer: 1 contour</source>
+        <translation>première couche : 1 contour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <source>first layer: {} contours</source>
+        <translation>première couche : {} contours</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
@@ -13197,6 +13222,11 @@
         <translation>{0} mm de cordons sont au-dessus du vide, dont {1} mm à la suite à partir d&apos;ici : ce qui est dessous est à plus de {2} mm, ou ils le débordent de plus de la moitié de leur largeur ; déposez d&apos;abord ce qui les porte, faites croître la pièce d&apos;un autre côté, ou laissez-les de côté</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/support.py"/>
+        <source>{0} mm of the first layer lie over the edge of the platform, up to {1} mm beyond it; move the part, or set cell.platform_diameter to what there is (0 for none)</source>
+        <translation>{0} mm de la première couche dépassent du bord du plateau, jusqu&apos;à {1} mm au-delà ; déplacez la pièce, ou donnez à cell.platform_diameter sa vraie valeur (0 pour aucun)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} mm of the height are left at the top, less than a layer</source>
         <translation>{0} mm de la hauteur restent en haut, moins qu&apos;une couche</translation>
@@ -13842,6 +13872,16 @@
         <translation>long de {:.1f} mm en {:.1f} s</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <source>{:.4g} cm² in 1 layer</source>
+        <translation>{:.4g} cm² en 1 couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <source>{:.4g} cm² in each of {} layers</source>
+        <translation>{:.4g} cm² par couche, en {} couches</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
         <source>{:.4g} mm wide</source>
         <translation>large de {:.4g} mm</translation>
@@ -13983,8 +14023,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cladding.py"/>
-        <source>{} faces in {} sheets, {:.4g} cm² in each of {} layers</source>
-        <translation>{} faces en {} nappes, {:.4g} cm² dans chacune des {} couches</translation>
+        <source>{} faces in 1 sheet</source>
+        <translation>{} faces en 1 nappe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <source>{} faces in {} sheets</source>
+        <translation>{} faces en {} nappes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
@@ -14148,8 +14193,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/solid.py"/>
-        <source>{} solids, {:.4g} mm high; first layer: {} contours</source>
-        <translation>{} solides, hauteur {:.4g} mm ; première couche : {} contours</translation>
+        <source>{} solids, {:.4g} mm high</source>
+        <translation>{} solides, {:.4g} mm de haut</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>

@@ -25,7 +25,7 @@ def test_the_panel_previews_and_covers_a_face(person):
     person.click("RoboticAM_Cladding")
     panel = person.panel("RoboticAM_CladdingFeature")
     told = person.field(panel, "preview")
-    person.until(lambda: "1 faces in 1 sheets, 12 cm²" in told.text(), "the preview", 30)
+    person.until(lambda: "1 face, 12 cm²" in told.text(), "the preview", 30)
     person.type(panel, "Layers", "2")
     person.screenshot("cladding_panel")
     person.press("Ok")

@@ -12,14 +12,16 @@ import numpy as np
 from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.on_hub import Base
 from ..geometry.surroundings import Body
-from ..issues import Issue
+from ..issues import WARNING, Issue
 from ..process.deposit import support
+from ..process.deposit.pieces import cut
 from ..toolpath import Toolpath
 from ..types import Array, Mask
 
 STEPS = 7  # places on the way down at which a body is looked for
 ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is
 FLUSH = 1e-6  # mm
+OVER_PLATFORM = "OVER_PLATFORM"
 BY_ITSELF = ("surface", "curves", "cladding")  # families whose first layer lies where it begins by its making
 
 
@@ -44,6 +46,26 @@ def of_feature(
     ground = _Ground(part, planes, bodies, bases)
     whole = replace(toolpath, layer_height=part.layer_height)
     return support.carried(whole, ground, part.family in BY_ITSELF, numbers)
+
+
+def over_edge(toolpath: Toolpath, frame: Array, diameter: float, bodies: Sequence[Body]) -> list[Issue]:
+    """A warning where beads of the first layer lie on the plane of the platform, a disc of `diameter` mm about the origin of
+    the frame (4, 4) in part coordinates, and beyond its edge by more than half of their width, on none of the bodies."""
+    first = cut(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
+    local = (first.middle - frame[:3, 3]) @ frame[:3, :3]
+    beyond = np.hypot(local[:, 0], local[:, 1]) - 0.5 * diameter
+    on_plane = np.abs(local[:, 2]) <= ON * toolpath.layer_height
+    out = np.flatnonzero(on_plane & (beyond > 0.5 * first.width))
+    out = out[~_Ground(toolpath, (), bodies, ())(first.middle[out], first.build[out])]
+    if not len(out):
+        return []
+    worst = out[beyond[out].argmax()]
+    return [Issue(
+        WARNING, OVER_PLATFORM, f"{math.fsum(first.length[out]):.4g} mm of the first layer lie over the edge of the "
+        f"platform, up to {beyond[worst]:.4g} mm beyond it; move the part, or set cell.platform_diameter to what there is "
+        "(0 for none)",
+        0, int(first.bead[worst]), int(first.point[worst]),
+    )]
 
 
 class _Ground:
@@ -79,14 +101,20 @@ class _Ground:
         reach, pace = support.REACH * self._height, support.REACH * self._height / (STEPS - 1)
         for search in self._searches:
             left = np.flatnonzero(~found)
-            away = search.signed(points[left])[0]
+            away = _away(search, points[left])
             found[left[away <= ON * self._height]] = True
             left = left[(away > ON * self._height) & (away <= reach + pace)]
             for step in range(1, STEPS):
                 left = left[~found[left]]
                 if len(left):
-                    found[left] = search.signed(points[left] - step * pace * build[left])[0] <= 0.5 * pace
+                    found[left] = _away(search, points[left] - step * pace * build[left]) <= 0.5 * pace
         return found
+
+
+def _away(search: Search, points: Array) -> Array:
+    """Distances (k,) mm of points from a body, negative inside; below a flat one, as a platform is, there is no inside."""
+    flat = (np.abs(search.units @ search.units[0]) > 1.0 - FLUSH).all()
+    return search.away(points) if flat else search.signed(points)[0]
 
 
 def _search(body: Body, height: float) -> Search | None:

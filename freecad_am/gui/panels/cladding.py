@@ -79,9 +79,14 @@ class CladdingPanel(PickPanel):
         def both() -> tuple[Outcome, str]:
             made = work()
             sheets = len(made.value.sheets)
-            told = tr("{} faces in {} sheets, {:.4g} cm² in each of {} layers")
-            found = made.value
-            return made, told.format(len(found.faces) or sheets, sheets, found.area / CM2, strategy.layers)
+            faces = len(made.value.faces) or sheets
+            found = [
+                tr("1 face") if faces == 1 else tr("{} faces in 1 sheet").format(faces) if sheets == 1
+                else tr("{} faces in {} sheets").format(faces, sheets),
+                tr("{:.4g} cm² in 1 layer").format(made.value.area / CM2) if strategy.layers == 1
+                else tr("{:.4g} cm² in each of {} layers").format(made.value.area / CM2, strategy.layers),
+            ]
+            return made, ", ".join(found)
 
         return both
 

@@ -199,7 +199,10 @@ class SolidPanel(PickPanel):
         group = made.value.groups[0]
         height = max(float(group.base.surface.distance(group.base.inside(body.vertices)).max()) for body in group.bodies)
         contours = sum(len(some) for solids in drawing.contours for some in solids)
-        told = tr("{} solids, {:.4g} mm high; first layer: {} contours").format(len(group.bodies), height, contours)
+        found = tr("1 solid, {:.4g} mm high").format(height) if len(group.bodies) == 1 else (
+            tr("{} solids, {:.4g} mm high").format(len(group.bodies), height))
+        first = tr("first layer: 1 contour") if contours == 1 else tr("first layer: {} contours").format(contours)
+        told = f"{found}; {first}"
         return "\n".join([told, *(sentence(issue.message) for issue in made.issues)])
 
     def _draw_without(self) -> None:

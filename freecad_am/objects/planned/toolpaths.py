@@ -74,7 +74,16 @@ def planned(of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made
     if made.family == "revolution":
         stands = mounted(of.cell, made.frame, made.family) if of.cell is not None and plates else made.frame
         return support.told(made, (stands,), made.surroundings, ())
-    return support.told(made, (), (*made.surroundings, *plates), bases_of(of))
+    return over_edge(support.told(made, (), (*made.surroundings, *plates), bases_of(of)), of)
+
+
+def over_edge(made: CoreToolpath, of: Given) -> CoreToolpath:
+    """The toolpath with a warning where it begins beyond the edge of the platform."""
+    if of.cell is None or of.cell.platform_diameter <= 0.0:
+        return made
+    stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
+    found = support.over_edge(made, stands, of.cell.platform_diameter, made.surroundings)
+    return dataclasses.replace(made, issues=(*made.issues, *found))
 
 
 def layers_of(of: Given) -> CoreToolpath:

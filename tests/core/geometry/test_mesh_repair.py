@@ -75,7 +75,7 @@ def test_inside_out_solids_are_turned_and_pieces_told_apart():
     whole = [repaired(*ball(*args), "one").solids[0].volume for args in (
         (10.0,), (6.0, (40.0, 0.0, 0.0), 150, 5), (3.0, (40.0, 0.0, 0.0), 150, 6))]
     np.testing.assert_allclose(volumes, [whole[1] - whole[2], whole[0]])
-    assert "1 solids were inside out" in told(found)
+    assert "a solid was inside out" in told(found)
 
 
 def test_what_is_not_safe_is_refused_with_its_place():

@@ -2,6 +2,7 @@
 """Beads over nothing: against lengths that follow from how beads were put, and against every pair of places tried."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.curves.sampling import arc, line
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.surroundings import Body, disc
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.filled import DevelopableParameters
@@ -265,3 +266,44 @@ def test_beads_of_no_width_to_speak_of_take_no_memory():
     low, high = rod(0.0, 10.0), rod(0.0, 10.0, 0.0, HEIGHT)
     assert told(toolpath([low], [high], width=1e-9))[0] == 0.0
     assert told(toolpath([low], [rod(0.0, 10.0, 1.0, HEIGHT)], width=1e-9))[0] == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize("lift, radius, over", [
+    (0.0, 50.0, 200.0 - 2.0 * math.sqrt(54.0**2 - 20.0**2)), (0.0, 90.0, 200.0 - 2.0 * math.sqrt(94.0**2 - 20.0**2)),
+    (0.0, 120.0, 0.0), (3.0, 50.0, 0.0),
+])
+def test_a_first_layer_over_the_edge_of_the_platform_is_told(lift, radius, over):
+    """A bead of 200 mm, 20 mm from the middle of a disc: it may stand out by half of its width. What begins higher up is
+    not the platform's."""
+    frame = np.eye(4)
+    frame[:3, 3] = 10.0, -20.0, 5.0
+    path = toolpath([rod(-90, 110, 0.0, 5.0 + lift)], [rod(-90, 110, 0.0, 7.0 + lift)])
+    found = support.over_edge(path, frame, 2.0 * radius, ())
+    assert bool(found) == bool(over)
+    if over:
+        (issue,) = found
+        length, most = (float(word) for word in re.findall(r"([\d.]+) mm", issue.message))
+        assert (issue.code, issue.level, issue.layer, issue.bead) == ("OVER_PLATFORM", "warning", 0, 0)
+        assert length == pytest.approx(over, abs=2.0 * WIDTH * support.support.PIECE)
+        assert most == pytest.approx(math.hypot(100.0, 20.0) - radius, abs=WIDTH * support.support.PIECE)
+
+
+def test_a_substrate_beyond_the_edge_of_the_platform_carries():
+    frame, plate = np.eye(4), disc(400.0, np.eye(4), "plate")
+    path = toolpath([rod(-100, 100)])
+    assert support.over_edge(path, frame, 60.0, ()) and not support.over_edge(path, frame, 60.0, (plate,))
+
+
+def test_beside_the_edge_of_a_platform_nothing_carries():
+    """Beads of a first layer beside a disc, a layer height from its edge and more: a sheet has no inside below it."""
+    away = [0.4 * HEIGHT, 1.2 * HEIGHT, 1.6 * HEIGHT]
+    long = toolpath([bead([[50.0 + x, -0.2, 0.0], [50.0 + x, 0.2, 0.0]]) for x in away])
+    plate = Body("platform", *square(50.0))
+    ground = support._Ground(long, (), (plate,), ())
+    points = np.vstack([one.points for _, _, one in long])
+    assert ground(points, np.tile(UP, (len(points), 1))).tolist() == [True, True, False, False, False, False]
+
+
+def square(half):
+    corners = np.array([[x, y, 0.0] for x in (-half, half) for y in (-half, half)])
+    return corners, np.array([[0, 2, 3], [0, 3, 1]], dtype=np.int64)

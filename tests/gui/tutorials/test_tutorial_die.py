@@ -22,7 +22,7 @@ def test_the_die(person, hand, lesson, root):
     lesson.tool("Cladding")
     panel = person.panel("RoboticAM_CladdingFeature")
     told = person.field(panel, "preview")
-    person.until(lambda: "1 faces in 1 sheets, 84" in told.text(), "the face and its area", 60)
+    person.until(lambda: "1 face, 84" in told.text(), "the face and its area", 60)
     lesson.hand.enter(panel, "Layers", "2")
     lesson.hand.enter(panel, "LayerHeight", "2 mm")
     lesson.hand.enter(panel, "ChordError", "0.1 mm")

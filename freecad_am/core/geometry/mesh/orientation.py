@@ -89,7 +89,8 @@ def solids_of(vertices: Array, corners: Index, told: list[str]) -> tuple[SolidMe
     outer = [k for k in np.flatnonzero(bulky).tolist() if k not in about]
     turned = [k for k in outer if volume[k] < 0.0]
     if turned:
-        told.append(f"{len(turned)} solids were inside out and were turned")
+        many = f"{len(turned)} solids were inside out and were turned"
+        told.append("a solid was inside out and was turned" if len(turned) == 1 else many)
     found = []
     for k in outer:
         own = [pieces[k][:, ::-1] if volume[k] < 0.0 else pieces[k]]
