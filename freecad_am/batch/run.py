@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from freecad_am.core.issues import ERROR, InfeasibleError, InputError, Issue, has_errors
+from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
 
-from . import paths
+from . import otherwise, paths
 from .job import document as job_document
 from .job.features import in_words_of_job
 from .job.job import SECTIONS, Job
@@ -86,16 +86,14 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
     with told_by_keys(job):
         cell = check(job)
         with one_thread(), outputs.Outputs(folder, session) as files:
-            document = job_document.made(job)
+            stages = otherwise.planned(
+                job, lambda of, fails: _in_a_document(of, session, fails),
+                lambda stages: FreeCAD.closeDocument(stages.document.Name),
+            )
             try:
-                stages = plan(job, document, session)
-                if fails := _curved_in_vain(job, stages):
-                    FreeCAD.closeDocument(document.Name)
-                    document = job_document.made(job)
-                    stages = plan(job, document, session, fails)
                 result = _write(stages.job, stages, cell, files, session, started, page)
             finally:
-                FreeCAD.closeDocument(document.Name)
+                FreeCAD.closeDocument(stages.document.Name)
             from freecad_am.core.strategies.size import LARGE
 
             session.issues(issue for issue in stages.issues if issue.code != LARGE)
@@ -144,19 +142,21 @@ def resolved_cell(job: Job) -> Any:
     return cell.resolve(job.cell, np.eye(4), folders=user_machines.folders())
 
 
-def _curved_in_vain(job: Job, stages: Stages) -> str:
-    """The code of the error that a job ends with for which curved layers were chosen, as it leaves them open; else ''."""
-    from freecad_am.core.parameters.filled import GEODESIC
+def _in_a_document(job: Job, session: Any, fails: str) -> Stages:
+    """The stages of a job in a document of its own."""
+    import FreeCAD
 
-    chosen = zip(job.features, stages.job.features, strict=True)
-    curved = any(asked.sections is not None and "layers" not in asked.sections["strategy"]
-                 and getattr(one.strategy, "layers", "") == GEODESIC for asked, one in chosen)
-    return next((issue.code for issue in stages.issues if curved and issue.level == ERROR), "")
+    document = job_document.made(job)
+    try:
+        return plan(job, document, session, fails)
+    except BaseException:
+        FreeCAD.closeDocument(document.Name)
+        raise
 
 
 def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`. fails: code
-    of the error that curved layers end with, where the job leaves layers open."""
+    of the error that what was chosen ends with, where the job leaves it open."""
     from freecad_am import api
     from freecad_am.core.process.model.predicted import HEIGHTS
 

@@ -12,7 +12,7 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.process import OF_FEATURE, ProcessParameters
 from ..core.parameters.scan import ScanParameters
-from ..core.parameters.strategy import RevolutionParameters
+from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
 from ..core.process.deposit import balance as deposit_balance
 from ..core.process.model import bead_table
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
@@ -21,6 +21,7 @@ from .checks.on_its_part import looked_at
 from .fields import rows
 from .planned.in_sequence import member, planned_in_sequence
 from .planned.toolpaths import Given, planned
+from .planned.upright import with_remedy
 from .shapes.bodies import taken
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from ..core.planning.remedies import Fixed
 
 FIXED = "fixed"
+LEANING = (RevolutionParameters, SurfaceParameters)  # whose build directions follow the wall, unless asked to be one
 
 
 class Toolpath(Stage):
@@ -74,6 +76,7 @@ class Toolpath(Stage):
         given = [
             _given(feature, process, cell) for feature, process in zip(features, self.processes(obj), strict=True)
         ]
+        fixed = self.fixed(obj)
         if len(features) > 1:
             if obj.Scan is not None:
                 raise InputError("NOT_YET", f"{obj.Label}.Scan", "several features in one go are not fitted to a scan yet; "
@@ -81,7 +84,7 @@ class Toolpath(Stage):
             members = [member(feature, one, features) for feature, one in zip(features, given, strict=True)]
             names = [tuple(one.Name for one in _sources(feature)) for feature in features]
             order = obj.Sequence
-            return lambda: _outcome(planned_in_sequence(members, order, names))
+            return lambda: _outcome(with_remedy(planned_in_sequence(members, order, names), fixed))
         sources = tuple(taken(one) for one in _sources(features[0]))
         fit = self._fit(obj)
 
@@ -91,7 +94,7 @@ class Toolpath(Stage):
             told = deposit_balance.issues(
                 deposit_balance.of_toolpath(given[0].wall, toolpath, given[0].process.bead_width)
             )
-            return _outcome(dataclasses.replace(toolpath, issues=(*told, *toolpath.issues)))
+            return _outcome(with_remedy(dataclasses.replace(toolpath, issues=(*told, *toolpath.issues)), fixed))
 
         return work
 
@@ -124,7 +127,7 @@ class Toolpath(Stage):
 
     def fixed(self, obj: Any) -> Fixed | None:
         """The toolpath with one build direction, the axis of the part, made anew without the document; None where it has
-        that, and without parts of revolution. Of several features those parts alone are changed."""
+        that, and without walls. Of several features those alone are changed."""
         from ..core.planning.remedies import Fixed
 
         features = features_of(obj)
@@ -132,7 +135,7 @@ class Toolpath(Stage):
         if not features or None in shapes:
             return None
         turned = [
-            strategy_of(shape) is RevolutionParameters and shape.parameters(one, BuildDirectionParameters).mode != FIXED
+            strategy_of(shape) in LEANING and shape.parameters(one, BuildDirectionParameters).mode != FIXED
             for one, shape in zip(features, shapes, strict=True)
         ]
         if not any(turned):
@@ -147,12 +150,14 @@ class Toolpath(Stage):
             told = " and ".join(f"`features[{k}].build_direction.mode: fixed`" for k, turn in enumerate(turned) if turn)
             return Fixed(told, lambda: planned_in_sequence(members, order, names))
         shape, feature = shapes[0], features[0]
-        wall, strategy = shape.reader(feature), shape.parameters(feature, RevolutionParameters)
-        build = shape.parameters(feature, BuildDirectionParameters)
-        return Fixed(
-            "`build_direction.mode: fixed`",
-            lambda: planned(_upright(Given(wall(), strategy, build, process, carried))),
-        )
+        wall, strategy = shape.reader(feature), shape.parameters(feature, strategy_of(shape))
+        build, fit = shape.parameters(feature, BuildDirectionParameters), self._fit(obj)
+
+        def make() -> CoreToolpath:
+            given = _upright(Given(wall(), strategy, build, process, carried))
+            return planned(given) if fit is None else planned(given, fit)
+
+        return Fixed("`build_direction.mode: fixed`", make)
 
     def own_speeds(self, obj: Any) -> tuple[bool, ...]:
         """Of several features, whether each has a travel speed of its own; of one nothing."""

@@ -9137,6 +9137,11 @@
         <translation>recherche de cordons au-dessus du vide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/planned/upright.py"/>
+        <source>looking for what would clear the nozzle: {0}</source>
+        <translation>recherche de ce qui dégagerait la buse : {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
         <source>looking for what would make it feasible: {0}</source>
         <translation>recherche de ce qui le rendrait faisable : {0}</translation>
@@ -10882,6 +10887,11 @@
         <translation>la buse comme un cône en {0} points, face au plateau, à la pièce et à ce qui est déposé à ce moment ; cordons de la largeur et de la hauteur qui comptent</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/planned/upright.py"/>
+        <source>the nozzle is not clear with {0} either, which was tried</source>
+        <translation>la buse n&apos;est pas dégagée avec {0} non plus, ce qui a été essayé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/readout.py"/>
         <source>the nozzle touches platform or part</source>
         <translation>la buse touche le plateau ou la pièce</translation>
@@ -12070,6 +12080,11 @@
         <location filename="../../freecad_am/core/strategies/size.py"/>
         <source>with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on beads of {0} points; finding slower ones takes up to {1} min of the processor; a larger build_direction.max_turn, a slimmer nozzle, or clearance: none, saves it</source>
         <translation>avec des inclinaisons qui dégagent la buse, l&apos;outil tourne plus vite que build_direction.max_turn sur des cordons de {0} points ; en chercher de plus lentes prend jusqu&apos;à {1} min de processeur ; un build_direction.max_turn plus grand, une buse plus fine, ou clearance: none, l&apos;évitent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/upright.py"/>
+        <source>with {0} the nozzle is clear; the toolpath was planned so, joints were not</source>
+        <translation>avec {0} la buse est dégagée ; la trajectoire d&apos;outil a été planifiée ainsi, les articulations non</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>

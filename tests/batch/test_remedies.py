@@ -93,3 +93,78 @@ def test_a_positioner_out_of_reach_is_called_so_and_told_where_it_could_stand(wo
     workshop.write_job(written(sections))
     again = workshop.run("plan", "cup.yaml", "--no-page")
     assert again.status == 0 and "error[" not in again.err, again.err
+
+
+CELL = """\
+cell:
+  {machine: abb-irb4600-40-255, setup: tool-on-robot, mount: part, branch: auto, deposition_point: [1400, 0, 600, 0, 0, 0],
+   platform_diameter: 0 mm, nozzle: {diameter: 4 mm, half_angle: 3 deg, length: 60 mm, tool: [0, 0, 300, 0, 0, 0]}}
+"""
+
+
+def written_for(kind, more=""):
+    return (f"part: {{file: skin.step}}\nprocess: {{bead_width: 3 mm}}\n"
+            f"strategy: {{kind: {kind}, layer_height: 2 mm, chord_error: 0.1 mm}}\n{CELL}{more}")
+
+
+def skin(folder, lean, squeezed):
+    """A skin of 8 mm that leans out by so many degrees from its edge, 20 mm about Z."""
+    import FreeCAD
+    import Part
+
+    out, up = 8.0 * math.sin(math.radians(lean)), 8.0 * math.cos(math.radians(lean))
+    face = Part.makeCone(20, 20 + out, up).Faces[0]
+    if squeezed:  # no longer of revolution
+        turned = FreeCAD.Matrix(1, 0, 0, 0, 0, 0.98, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)
+        face = face.toNurbs().transformGeometry(turned).Faces[0]
+    Part.Compound([face]).exportStep(str(folder / "skin.step"))
+
+
+def groove(folder):
+    """In which the nozzle of CELL has room upright, and nowhere else."""
+    import Part
+
+    rings = [Part.makeCylinder(36, 70).cut(Part.makeCylinder(30, 70)), Part.makeCylinder(13.5, 70)]
+    Part.Compound(rings).exportStep(str(folder / "groove.step"))
+    return "fixtures: [{file: groove.step}]\n"
+
+
+@pytest.mark.parametrize(("kind", "lean", "sections", "code"), [
+    ("revolution", 30, groove, "CLEARANCE"), ("surface", 42, lambda _: "joints: {min_condition: 0.15}\n", "SINGULAR"),
+])
+def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(workshop, kind, lean, sections, code):
+    """Where the tool meets something, or leans through a singularity, with directions that follow the wall."""
+    skin(workshop.folder, lean, squeezed=kind == "surface")
+    more = sections(workshop.folder)
+    workshop.write_job(written_for(kind, more))
+    done = workshop.run("plan", "cup.yaml", "--no-page")
+    assert done.status == 3 and f"error[{code}]" in done.err, done.err
+    assert done.err.splitlines()[0] == (
+        "note[REMEDY] job: with `build_direction.mode: fixed` this job is feasible; it was planned so"), done.err
+    workshop.write_job(written_for(kind, more + "build_direction: {mode: fixed}\n"))
+    again = workshop.run("plan", "cup.yaml", "--no-page")
+    assert again.status == 0 and "error[" not in again.err and "REMEDY" not in again.err, again.err
+    asked = workshop.files()["waypoints.csv"]
+    workshop.write_job(written_for("auto", more))
+    chosen = workshop.run("plan", "cup.yaml", "--no-page")
+    assert chosen.status == 0 and workshop.files()["waypoints.csv"] == asked, chosen.err
+    issues = json.loads(workshop.files()["report.json"])["issues"]
+    told = [issue["message"] for issue in issues if issue["code"] == "PROPOSED"]
+    assert told[0].startswith(f"kind: {kind}: ") and told[0].endswith(
+        f"ends with {code}, so they are one (build_direction.mode: fixed)")
+    workshop.write_job(written_for("auto", more + "build_direction: {mode: local}\n"))
+    assert workshop.run("plan", "cup.yaml", "--no-page").status == 3, "what the job says of directions counts"
+
+
+def test_one_direction_that_does_not_clear_the_nozzle_is_told_to(workshop):
+    """Under a lid."""
+    import FreeCAD
+    import Part
+
+    Part.makeCylinder(200, 4, FreeCAD.Vector(0, 0, 20)).exportStep(str(workshop.folder / "groove.step"))
+    skin(workshop.folder, 30, squeezed=False)
+    for kind in ("revolution", "auto"):
+        workshop.write_job(written_for(kind, "fixtures: [{file: groove.step}]\n"))
+        done = workshop.run("plan", "cup.yaml", "--no-page")
+        assert done.status == 3 and "error[CLEARANCE]" in done.err, done.err
+        assert "note[NO_REMEDY] job: the nozzle is not clear with `build_direction.mode: fixed` either" in done.err, done.err

@@ -12,7 +12,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters
-from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family
+from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family, family_of
 
 from . import auto_layers, fields, material, tree
 from . import classes as job_classes
@@ -33,6 +33,7 @@ _KEYS = {
     "Feature": "substrate", "Feature.BaseFaces": "substrate.faces", "Feature.Source": "part.faces",
     "Feature.StartEdges": "part.start_edges", "Feature.StartFaces": "strategy.start_faces",
 }
+WALLS, UPRIGHT = ("revolution", "surface"), "fixed"  # families whose directions follow the wall; the mode of one direction
 KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", "process")
 
 
@@ -104,13 +105,26 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str, path:
     )
 
 
-def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str) -> JobFeature:
+def leans(feature: JobFeature, strategy: LayerParameters) -> bool:
+    """Whether build directions of a feature, with the strategy chosen for it, follow its wall, and could be one: as they are
+    asked to be, or, where its family is left open, for want of a word about it."""
+    if family_of(strategy).kind not in WALLS:
+        return False
+    if feature.sections is None:
+        return feature.build_direction.mode != UPRIGHT
+    return "mode" not in (feature.sections.get("build_direction") or {})
+
+
+def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str, mode: str = "") -> JobFeature:
     """The feature with the family that was left open: of its keys those that the family has. mend: mm across of the largest
-    hole that is closed where the job does not say, 0 for what is usual. Raises InputError as any."""
+    hole that is closed where the job does not say, 0 for what is usual. mode: of the build direction, where it is not as
+    the job says. Raises InputError as any."""
     values, family = dict(feature.sections), KINDS[kind]
     section = {key: value for key, value in values["strategy"].items() if key in _keys(family)}
     proposed = {**({"layers": layers} if layers else {}), **({"mend": f"{mend!r} mm"} if mend else {})}
     values["strategy"] = {**proposed, **section, "kind": kind}
+    if mode:
+        values["build_direction"] = {**(values.get("build_direction") or {}), "mode": mode}
     if family.substrate == NONE:
         values.pop("substrate", None)
     if kind != "solid" and isinstance(values["part"], dict):

@@ -16,7 +16,7 @@ from freecad_am.core.parameters.inspection import NONE as AS_MEASURED
 from freecad_am.core.strategies.families import NONE, family_of
 from freecad_am.objects.shapes.bodies import taken
 
-from .features import about_feature, chosen, planes_of
+from .features import UPRIGHT, about_feature, chosen, leans, planes_of
 from .job import Job
 from .part import bring
 from .part_source import PartSource
@@ -24,13 +24,15 @@ from .scan_source import ScanSource
 
 TOUCHING = 0.01  # mm
 INSTEAD = "; but these end with {}, so planes are laid instead"
+FIXED = "; but with directions that follow it this ends with {}, so they are one (build_direction.mode: fixed)"
 
 
 class Shapes:
     """The part of a feature, its substrate and fixtures, as objects of a document."""
 
     def __init__(self, document: Any, job: Job, number: int, fails: str = "") -> None:
-        """fails: code of the error that curved layers end with, which then are not chosen."""
+        """fails: code of the error that curved layers, or directions that follow a wall, end with, which then are not
+        chosen."""
         self.document, self.job, self.number, self.fails = document, job, number, fails
         self.of = job.features[number]
         self.scan: Any = None  # the inspection of the substrate by its scan, once the feature is made
@@ -69,7 +71,11 @@ class Shapes:
             )
             if found.layers == GEODESIC and self.fails:
                 found = replace(found, layers=PLANES, reason=found.reason + INSTEAD.format(self.fails))
-            self.of = chosen(self.of, found.kind, found.layers, found.mend, self.job.path)
+            of = chosen(self.of, found.kind, found.layers, found.mend, self.job.path)
+            if self.fails and leans(self.of, of.strategy):
+                found = replace(found, reason=found.reason + FIXED.format(self.fails))
+                of = chosen(self.of, found.kind, found.layers, found.mend, self.job.path, UPRIGHT)
+            self.of = of
         except InputError as error:
             raise self.placed(error) from None
         return Issue(NOTE, "PROPOSED", found.told())

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What clears the nozzle of a wall that leans: one build direction for all of it, tried where no tilt does."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+from ...core.issues import ERROR, NOTE, AmError, Issue, has_errors
+from ...core.toolpath import Toolpath
+from ..work import progress
+
+if TYPE_CHECKING:
+    from ...core.planning.remedies import Fixed
+
+CLEARANCE = "CLEARANCE"
+
+
+def with_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
+    """A toolpath on which the nozzle touches something, and nothing else is wrong, with a note on whether it does with fixed
+    build directions, planned so; others as they are."""
+    errors = {issue.code for issue in toolpath.issues if issue.level == ERROR}
+    if fixed is None or errors != {CLEARANCE}:
+        return toolpath
+    from ...core.planning.remedies import NO_REMEDY, REMEDY
+
+    progress.report(1.0, f"looking for what would clear the nozzle: {fixed.told}")
+    try:
+        clear = not has_errors(list(fixed.make().issues))
+    except AmError:  # what cannot be asked for is not a remedy
+        clear = False
+    note = Issue(NOTE, REMEDY, f"with {fixed.told} the nozzle is clear; the toolpath was planned so, joints were not") if (
+        clear) else Issue(NOTE, NO_REMEDY, f"the nozzle is not clear with {fixed.told} either, which was tried")
+    return dataclasses.replace(toolpath, issues=(note, *toolpath.issues))
