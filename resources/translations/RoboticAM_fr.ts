@@ -7113,6 +7113,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
+        <source>before {0} beads the rapid way is led round what is in the way of all retracts, by places between</source>
+        <translation>avant {0} cordons le déplacement rapide contourne, par des positions intermédiaires, ce qui gêne tous les retraits</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>before {0} beads the tool is retracted in another direction than along its axis, or turned on the way, to pass clear</source>
         <translation>avant {0} cordons l&apos;outil est retiré dans une autre direction que le long de son axe, ou tourné en chemin, pour passer sans toucher</translation>
     </message>
@@ -7654,12 +7659,12 @@
     <message>
         <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>first layer: 1 contour</source>
-        <translation>première couche : 1 contour</translation>
+        <translation>première couche : 1 contour</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>first layer: {} contours</source>
-        <translation>première couche : {} contours</translation>
+        <translation>première couche : {} contours</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
@@ -9658,8 +9663,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
-        <source>on its way from the bead before the nozzle would meet {0} at every retract distance and direction tried; move the seam or the part, or take a more slender nozzle</source>
-        <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
+        <source>on its way from the bead before the nozzle would meet {0} at every retract distance and direction tried, and no way round was found; move the seam or the part, or take a more slender nozzle</source>
+        <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée, et aucun contournement n’a été trouvé ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/notes.py"/>
@@ -10910,11 +10915,6 @@
         <location filename="../../freecad_am/core/planning/nozzle_beside.py"/>
         <source>the nozzle touches {0} on {1} move(s) while it deposits; move it in cell.obstacles, or the part</source>
         <translation>la buse touche {0} sur {1} mouvement(s) pendant le dépôt ; déplacez-le dans cell.obstacles, ou la pièce</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/nozzle_beside.py"/>
-        <source>the nozzle touches {0} on {1} rapid(s), which over a positioner are not led around it; move it in cell.obstacles, the part, or the seam</source>
-        <translation>la buse touche {0} sur {1} déplacement(s) rapide(s), qui ne le contournent pas au-dessus d’un positionneur ; déplacez-le dans cell.obstacles, ou la pièce, ou le début des cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>

@@ -12,15 +12,12 @@ from freecad_am.core.geometry.surroundings import box
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import rods as link_rods
-from freecad_am.core.motion import TRAVEL
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.obstacles import Obstacle, obstacles
-from freecad_am.core.planning import nozzle_beside
 from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_arm_clearance import CELL, CLEARANCE, DOWN, SIZE, dome, on_rods, planned
 from tests.kdl_links import KdlLinks
-from tests.posts.planned_jobs import planned as planned_job
 
 __all__ = ["dome"]  # a fixture
 
@@ -226,21 +223,3 @@ def test_a_nozzle_that_runs_into_an_obstacle_within_a_bead_is_refused(dome, asid
     assert ("CLEARANCE" in told) == deep
     (found,) = [issue for issue in issues if issue.code == "CLEARANCE"] or [None]
     assert found is None or ("the nozzle touches post on " in found.message and found.layer in (0, 1))
-
-
-def test_rapids_over_a_positioner_that_meet_an_obstacle_are_refused():
-    """The robot stands still beside it: where its nozzle is in the world is told by PyKDL's arm alone."""
-    cell, _, motion = planned_job("fanuc positioner")
-    travels = np.flatnonzero(motion.role == TRAVEL)
-    row = int(travels[len(travels) // 2])
-    own = len(cell.robot.axes)
-    middle = 0.5 * (motion.joints[row - 1] + motion.joints[row])[None, :own]
-    nozzle = np.linalg.inv(cell.robot.base) @ KdlArm(cell.robot).forward(middle)[0] @ cell.carried
-    pose = nozzle @ frames.pose(np.eye(3), np.array([0.0, 0.0, -30.0]))
-    there = dataclasses.replace(cell, obstacles=(box((6.0, 6.0, 6.0), pose, "lamp"),))
-    found = nozzle_beside.findings(motion, there)
-    assert "RAPID_COLLISION" in {issue.code for issue in found} and all("lamp" in issue.message for issue in found)
-    above = np.array(pose)
-    above[2, 3] += 400.0
-    clear = dataclasses.replace(cell, obstacles=(box((6.0, 6.0, 6.0), above, "lamp"),))
-    assert nozzle_beside.findings(motion, clear) == []

@@ -16,13 +16,13 @@ import numpy as np
 from ...collision.rods_apart import PlacedRods, nearer
 from ...collision.tolerances import ABOUT_FACES
 from ...geometry.rods import Rod
+from ...geometry.spread import spread
 from ...types import Array, Index, Mask
 from ..chain import Chain
 from ..limits import Limits
 from .rounds import NONE, Solid, about_link, of_rod
 
 POSITIONS, MOST = 128, 0.5  # looked at to see which pairs are left out, and the share at which they are not yet
-_ROUNDS = 64  # of an iteration that halves its error and more each time
 
 
 @dataclass(frozen=True)
@@ -76,16 +76,11 @@ class OwnLinks:
 
 def positions(limits: Limits, axes: int) -> Array:
     """(k, axes) joints spread evenly over all that the limits of so many axes allow, the same each time; of axes without end
-    over one turn. They step on by powers of the root of x^(axes + 1) = x + 1 as shares of the ranges (Roberts 2018)."""
-    root = 1.0
-    for _ in range(_ROUNDS):
-        root = (1.0 + root) ** (1.0 / (axes + 1))
-    steps = root ** -np.arange(1.0, axes + 1.0)
-    share = np.mod(0.5 + np.arange(POSITIONS)[:, None] * steps, 1.0)
+    over one turn."""
     endless = limits.endless[:axes]
     low = np.where(endless, -np.pi, limits.lower[:axes])
     high = np.where(endless, np.pi, limits.upper[:axes])
-    found = low + share * (high - low)
+    found = low + spread(POSITIONS, axes) * (high - low)
     coupled = found @ limits.coefficients[:, :axes].T
     return np.asarray(found[((coupled >= limits.coupled_lower) & (coupled <= limits.coupled_upper)).all(axis=1)])
 

@@ -29,7 +29,7 @@ def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
     return Issue(
         ERROR, "RAPID_COLLISION",
         f"on its way from the bead before the nozzle would meet {', '.join(names)} at every retract distance and direction "
-        "tried; move the seam or the part, or take a more slender nozzle", layer, bead,
+        "tried, and no way round was found; move the seam or the part, or take a more slender nozzle", layer, bead,
     )
 
 
@@ -90,12 +90,16 @@ def _lifted(ways: RapidWays) -> list[Issue]:
         notes.append(Issue(
             NOTE, "RAPID_ASIDE", f"before {len(aside)} beads the tool is retracted in another direction than along its "
             "axis, or turned on the way, to pass clear", aside[0]))
+    if ways.led.ways:
+        notes.append(Issue(
+            NOTE, "RAPID_ROUND", f"before {len(ways.led.ways)} beads the rapid way is led round what is in the way of all "
+            "retracts, by places between", ways.place(ways.led.ways[0]).layer))
     return notes
 
 
 def _others(ways: RapidWays) -> list[Issue]:
     """A note about other ways taken because the machine cannot go those asked for."""
-    cleared = {end for k in ways.lifted for end in ways.ends(k)}
+    cleared = {end for k in (*ways.lifted, *ways.led.ways) for end in ways.ends(k)}
     other: list[tuple[int, Leg]] = [
         (end, leg) for end, leg in ways.legs.items() if leg is not None and leg.choice != ASKED and end not in cleared
     ]

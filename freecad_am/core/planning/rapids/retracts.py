@@ -124,7 +124,7 @@ class Retracts:
                 rows = np.array([k for k, leg in enumerate(legs) if leg is None], dtype=np.intp)
                 if not len(rows):
                     return legs, failures
-                kept = self._kept(LAST_DIGIT_RAD if asked else reserve)
+                kept = self.kept(LAST_DIGIT_RAD if asked else reserve)
                 for k, leg in zip(rows.tolist(), self._first(some[rows], height[rows], group, tolerance, kept)):
                     legs[k] = leg
                 if asked:
@@ -154,11 +154,11 @@ class Retracts:
             ready = left[(np.abs(ways.turn[left]) <= MOVE_TURN_RAD * moves)]
             left = left[np.abs(ways.turn[left]) > MOVE_TURN_RAD * moves]
             joints, position = self._courses(ways.of(ready), moves)
-            able = np.flatnonzero(self._fits(joints[:, -1:], kept))
+            able = np.flatnonzero(self.fits(joints[:, -1:], kept))
             stray = self._stray(ways.of(ready[able]), joints[able]) > tolerance
             left = np.union1d(left, ready[able[stray]])
             able = able[~stray]
-            for k in able[self._fits(joints[able], kept)].tolist():
+            for k in able[self.fits(joints[able], kept)].tolist():
                 number, choice = divmod(int(ready[k]), count)
                 if choice < best[number]:
                     best[number] = choice
@@ -231,7 +231,7 @@ class Retracts:
         away: Array = np.linalg.norm(offset - along[..., None] * ways.direction[:, None], axis=2).max(axis=1, initial=0.0)
         return away
 
-    def _fits(self, joints: Array, kept: Array) -> Mask:
+    def fits(self, joints: Array, kept: Array) -> Mask:
         """Whether all rows of the ways (k, m, axes) are reached, keep this much free beside every limit, and are not below
         the least condition."""
         with np.errstate(invalid="ignore"):
@@ -257,7 +257,7 @@ class Retracts:
         sliding = np.concatenate([self.cell.machine.chain.sliding, np.zeros(len(limits.coupled_lower), dtype=bool)])
         return np.where(sliding, RESERVE, 0.0)
 
-    def _kept(self, reserve: float) -> Array:
+    def kept(self, reserve: float) -> Array:
         return np.maximum(self._least, reserve)
 
     def _why(self, some: Index, height: Array, direction: int, kept: Array) -> list[Failure]:

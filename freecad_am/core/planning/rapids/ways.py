@@ -16,26 +16,18 @@ from ...issues import Issue
 from ...kinematics.cell import Cell
 from ...motion import APPROACH, RETRACT, TRAVEL
 from ...parameters.joints import JointParameters
-from ...types import Array
+from ...types import Array, Mask
+from .. import nozzle_beside
 from ..arm.kept import Rods, clearance_issue, contact_of, on_moves
 from ..joint_path import BeadPath, JointPath
+from .attempts import Attempt, attempts
 from .clearance import Moves, Surroundings
-from .retract_ways import DIRECTIONS, Ends, Failure, Leg
-from .retracts import STRAY_MM, Retracts, branch_of
+from .led_round import LARGEST_TURN, LedRound
+from .retract_ways import Ends, Failure, Leg
+from .retracts import Retracts, branch_of
 
-# largest turn of an endless axis in one rapid move, rad: such an axis takes the shorter way, so half a turn is in doubt
-LARGEST_TURN = np.radians(170.0)
 # how many moves more than it takes such a turn is tried in, where a place between is near a singularity
 MORE_MOVES = 3
-# how many times the retract distance is tried where the nozzle would meet something, and further, beyond everything there is
-HIGHER = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
-FURTHER = 1.5
-# of a retract distance of nothing, mm
-FIRST_LIFT = 2.0
-# how near to the straight line a retract is held that meets something on its way, mm
-FINE_MM = 0.02
-# retract distances in directions other than the tool axis, as shares of the one asked for
-ASIDE = (1.0, 4.0)
 
 
 @dataclass(frozen=True)
@@ -47,15 +39,6 @@ class Way:
     joints: Array
     role: NDArray[np.int64]
     singular: float | None = None  # the condition of a row between, where it is below the floor
-
-
-@dataclass(frozen=True)
-class Attempt:
-    """Height (mm) and direction of a retract, and how near (mm) it is held to the line."""
-
-    height: float
-    direction: int = 0
-    tolerance: float = STRAY_MM
 
 
 class RapidWays:
@@ -78,8 +61,11 @@ class RapidWays:
         beads = [path.bead for path in self.beads]
         self.surroundings = Surroundings(cell, Beads.of(beads, width, height), bodies)
         self.arm = contact_of(beads, cell, rods, bodies, width, height)
+        self.attempts = attempts(cell, lift, beads, bodies)
         self.lifted: list[int] = []
-        self.met = self._clear(self._attempts(bodies))
+        met, hopeless = self._clear()
+        self.led = LedRound(cell, self.retracts, self._clear_moves)
+        self.met = sorted({*self._lead_round(met), *hopeless})
 
     def _ask(self) -> None:
         """The legs as asked for, or what comes nearest where the machine cannot go them."""
@@ -97,7 +83,8 @@ class RapidWays:
         """The ends of beads that way k leaves and comes to."""
         return [end for end in (2 * k - 1, 2 * k) if end in self.legs]
 
-    def _way(self, k: int, legs: Mapping[int, Leg | None]) -> Way:
+    def _way(self, k: int, legs: Mapping[int, Leg | None], round_: Array | None = None) -> Way:
+        """Way k by legs; round_: (m, axes) the places by which it leads from one to the other, where it is not straight."""
         before = self.beads[k - 1] if k else None
         path = self.beads[k] if k < len(self.beads) else None
         away, onto = legs.get(2 * k - 1), legs.get(2 * k)
@@ -108,8 +95,9 @@ class RapidWays:
             role += [RETRACT] * len(rows)
         if path is not None:
             onward = [path.joints[0]] if onto is None else [*onto.joints[::-1], path.joints[0]]
-            rows += onward
-            role += [TRAVEL] + [APPROACH] * (len(onward) - 1)
+            travels = [] if round_ is None else list(round_)
+            rows += [*travels, *onward]
+            role += [TRAVEL] * (1 + len(travels)) + [APPROACH] * (len(onward) - 1)
         start = None if before is None else before.joints[-1]
         joints = np.array(rows).reshape(-1, self.cell.machine.chain.axes)
         if start is None or path is None:
@@ -159,26 +147,52 @@ class RapidWays:
         if not moves:
             return []
         together = Moves(*(np.concatenate(parts) for parts in zip(*moves)))
-        met = self.surroundings.met(together)
-        if self.arm is not None:
-            move, touched = on_moves(self.arm, *together)
-            met[move[touched.any]] = True
+        met = ~self._clear_moves(together)
         number = np.repeat(np.arange(len(moves)), [len(one.start) for one in moves])
         return [some[k] for k in np.unique(number[met]).tolist()]
 
-    def _clear(self, attempts: Sequence[Attempt]) -> list[int]:
-        """Finds other ways where something is met; the ways where nothing helps."""
+    def _clear_moves(self, moves: Moves) -> Mask:
+        """(k,) whether nothing is met on moves."""
+        met = self.surroundings.met(moves)
+        if self.cell.part_moves:
+            met |= nozzle_beside.met(self.cell, moves.start, moves.end).any(axis=0)
+        left = np.flatnonzero(~met)
+        if self.arm is not None and len(left):
+            move, touched = on_moves(self.arm, *moves.of(left))
+            met[left[move[touched.any]]] = True
+        return ~met
+
+    def _clear(self) -> tuple[list[int], set[int]]:
+        """Finds other ways where something is met, higher or aside; the ways that this leaves, and those beyond help."""
         sound = self.retracts.sound
         some = [k for k in range(len(self.ways)) if sound[self.ends(k)].all()]
         met = self._met(some, [self.ways[k] for k in some])
         # where a link is too near at the very end of a bead, no way off or onto it helps
         hopeless = self._standing_too_near(met)
         met = [k for k in met if k not in hopeless]
-        for attempt in attempts:
+        for attempt in self.attempts:
             if not met:
                 break
             met = self._without_cleared(met, attempt)
-        return sorted({*met, *hopeless})
+        return list(met), hopeless
+
+    def _lead_round(self, met: Sequence[int]) -> list[int]:
+        """Leads ways round what is met on them; those where none was found."""
+        left = []
+        for k in met:
+            ends = {} if k in (0, len(self.beads)) else {
+                2 * k - 1: self.beads[k - 1].joints[-1], 2 * k: self.beads[k].joints[0]}
+            found = self.led.found(ends, self.legs, self.attempts, self.rows[k])
+            if found is None:
+                left.append(k)
+                continue
+            legs, places = found
+            self.ways[k] = self._way(k, legs, places)
+            self.legs.update(legs)
+            for end in legs:
+                self.failures.pop(end, None)
+            self.led.ways.append(k)
+        return left
 
     def _standing_too_near(self, some: Sequence[int]) -> set[int]:
         """The ways, of those numbered, at whose beginning or end on a bead a link of the arm is too near to something."""
@@ -209,34 +223,18 @@ class RapidWays:
                 self.lifted.append(k)
         return [k for k in met if k not in tried or k in still]
 
-    def _attempts(self, bodies: Sequence[Body]) -> list[Attempt]:
-        """What is tried in turn after the way asked for, up to where the nozzle is beyond the sphere about all that is
-        there."""
-        cell = self.cell
-        radius = 0.5 * cell.platform_diameter
-        x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
-        platform = [origin + radius * (a * x + b * y) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
-        all_ = (*bodies, *cell.in_part())
-        points = np.vstack([*(path.bead.points for path in self.beads), platform, *(body.vertices for body in all_)])
-        # from anywhere inside, a way of the diameter along any direction leads out of it
-        furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
-        base = self.lift or FIRST_LIFT
-        heights = [*([] if self.lift else [base]), *(factor * base for factor in HIGHER)]
-        while heights[-1] < furthest:
-            heights.append(min(FURTHER * heights[-1], furthest))
-        return [
-            *([Attempt(self.lift, 0, FINE_MM)] if self.lift else []),
-            *(Attempt(height) for height in heights),
-            *(Attempt(share * base, direction) for direction in DIRECTIONS for share in ASIDE),
-        ]
-
     def place(self, k: int) -> BeadPath:
         """The bead that way k is told of: that which it leads to, or the last one."""
         return self.beads[min(k, len(self.beads) - 1)]
 
     def told(self, k: int) -> list[str]:
         """What the nozzle meets on way k."""
-        return self.surroundings.names(self._moves(k, self.ways[k]))
+        moves = self._moves(k, self.ways[k])
+        found = self.surroundings.names(moves)
+        if self.cell.part_moves:
+            met = nozzle_beside.met(self.cell, moves.start, moves.end)
+            found += [body.name for body, here in zip(self.cell.obstacles, met) if here.any()]
+        return found
 
     def arm_issue(self, k: int) -> Issue | None:
         """What a link comes too near on way k, where one does."""

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Other retracts that are tried in turn where something is met on the way asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geometry.surroundings import Body
+from ...kinematics.cell import Cell
+from ...toolpath import Bead
+from .retract_ways import DIRECTIONS
+from .retracts import STRAY_MM
+
+# how many times the retract distance is tried where the nozzle would meet something, and further, beyond everything there is
+HIGHER = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+FURTHER = 1.5
+# of a retract distance of nothing, mm
+FIRST_LIFT = 2.0
+# how near to the straight line a retract is held that meets something on its way, mm
+FINE_MM = 0.02
+# retract distances in directions other than the tool axis, as shares of the one asked for
+ASIDE = (1.0, 4.0)
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """Height (mm) and direction of a retract, and how near (mm) it is held to the line."""
+
+    height: float
+    direction: int = 0
+    tolerance: float = STRAY_MM
+
+
+def attempts(cell: Cell, lift: float, beads: Sequence[Bead], bodies: Sequence[Body]) -> list[Attempt]:
+    """What is tried in turn after the way asked for, up to where the nozzle is beyond the sphere about all that is there."""
+    radius = 0.5 * cell.platform_diameter
+    x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
+    platform = [origin + radius * (a * x + b * y) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
+    all_ = (*bodies, *cell.in_part())
+    points = np.vstack([*(bead.points for bead in beads), platform, *(body.vertices for body in all_)])
+    # from anywhere inside, a way of the diameter along any direction leads out of it
+    furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
+    base = lift or FIRST_LIFT
+    heights = [*([] if lift else [base]), *(factor * base for factor in HIGHER)]
+    while heights[-1] < furthest:
+        heights.append(min(FURTHER * heights[-1], furthest))
+    return [
+        *([Attempt(lift, 0, FINE_MM)] if lift else []),
+        *(Attempt(height) for height in heights),
+        *(Attempt(share * base, direction) for direction in DIRECTIONS for share in ASIDE),
+    ]

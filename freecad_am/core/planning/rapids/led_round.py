@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rapid ways that are led round what is met however far the tool is retracted: by places between, found by sampling."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from ...kinematics.cell import Cell
+from ...types import Array, Mask
+from ..reserve import RESERVE
+from .attempts import Attempt
+from .clearance import Moves
+from .retract_ways import Leg
+from .retracts import Retracts
+from .way_round import Ranges, way_round
+
+# largest turn of an endless axis in one rapid move, rad: such an axis takes the shorter way, so half a turn is in doubt
+LARGEST_TURN = np.radians(170.0)
+LOST = 3  # ways for which none is found, after which no more are looked for: looking takes seconds, and the job is none
+KNOWN = 8  # ways found before that are tried first
+
+Legs = dict[int, Leg | None]
+
+
+class LedRound:
+    """Finds ways round. clear: whether nothing is met on moves. ways: the numbers of those that are led round."""
+
+    def __init__(self, cell: Cell, retracts: Retracts, clear: Callable[[Moves], Mask]) -> None:
+        self.cell, self.retracts, self.clear = cell, retracts, clear
+        self.ways: list[int] = []
+        self._lost = 0
+        self._known: list[Array] = []  # places of the last ways found, there and back: the next one often leads the same way
+
+    def found(
+        self, ends: Mapping[int, Array], legs: Mapping[int, Leg | None], attempts: Sequence[Attempt], laid: int
+    ) -> tuple[Legs, Array] | None:
+        """Legs off the ends of beads, with the joints (axes,) at the ends by their number, and the places (m, axes) by which
+        a way leads from one to the other, so many points being laid; None where there is none. legs: those tried before."""
+        if not ends or self._lost >= LOST:
+            return None
+        own: Legs = {}
+        far: list[Array] = []
+        for end, joints in ends.items():
+            off = self._off(end, joints, legs[end], attempts, laid)
+            if off is not None:
+                own[end] = off[0]
+                far.append(off[1])
+        places = self._between(far[0], far[1], laid) if len(far) == len(ends) else None
+        if places is None:
+            self._lost += 1
+            return None
+        self._known = [places, places[::-1], *self._known][:KNOWN]
+        return own, places
+
+    def _off(
+        self, end: int, joints: Array, before: Leg | None, attempts: Sequence[Attempt], laid: int
+    ) -> tuple[Leg | None, Array] | None:
+        """A clear way off the end of a bead, none where it needs none, and where that leads to; None without any."""
+        if before is None and self._clear(joints[None], joints[None], laid)[0]:
+            return None, joints
+        for leg in self._others(end, before, attempts):
+            rows = np.vstack([joints, leg.joints])
+            if self._clear(rows[:-1], rows[1:], laid).all():
+                return leg, leg.joints[-1]
+        return None
+
+    def _others(self, end: int, before: Leg | None, attempts: Sequence[Attempt]) -> Iterator[Leg]:
+        """The leg tried before, and those of all attempts."""
+        if before is not None:
+            yield before
+        for attempt in attempts:
+            found, _ = self.retracts.found(
+                np.array([end]), np.array([attempt.height]), attempt.direction, attempt.tolerance, thorough=False)
+            if found[0] is not None:
+                yield found[0]
+
+    def _between(self, start: Array, goal: Array, laid: int) -> Array | None:
+        """The places of a way round."""
+        for known in self._known:
+            whole = np.vstack([start, known, goal])
+            if self._clear(whole[:-1], whole[1:], laid).all():
+                return known
+        return way_round(start, goal, self._ranges(start, goal), lambda a, b: self._clear(a, b, laid), self._fits)
+
+    def _clear(self, start: Array, end: Array, laid: int) -> Mask:
+        """(k,) whether moves can be driven, and meet nothing."""
+        endless = self.cell.limits.endless
+        short: Mask = (np.abs(end - start)[:, endless] <= LARGEST_TURN).all(axis=1)
+        rows = np.flatnonzero(short)
+        short[rows] = self.clear(Moves(start[rows], end[rows], np.full(len(rows), laid, dtype=np.intp)))
+        return short
+
+    def _ranges(self, start: Array, goal: Array) -> Ranges:
+        """Robots move within their limits, axes without end half a turn further than both ends, axes beside the robot no
+        further than from one to the other."""
+        limits, own = self.cell.limits, self.cell.robot.chain.axes
+        least, most = np.minimum(start, goal), np.maximum(start, goal)
+        kept = self.retracts.kept(RESERVE)[: limits.axes]
+        low = np.where(limits.endless, least - np.pi, limits.lower + kept)
+        high = np.where(limits.endless, most + np.pi, limits.upper - kept)
+        low[own:], high[own:] = least[own:], most[own:]
+        return Ranges(low, high, self.cell.machine.max_speed)
+
+    def _fits(self, joints: Array) -> Mask:
+        """(k,) whether joints keep limits and condition, and are of the configuration of the beads."""
+        fits = self.retracts.fits(joints[:, None], self.retracts.kept(RESERVE))
+        arm, branch = self.cell.robot.arm, self.retracts.branch
+        rows = np.flatnonzero(fits)
+        if branch is not None and arm is not None and len(rows):
+            fits[rows] = arm.branch_of(joints[rows, : self.cell.robot.chain.axes]) == branch
+        return fits

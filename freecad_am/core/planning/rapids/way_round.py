@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A way from one place to another in the joints, round what is in the way, by sampling.
+
+Two trees of clear moves grow towards the same samples, one from each end, until a clear move joins them (RRT-Connect, after
+Kuffner and LaValle 2000); here they grow by many samples at once. What joins both ends is made shorter: of all clear moves
+between its places those that take the least time are kept, and these are pulled towards each other as far as that stays
+clear. The samples are the same each time and know no chance, so that the same job has the same ways.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geometry.spread import spread
+from ...types import Array, Index, Mask
+
+Free = Callable[[Array, Array], Mask]  # (k,) whether moves straight in the joints from (k, axes) to (k, axes) are clear
+Fits = Callable[[Array], Mask]  # (k,) whether the machine may stand with joints (k, axes)
+
+BATCH, ROUNDS = 32, 30  # samples that trees grow by at once, and how often
+WIDER = 10  # rounds until samples are of the whole ranges; the first are of a part next to both ends
+STEP = 0.2  # longest move that a tree grows by, as a share of the ranges
+SHORTENED = 4  # times that a way is made shorter
+PULLS = np.array([0.0, 0.03, 0.1, 0.3])  # of the way from a place to halfway between its neighbours
+SHORTEST = 0.05  # s that a move takes at least
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Where joints are looked for: low, high (axes,), and the largest speed of each axis."""
+
+    low: Array
+    high: Array
+    speed: Array
+
+    def lasts(self, start: Array, end: Array) -> Array:
+        """(...) s that moves from (..., axes) to (..., axes) take, by the axis that takes longest."""
+        found: Array = (np.abs(end - start) / self.speed).max(axis=-1)
+        return found
+
+
+class _Tree:
+    """Places (n, axes) that clear moves lead to from the first one, each from its parent (n,), in so many s (n,)."""
+
+    def __init__(self, root: Array) -> None:
+        self.place, self.parent, self.lasts = root[None], np.array([-1]), np.zeros(1)
+
+    def nearest(self, ranges: Ranges, place: Array) -> Index:
+        """(k,) which of its places is nearest to each of the places (k, axes)."""
+        return np.asarray(ranges.lasts(self.place[None], place[:, None]).argmin(axis=1))
+
+    def grown(self, place: Array, parent: Index, lasts: Array) -> None:
+        """Adds places that moves of `lasts` s lead to from their parents."""
+        self.place = np.concatenate([self.place, place])
+        self.lasts = np.concatenate([self.lasts, self.lasts[parent] + lasts])
+        self.parent = np.concatenate([self.parent, parent])
+
+    def back(self, number: int) -> list[Array]:
+        """The places from one of its own to the first."""
+        found = []
+        while number >= 0:
+            found.append(self.place[number])
+            number = int(self.parent[number])
+        return found
+
+
+def way_round(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -> Array | None:
+    """The places (m, axes) between two others by which clear moves lead from one to the other; None where none are found."""
+    found = _joined(start, end, ranges, free, fits)
+    if found is None:
+        return None
+    found = _shortest(found, ranges, free)
+    for _ in range(SHORTENED):
+        if len(found) > 2:
+            found = _pulled(found, ranges, free, fits)
+    return _shortest(found, ranges, free)[1:-1]
+
+
+def _joined(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -> Array | None:
+    """Places (m, axes) from the start to the end that clear moves join, both among them."""
+    if free(start[None], end[None])[0]:
+        return np.stack([start, end])
+    trees = _Tree(start), _Tree(end)
+    whole = spread(BATCH * ROUNDS, len(start))
+    for round_ in range(ROUNDS):
+        far = min(1.0, (round_ + 1) / WIDER) * (ranges.high - ranges.low)
+        low = np.maximum(np.minimum(start, end) - far, ranges.low)
+        high = np.minimum(np.maximum(start, end) + far, ranges.high)
+        samples = low + whole[BATCH * round_ : BATCH * (round_ + 1)] * (high - low)
+        for own, other in (trees, trees[::-1]):
+            added = _grow(own, samples, ranges, free, fits)
+            meeting = _met(own, other, added, ranges, free)
+            if meeting is not None:
+                first, last = own.back(meeting[0])[::-1], other.back(meeting[1])
+                way = np.array([*first, *last])
+                return way if own is trees[0] else way[::-1]
+    return None
+
+
+def _grow(tree: _Tree, samples: Array, ranges: Ranges, free: Free, fits: Fits) -> Index:
+    """Grows a tree towards samples; the numbers of the places added."""
+    parent = tree.nearest(ranges, samples)
+    way = samples - tree.place[parent]
+    share = (np.abs(way) / np.maximum(ranges.high - ranges.low, 1e-9)).max(axis=1)
+    place = tree.place[parent] + way * np.minimum(1.0, STEP / np.maximum(share, 1e-9))[:, None]
+    rows = np.flatnonzero(fits(place))
+    rows = rows[free(tree.place[parent[rows]], place[rows])]
+    before = len(tree.place)
+    tree.grown(place[rows], parent[rows], ranges.lasts(tree.place[parent[rows]], place[rows]))
+    return np.arange(before, len(tree.place))
+
+
+def _met(own: _Tree, other: _Tree, added: Index, ranges: Ranges, free: Free) -> tuple[int, int] | None:
+    """The numbers of a place added to one tree and of one of the other that a clear move joins, by which it is soonest."""
+    if not len(added):
+        return None
+    there = other.nearest(ranges, own.place[added])
+    rows = np.flatnonzero(free(own.place[added], other.place[there]))
+    if not len(rows):
+        return None
+    lasts = own.lasts[added] + other.lasts[there] + ranges.lasts(own.place[added], other.place[there])
+    best = int(rows[lasts[rows].argmin()])
+    return int(added[best]), int(there[best])
+
+
+def _shortest(way: Array, ranges: Ranges, free: Free) -> Array:
+    """The soonest way by some of the places (m, axes) of one, the first and the last among them; moves from each to the next
+    are clear."""
+    count = len(way)
+    first, last = np.triu_indices(count, 1)
+    clear = last == first + 1
+    others = np.flatnonzero(~clear)
+    clear[others] = free(way[first[others]], way[last[others]])
+    lasts = np.full((count, count), np.inf)
+    lasts[first, last] = np.where(clear, np.maximum(ranges.lasts(way[first], way[last]), SHORTEST), np.inf)
+    soonest, before = np.zeros(count), np.zeros(count, dtype=np.intp)
+    for place in range(1, count):
+        total = soonest[:place] + lasts[:place, place]
+        before[place] = int(total.argmin())
+        soonest[place] = total[before[place]]
+    kept = [count - 1]
+    while kept[-1]:
+        kept.append(int(before[kept[-1]]))
+    return way[kept[::-1]]
+
+
+def _pulled(way: Array, ranges: Ranges, free: Free, fits: Fits) -> Array:
+    """A way (m, axes) with each place between both ends where it is, or nearer to halfway between its neighbours, so that
+    all of it takes the least time; its moves are clear."""
+    inner, halfway = way[1:-1], 0.5 * (way[:-2] + way[2:])
+    pulled = inner[:, None] + PULLS[:, None] * (halfway - inner)[:, None]
+    stands = fits(pulled.reshape(-1, way.shape[1])).reshape(len(inner), len(PULLS))
+    stands[:, 0] = True
+    layers = [way[:1], *(some[here] for some, here in zip(pulled, stands)), way[-1:]]
+    first = [np.repeat(some, len(then), axis=0) for some, then in zip(layers[:-1], layers[1:])]
+    last = [np.tile(then, (len(some), 1)) for some, then in zip(layers[:-1], layers[1:])]
+    a, b = np.concatenate(first), np.concatenate(last)
+    lasts = np.where(free(a, b), np.maximum(ranges.lasts(a, b), SHORTEST), np.inf)
+    soonest, before, done = np.zeros(1), [], 0
+    for some, then in zip(layers[:-1], layers[1:]):
+        total = soonest[:, None] + lasts[done : done + len(some) * len(then)].reshape(len(some), len(then))
+        before.append(total.argmin(axis=0))
+        soonest, done = total.min(axis=0), done + len(some) * len(then)
+    place, found = 0, []
+    for some, choice in zip(layers[::-1], [*before[::-1], None]):
+        found.append(some[place])
+        place = 0 if choice is None else int(choice[place])
+    return np.array(found[::-1])
