@@ -9488,6 +9488,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/constant.py"/>
+        <source>none of {0} values of RZ keeps the links clear in the whole job; joints.method: layer-by-layer chooses one for each bead</source>
+        <translation>aucune des {0} valeurs de RZ ne garde les corps dégagés dans tout le travail ; joints.method : layer-by-layer en choisit une par cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/methods/constant.py"/>
         <source>none of {0} values of RZ serves for the whole job; the nearest to it is {1} deg</source>
         <translation>aucune de {0} valeurs de RZ ne sert pour tout le travail ; la plus proche est {1} deg</translation>
     </message>
@@ -13239,7 +13244,7 @@
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
         <source>{0} mm of the first layer lie over the edge of the platform, up to {1} mm beyond it; move the part, or set cell.platform_diameter to what there is (0 for none)</source>
-        <translation>{0} mm de la première couche dépassent du bord du plateau, jusqu&apos;à {1} mm au-delà ; déplacez la pièce, ou donnez à cell.platform_diameter sa vraie valeur (0 pour aucun)</translation>
+        <translation>{0} mm de la première couche dépassent du bord du plateau, jusqu&apos;à {1} mm au-delà ; déplacez la pièce, ou donnez à cell.platform_diameter sa vraie valeur (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>

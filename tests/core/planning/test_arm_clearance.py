@@ -57,12 +57,12 @@ def box(low, size, name):
     return Body(name, corners, np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]))
 
 
-def planned(toolpath, cell):
+def planned(toolpath, cell, method="layer-by-layer"):
     """The motion of a job, and its issues."""
-    rods = link_rods.of_robot(cell.robot.chain)
-    path = plan_joints(toolpath, cell, JointParameters(), rods=rods)
+    rods, parameters = link_rods.of_robot(cell.robot.chain), JointParameters(method=method)
+    path = plan_joints(toolpath, cell, parameters, rods=rods)
     motion, rapids = assemble(
-        path, cell, ProcessParameters(), toolpath.surroundings, JointParameters(), toolpath.layer_height, rods
+        path, cell, ProcessParameters(), toolpath.surroundings, parameters, toolpath.layer_height, rods
     )
     return motion, [*path.issues, *rapids]
 
@@ -117,6 +117,31 @@ def test_links_that_met_a_post_keep_clear_of_it(dome, radius, azimuth, branch):
     tip, _ = kept.tip_in_part(KdlArm(kept.machine).forward(motion.joints[motion.deposit]))
     assert np.abs(tip - motion.position[motion.deposit]).max() < 1e-6
     assert not kept.limits.exceeded(motion.joints).any()
+
+
+@pytest.mark.parametrize(("method", "branch"), [("constant", DOWN), ("constant", UP), ("point-by-point", UP)])
+def test_other_methods_keep_clear_too(dome, method, branch):
+    low = np.array([80.0, 80.0 * np.sqrt(3.0), 195.0]) - 0.5 * SIZE
+    job = dataclasses.replace(dome, surroundings=(*dome.surroundings, box(low, SIZE, "post")))
+    without = cells.resolve(CellParameters(**CELL, branch=branch), job.frame)
+    motion, issues = planned(job, without, method)
+    assert not has_errors(issues) and nearest(motion, without, low).min() < CLEARANCE
+    kept = cells.resolve(CellParameters(**CELL, branch=branch, arm_clearance=CLEARANCE), job.frame)
+    motion, issues = planned(job, kept, method)
+    assert not has_errors(issues)
+    assert nearest(motion, kept, low).min() >= CLEARANCE
+
+
+def test_what_one_rotation_for_all_cannot_clear_is_named_with_what_may_help(dome):
+    wall = box(np.array([-400.0, 75.0, -5.0]), np.array([800.0, 40.0, 900.0]), "back wall")
+    job = dataclasses.replace(dome, surroundings=(*dome.surroundings, wall))
+    cell = cells.resolve(CellParameters(**CELL, branch=DOWN, arm_clearance=60.0), job.frame)
+    for method in ("constant", "point-by-point"):
+        _, issues = planned(job, cell, method)
+        told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
+        assert any("back wall" in issue.message and issue.layer is not None for issue in told)
+        notes = [issue.message for issue in issues if issue.code == "RZ_CONSTANT"]
+        assert len(notes) == (method == "constant") and all("layer-by-layer" in note for note in notes)
 
 
 def test_what_cannot_be_cleared_is_named(dome):

@@ -13,6 +13,7 @@ from ...issues import NOTE, Issue
 from ...toolpath import Bead
 from ...types import Array
 from .. import criteria
+from ..arm import clear as arm_clear
 from ..joint_path import BeadPath
 from ..points import Points, gather
 from ..rotation import search
@@ -21,6 +22,10 @@ from ..task import Task, condition_margin
 Progress = Callable[[float, str], None]
 
 TRIED, FINE = 360, 21
+LOOKED = 72  # of these, at which links are looked at, where they are kept clear
+FEW = 8  # a point in so many is looked at before the others
+
+Clear = Callable[[float], bool]  # whether no link comes too near with an RZ, rad
 
 
 def plan(
@@ -34,7 +39,12 @@ def plan(
     if isinstance(wanted, str):
         coarse = gather(beads, task.cell, search.POINTS_PER_BEAD)
         progress(0.1, "searching one RZ for all")
-        rz, margin = best_rz(task, coarse, task.thresholds(coarse))
+        clear = None if task.kept is None else _keeps_clear(task, beads, places)
+        rz, margin, served = best_rz(task, coarse, task.thresholds(coarse), clear)
+        if not served:
+            issues.append(Issue(
+                NOTE, "RZ_CONSTANT", f"none of {LOOKED} values of RZ keeps the links clear in the whole job; joints.method: "
+                "layer-by-layer chooses one for each bead"))
         if margin < 0.0:
             issues.append(Issue(NOTE, "RZ_CONSTANT", f"none of {TRIED} values of RZ serves for the whole job; the "
                                 f"nearest to it is {np.degrees(rz):.1f} deg"))
@@ -44,13 +54,38 @@ def plan(
     return _paths(task, beads, places, full, threshold, rz), issues
 
 
-def best_rz(task: Task, points: Points, thresholds: Array) -> tuple[float, float]:
-    """The RZ (rad) with the largest smallest margin over all points, and that margin (negative: none is feasible)."""
+def best_rz(task: Task, points: Points, thresholds: Array, clear: Clear | None = None) -> tuple[float, float, bool]:
+    """The RZ (rad) with the largest smallest margin over all points, of those with which links are clear, and that margin
+    (negative: none is feasible); and whether there are such that links are clear with."""
     rough = np.linspace(-np.pi, np.pi, TRIED, endpoint=False)
-    peak = rough[int(first_most(margins(task, points, thresholds, rough)))]
-    near: Array = peak + np.linspace(-1.0, 1.0, FINE) * (TURN / TRIED)
+    there = margins(task, points, thresholds, rough)
+    best, served = int(first_most(there)), True
+    if clear is not None and there[best] >= 0.0 and not clear(rough[best]):
+        some = np.arange(0, TRIED, TRIED // LOOKED)
+        order = some[np.argsort(-there[some], kind="stable")]
+        found = next((k for k in order.tolist() if there[k] >= 0.0 and clear(rough[k])), None)
+        best, served = (best, False) if found is None else (found, True)
+    near: Array = rough[best] + np.linspace(-1.0, 1.0, FINE) * (TURN / TRIED)
     fine = margins(task, points, thresholds, near)
-    return float(near[int(first_most(fine))]), float(fine.max())
+    if clear is not None and served and fine.max() >= 0.0 and not clear(near[int(first_most(fine))]):
+        return float(rough[best]), float(there[best]), True
+    return float(near[int(first_most(fine))]), float(fine.max()), served
+
+
+def _keeps_clear(task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]]) -> Clear:
+    """Whether no link comes too near with an RZ at points of the beads, a few of them first."""
+    assert task.kept is not None
+    kept, points = task.kept, gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
+    few = np.zeros(len(points), dtype=bool)
+    few[::FEW] = True
+
+    def clear(rz: float) -> bool:
+        phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
+        joints = task.joints(points, phi)
+        return not any(
+            kept.touches(np.where(some[:, None], joints, np.nan), points, places).any.any() for some in (few, ~few))
+
+    return clear
 
 
 def margins(task: Task, points: Points, thresholds: Array, values: Array) -> Array:

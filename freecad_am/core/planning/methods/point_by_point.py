@@ -16,10 +16,10 @@ from ...geometry.angles import TURN
 from ...geometry.ties import first_least, first_most
 from ...issues import Issue
 from ...toolpath import Bead
-from ...types import Array
+from ...types import Array, Index
 from ..joint_path import BeadPath
 from ..points import Points, gather, unwrapped
-from ..task import Task, condition_margin
+from ..task import UNREACHABLE, Task, condition_margin
 from .constant import bead_paths
 
 Progress = Callable[[float, str], None]
@@ -35,22 +35,27 @@ def plan(
     points = gather(beads, task.cell)
     threshold = task.thresholds(points)
     counts = np.diff(np.append(points.first, len(points)))
+    kept = task.kept
+    laid = np.array([0 if kept is None else kept.moment(place) for place in places], dtype=np.int64)
     phi = np.zeros(len(points))
     joints = np.full((len(points), len(task.weights)), np.nan)
     for number in range(counts.max()):
         index = points.first[counts > number] + number
         at = points.each(index)
         if number == 0:
-            phi[index], joints[index] = _searched(task, at, threshold[index], None)
+            phi[index], joints[index] = _searched(task, at, threshold[index], laid[points.bead[index]], None)
             continue
-        phi[index], joints[index] = _step(task, at, threshold[index], phi[index - 1], joints[index - 1])
+        phi[index], joints[index] = _step(
+            task, at, threshold[index], laid[points.bead[index]], phi[index - 1], joints[index - 1])
         if number % 20 == 0:
             progress(0.1 + 0.8 * number / counts.max(), "going from point to point")
     joints = task.in_range(unwrapped(joints, points), points)
     return bead_paths(task, beads, places, points, threshold, phi, joints, "point by point"), []
 
 
-def _step(task: Task, at: Points, threshold: Array, phi: Array, before: Array) -> tuple[Array, Array]:
+def _step(
+    task: Task, at: Points, threshold: Array, laid: Index, phi: Array, before: Array
+) -> tuple[Array, Array]:
     phi = phi.copy()
     for _ in range(STEPS):
         joints = _near(task, at, phi, before)
@@ -64,8 +69,10 @@ def _step(task: Task, at: Points, threshold: Array, phi: Array, before: Array) -
         phi[good] -= np.clip(((away * rates) @ task.weights) / np.maximum(curvature, 1e-15), -0.2, 0.2)
     joints = _near(task, at, phi, before)
     bad = _margin(task, at, phi, joints, threshold) < 0.0
+    if task.kept is not None:
+        bad |= task.kept.contact.touches(joints, laid).any
     if bad.any():
-        phi[bad], joints[bad] = _searched(task, at.each(np.flatnonzero(bad)), threshold[bad], before[bad])
+        phi[bad], joints[bad] = _searched(task, at.each(np.flatnonzero(bad)), threshold[bad], laid[bad], before[bad])
     return phi, joints
 
 
@@ -81,8 +88,11 @@ def _margin(task: Task, at: Points, phi: Array, joints: Array, threshold: Array)
     return np.minimum(task.rows.margin(joints), condition_margin(condition, threshold))
 
 
-def _searched(task: Task, at: Points, threshold: Array, before: Array | None) -> tuple[Array, Array]:
-    """The best of a whole turn of candidates: the least motion among the feasible, else the largest margin."""
+def _searched(
+    task: Task, at: Points, threshold: Array, laid: Index, before: Array | None
+) -> tuple[Array, Array]:
+    """The best of a whole turn of candidates: the least motion among the feasible, of these among those with which links are
+    clear, where there are any; else the largest margin. laid: (k,) how many points of the deposit are there."""
     turn = np.arange(CANDIDATES) * (TURN / CANDIDATES) - np.pi
     phi = np.repeat(turn[:, None], len(at), axis=1)
     joints = task.raw_joints(at, phi, before)
@@ -93,6 +103,11 @@ def _searched(task: Task, at: Points, threshold: Array, before: Array | None) ->
     margin = np.minimum(
         task.rows.margin(joints), condition_margin(task.condition(at, phi, joints), threshold)
     )
+    if task.kept is not None:
+        looked = np.where((margin >= 0.0)[..., None], joints, np.nan)
+        near = task.kept.contact.touches(looked.reshape(-1, looked.shape[2]), np.tile(laid, CANDIDATES)).any
+        clear = (margin >= 0.0) & ~near.reshape(margin.shape)
+        margin = np.where(clear.any(axis=0) & ~clear, UNREACHABLE, margin)
     best = first_most(margin, axis=0)
     if before is not None:
         away = joints - before
