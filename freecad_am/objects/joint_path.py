@@ -138,7 +138,7 @@ class JointPath(Stage):
             issues = (*issues, *_heights_as_run(joint_path, toolpath, process))
             asked = Tried(
                 lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,
-                rods=rods, obstacles=cell.obstacles, torch=cell.torch,
+                rods=rods, obstacles=cell.obstacles, torch=cell.torch, beside=cell.beside,
             )
             _tell_remedies(cell, toolpath, issues)
             issues = (*remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)), *issues)

@@ -1302,6 +1302,11 @@
         <translation>; entre les arêtes de ses triangles elle court régulièrement, à {0} mm d&apos;eux au plus, à peu près autant qu&apos;ils s&apos;écartent de ce qu&apos;ils représentent</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/collision.py"/>
+        <source>&lt;{0}&gt; has a size that is not larger than 0</source>
+        <translation>&lt;{0}&gt; a une taille qui n’est pas supérieure à 0</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>&lt;{0}&gt; has no &lt;{1}&gt;</source>
         <translation>&lt;{0}&gt; n&apos;a pas de &lt;{1}&gt;</translation>
@@ -4180,6 +4185,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>Positioner</source>
         <translation>Positionneur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>Positioner and track stay clear of nozzle, torch, robot and obstacles</source>
+        <translation>Le positionneur et la voie restent à l’écart de la buse, de la torche, du robot et des obstacles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences/page.py"/>
@@ -9108,13 +9118,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>link {0} comes nearer than {1} mm to {2}, or touches it; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>links of the robot are drawn from the kinematics</source>
+        <translation>les corps du robot sont dessinés d’après la cinématique</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -9362,6 +9387,11 @@
         <translation>aucun fichier de points mesurés n&apos;est donné ; choisissez-en un</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>no file tells what {0} is made of</source>
+        <translation>aucun fichier ne dit de quoi {0} est fait</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>no flip</source>
         <translation>non retourné</translation>
@@ -9507,6 +9537,16 @@
         <translation>non permis, ou contact</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked in full, for {0}: {1} links that move with their axes, every {2} deg of the whole motion, the nozzle every mm; they touch nothing</source>
+        <translation>non vérifié en entier, car {0} : {1} corps qui bougent avec leurs axes, tous les {2} deg du mouvement entier, la buse tous les mm ; ils ne touchent rien</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked in full, for {0}: {1} links that move with their axes, every {2} deg of the whole motion, the nozzle every mm; they touch {3} with {4}</source>
+        <translation>non vérifié en entier, car {0} : {1} corps qui bougent avec leurs axes, tous les {2} deg du mouvement entier, la buse tous les mm ; ils touchent {3} avec {4}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>not checked: a bead model, or nothing, tells how wide the beads are</source>
         <translation>non vérifié : un modèle de cordon, ou rien, dit la largeur des cordons</translation>
@@ -9520,6 +9560,11 @@
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>not checked: it is not known how wide the beads count</source>
         <translation>non vérifié : la largeur des cordons qui compte n’est pas connue</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked: no file tells what {0} is made of</source>
+        <translation>non vérifié : aucun fichier ne dit de quoi {0} est fait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/written.py"/>
@@ -10197,6 +10242,11 @@
         <translation>simple</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
+        <source>sizes are larger than 0: of a box along x, y and z, of a cylinder its diameter and length</source>
+        <translation>les tailles sont supérieures à 0 : d’une boîte selon x, y et z, d’un cylindre son diamètre et sa longueur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>slides</source>
         <translation>glisse</translation>
@@ -10393,8 +10443,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the base comes nearer than {0} mm to {1}, or touches it; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
@@ -10913,13 +10973,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the nozzle touches {0} on the rapid way to the bead; lift the part over it by cell.platform, or move it in cell.external</source>
+        <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the nozzle touches {0} on the rapid way to the bead; move it in cell.obstacles, the part or cell.deposition_point</source>
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/nozzle_beside.py"/>
+        <source>the nozzle touches {0} on {1} move(s) while it deposits; lift the part over it by cell.platform, or move it in cell.external</source>
+        <translation>la buse touche {0} sur {1} mouvement(s) pendant qu’elle dépose ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/nozzle_beside.py"/>
         <source>the nozzle touches {0} on {1} move(s) while it deposits; move it in cell.obstacles, or the part</source>
         <translation>la buse touche {0} sur {1} mouvement(s) pendant le dépôt ; déplacez-le dans cell.obstacles, ou la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the nozzle touches {0}; lift the part over it by cell.platform, or move it in cell.external</source>
+        <translation>la buse touche {0} ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
@@ -10948,8 +11023,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the part comes nearer than {0} mm to {1}, or touches it; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
@@ -11343,8 +11428,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet, sur le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/arm/kept.py"/>
+        <source>the torch comes nearer than {0} mm to {1}, or touches it; move one of them in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
@@ -13162,6 +13257,16 @@
         <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez-en une</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>{0} links that move with their axes, every {1} deg of the whole motion, the nozzle every mm: they touch nothing</source>
+        <translation>{0} corps qui bougent avec leurs axes, tous les {1} deg du mouvement entier, la buse tous les mm : ils ne touchent rien</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>{0} links that move with their axes, every {1} deg of the whole motion, the nozzle every mm: they touch {2} with {3}</source>
+        <translation>{0} corps qui bougent avec leurs axes, tous les {1} deg du mouvement entier, la buse tous les mm : ils touchent {2} avec {3}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>{0} links to nothing, what it showed is gone or was not loaded; choose another {1}</source>
         <translation>{0} ne lie à rien, ce qu&apos;il montrait a disparu ou n&apos;a pas été chargé ; choisissez un autre {1}</translation>
@@ -13950,6 +14055,11 @@
         <location filename="../../freecad_am/gui/docks/lookout.py"/>
         <source>{label} was deleted</source>
         <translation>{label} a été supprimé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
+        <source>{link} touches {what}</source>
+        <translation>{link} touche {what}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>

@@ -26,6 +26,7 @@ from .arrangement import Arrangement, of_setup, planned_of
 from .external import ExternalAxes, coupled, upward
 from .inverse import opw
 from .limits import Limits
+from .links.beside import BesideLink, links_beside
 from .machines import machine as machines
 from .machines.machine import Machine
 from .pose_frames import PoseFrames
@@ -51,6 +52,7 @@ class Cell:
     chain is the face that carries the part, or the world where only the robot is carried.
     obstacles: what stands in the world, the maker's base frame, in its coordinates. up: (3,) against gravity, there.
     torch: what holds the nozzle, in the frame of its tip, Z into it. offset: where the part stands by points touched.
+    beside: the links of positioner and track that are known, each in its own frame.
     """
 
     machine: Machine
@@ -68,6 +70,7 @@ class Cell:
     up: Array = field(default_factory=lambda: np.array(UP))
     torch: Torch | None = None
     offset: WorkOffset | None = None
+    beside: tuple[BesideLink, ...] = ()
 
     @property
     def robot(self) -> Machine:
@@ -98,6 +101,16 @@ class Cell:
             values[:, self.external.slides] = 0.0
         found: Array = self.external.base(values) @ self.robot.base
         return found
+
+    def beside_frames(self, joints: Array) -> Array:
+        """(n, links, 4, 4) the frames of the links `beside`, seen from where the machine's chain begins, for joints
+        (n, axes)."""
+        values = self.external_of(joints)
+        if not self.beside or self.external is None or values is None:
+            return np.zeros((len(joints), 0, 4, 4))
+        links = self.external.links(values)
+        in_world = np.stack([links[one.mechanism][:, one.link] for one in self.beside], axis=1)
+        return np.asarray(self.world(joints)[:, None] @ in_world)
 
     @property
     def arrangement(self) -> Arrangement:
@@ -269,7 +282,7 @@ def resolve(
         external=external,
         arm_clearance=parameters.arm_clearance,
         up=upward(parameters.upward()),
-        offset=offset,
+        offset=offset, beside=links_beside(external),
     )
 
 

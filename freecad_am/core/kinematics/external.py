@@ -33,12 +33,25 @@ MECHANISMS = machines.BUILT_IN / "mechanisms"
 
 
 @dataclass(frozen=True, eq=False)
+class Mechanism:
+    """One of the mechanisms beside a robot. place: (4, 4) where its chain begins, seen from the world, or from the face of
+    the mechanism it stands on, `under`, by its place among all. values: which of the external axes' values are its own."""
+
+    machine: Machine
+    carries: str
+    place: Array
+    values: NDArray[np.intp]
+    under: int | None
+
+
+@dataclass(frozen=True, eq=False)
 class ExternalAxes:
     """The axes beside a robot, k in all. robot: the machine without them. to_robot: the chain from where the part stands,
     the platform's face or the world, to the robot's base_link. up: (3,) against gravity, in the world. turning: the unit
     axes (3,) of the positioner in the world with all axes at zero, from the floor on, and `turned` which of the values these
     are. at_zero: (3, 3) turns directions on the face into the world, at zero. along: (3,) the unit way of the track in the
-    world and `slides` its value's place, None where the robot stands. carriers: what carries the part, from the floor on."""
+    world and `slides` its value's place, None where the robot stands. carriers: what carries the part, from the floor on.
+    mechanisms: all, in the order they are named in."""
 
     robot: Machine
     to_robot: Chain
@@ -49,6 +62,7 @@ class ExternalAxes:
     along: Array | None = None
     slides: int | None = None
     carriers: tuple[Machine, ...] = ()
+    mechanisms: tuple[Mechanism, ...] = ()
 
     @property
     def axes(self) -> int:
@@ -58,6 +72,16 @@ class ExternalAxes:
     def base(self, values: Array) -> Array:
         """(n, 4, 4) the robot's base_link seen from where the part stands, mm, for values (n, k) rad and mm."""
         return self.to_robot.forward(values)
+
+    def links(self, values: Array) -> list[Array]:
+        """(n, axes + 1, 4, 4) the frames of each mechanism's links in the world, its base first, for values (n, k)."""
+        found: list[Array] = []
+        for one in self.mechanisms:
+            start = one.place
+            if one.under is not None:
+                start = found[one.under][:, -1:] @ self.mechanisms[one.under].machine.chain.flange @ start
+            found.append(start @ one.machine.chain.links(values[:, one.values]))
+        return found
 
     def upright(self, directions: Array, values: Array) -> Array:
         """(n, 3) unit vectors seen from where the part stands (n, 3) in the world, for values (n, k) rad and mm."""
@@ -103,10 +127,10 @@ def coupled(
     whole = joined([
         Piece(np.eye(4), to_robot, axes + np.arange(count)), Piece(np.eye(4), robot.chain, np.arange(axes)),
     ], np.eye(4))
-    carry = tuple(found[k][1] for k in carriers)
-    external = ExternalAxes(robot, to_robot, upward(up), turning, turned, face[:3, :3], along, slides, carry)
-    machines_ = [machine for _, machine in found]
-    return _together(robot, machines_, whole), _limits(limits, machines_), external
+    external = ExternalAxes(robot, to_robot, upward(up), turning, turned, face[:3, :3], along, slides,
+                            tuple(found[k][1] for k in carriers), _mechanisms(found, values))
+    others = [machine for _, machine in found]
+    return _together(robot, others, whole), _limits(limits, others), external
 
 
 def _check(found: Sequence[tuple[External, Machine]]) -> None:
@@ -185,6 +209,21 @@ def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
         pieces.append(Piece(frames.inverse(before) @ start, machine.chain, first + np.arange(machine.chain.axes)))
         before, first = start @ machine.chain.forward(np.zeros(machine.chain.axes)), first + machine.chain.axes
     return joined(pieces, np.eye(4)), before
+
+
+def _mechanisms(found: Sequence[tuple[External, Machine]], values: Sequence[NDArray[np.intp]]) -> tuple[Mechanism, ...]:
+    """The mechanisms where they stand: those that carry the part on one another."""
+    beside: list[Mechanism] = []
+    under: int | None = None
+    face = np.eye(4)
+    for k, (one, machine) in enumerate(found):
+        start = frames.bryant(one.pose) @ frames.inverse(machine.base)
+        if one.carries == ROBOT:
+            beside.append(Mechanism(machine, ROBOT, start, values[k], None))
+            continue
+        beside.append(Mechanism(machine, PART, frames.inverse(face) @ start, values[k], under))
+        under, face = k, start @ machine.chain.forward(np.zeros(machine.chain.axes))
+    return tuple(beside)
 
 
 def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machine:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether a nozzle that moves meets what stands in the cell, `cell.obstacles`: while it deposits, between points too, and on
-rapids where the part moves in the world. Where it stands still rapids see obstacles among all that stands about the part."""
+"""Whether a nozzle that moves meets what stands in the cell, `cell.obstacles`, or the links of positioner and track: while
+it deposits, between points too, and on rapids where the part moves in the world. Where it stands still rapids see obstacles
+among all that stands about the part."""
 
 from __future__ import annotations
 
@@ -22,25 +23,33 @@ STEP, SLIDE, WAY = float(np.radians(2.0)), 5.0, 1.0
 PIECE = 4096  # moves, or looks, that are done together
 
 
+def in_the_way(cell: Cell) -> tuple[str, ...]:
+    """What is looked at, by the names that messages have: obstacles, then the links beside the robot."""
+    return (*(body.name for body in cell.obstacles), *(one.name for one in cell.beside))
+
+
 def findings(motion: Motion, cell: Cell) -> list[Issue]:
-    """An error for each obstacle that the nozzle meets while it deposits, at the first bead where it does."""
+    """An error for each of these that the nozzle meets while it deposits, at the first bead where it does."""
     rows = 1 + np.flatnonzero(motion.deposit[1:])
     met_there, found = met(cell, motion.joints[rows - 1], motion.joints[rows]), []
-    for body, here in zip(cell.obstacles, met_there, strict=True):
+    for number, (name, here) in enumerate(zip(in_the_way(cell), met_there, strict=True)):
         laying = rows[here]
+        remedy = "move it in cell.obstacles, or the part" if number < len(cell.obstacles) else (
+            "lift the part over it by cell.platform, or move it in cell.external")
         if len(laying):
             found.append(Issue(
-                ERROR, ON_BEADS, f"the nozzle touches {body.name} on {len(laying)} move(s) while it deposits; move it in "
-                "cell.obstacles, or the part", int(motion.layer[laying[0]]), int(motion.bead[laying[0]])))
+                ERROR, ON_BEADS, f"the nozzle touches {name} on {len(laying)} move(s) while it deposits; {remedy}",
+                int(motion.layer[laying[0]]), int(motion.bead[laying[0]])))
     return found
 
 
 def met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
-    """(obstacles, k) which of them a nozzle meets on moves straight in the joints (k, axes); none where these are NaN."""
-    found = np.zeros((len(cell.obstacles), len(start)), dtype=bool)
-    if cell.torch_stands or not cell.arrangement.redundant:
+    """(k, n) which of what is `in_the_way` a nozzle meets on n moves straight in the joints (n, axes); none where these are
+    NaN."""
+    found = np.zeros((len(in_the_way(cell)), len(start)), dtype=bool)
+    if cell.torch_stands or not cell.arrangement.redundant or not len(found):
         return found
-    known = np.flatnonzero(np.isfinite(start + end).all(axis=1)) if cell.obstacles else np.zeros(0, dtype=np.intp)
+    known = np.flatnonzero(np.isfinite(start + end).all(axis=1))
     for first in range(0, len(known), PIECE):
         rows = known[first : first + PIECE]
         found[:, rows] = _met(cell, start[rows], end[rows])
@@ -48,8 +57,8 @@ def met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
 
 
 def _met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
-    nozzle, turned = cell.nozzle, end - start
-    found = np.zeros((len(cell.obstacles), len(start)), dtype=bool)
+    nozzle, turned, obstacles = cell.nozzle, end - start, len(cell.obstacles)
+    found = np.zeros((obstacles + len(cell.beside), len(start)), dtype=bool)
     far = np.abs(turned / np.where(cell.machine.chain.sliding, SLIDE, STEP)).max(axis=1, initial=0.0)
     (tip, axis), (last, leant) = (_in_world(cell, joints) for joints in (start, end))
     way = np.linalg.norm(last - tip, axis=1) + nozzle.length * np.linalg.norm(leant - axis, axis=1)
@@ -57,18 +66,25 @@ def _met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
     cone = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, 0.0)
     for first in range(0, len(move), PIECE):
         some = slice(first, first + PIECE)
-        tip, axis = _in_world(cell, start[move[some]] + share[some, None] * turned[move[some]])
+        joints = start[move[some]] + share[some, None] * turned[move[some]]
+        tip, axis = _in_world(cell, joints)
         for number, body in enumerate(cell.obstacles):
             hit = scene((body,), tip, cone.reach).touched(cone, tip, axis)
             found[number, move[some][hit]] = True
+        to_world = frames.inverse(cell.world(joints))[:, None] @ cell.beside_frames(joints)
+        for number, one in enumerate(cell.beside):
+            hit = one.solid.touched(cone.bodies, *_seen(frames.inverse(to_world[:, number]), tip, axis))
+            found[obstacles + number, move[some][hit]] = True
     return found
 
 
 def _in_world(cell: Cell, joints: Array) -> tuple[Array, Array]:
     """Tip and axis (n, 3) of a nozzle that the flange carries, in the maker's base frame."""
-    tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
     to_world = frames.inverse(cell.world(joints)) @ (cell.station @ frames.inverse(cell.mount))
-    return (
-        np.einsum("nij,nj->ni", to_world[:, :3, :3], tip) + to_world[:, :3, 3],
-        np.einsum("nij,nj->ni", to_world[:, :3, :3], axis),
-    )
+    return _seen(to_world, *cell.tip_in_part(cell.machine.chain.forward(joints)))
+
+
+def _seen(pose: Array, tip: Array, axis: Array) -> tuple[Array, Array]:
+    """Points and directions (n, 3) seen through poses (n, 4, 4)."""
+    turn = pose[:, :3, :3]
+    return np.einsum("nij,nj->ni", turn, tip) + pose[:, :3, 3], np.einsum("nij,nj->ni", turn, axis)

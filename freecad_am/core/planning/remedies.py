@@ -22,6 +22,7 @@ from ..kinematics import cell as cells
 from ..kinematics import proposed_cell
 from ..kinematics.arrangement import of_setup
 from ..kinematics.inverse import opw
+from ..kinematics.links.beside import BesideLink, links_beside
 from ..kinematics.torch import Torch
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
@@ -58,7 +59,7 @@ class Fixed(NamedTuple):
 class Tried:
     """A job to plan: that which is infeasible, or it with a change, told as keys of a job file. fixed: the toolpath with the
     build direction of the part's axis; None where it has it, or cannot. own_speed: of several features, whether each has a
-    travel speed of its own."""
+    travel speed of its own. beside: links of its positioner and track as they were read."""
 
     toolpath: Callable[[], Toolpath]
     settings: CellParameters
@@ -71,11 +72,13 @@ class Tried:
     rods: Rods = ()
     obstacles: tuple[Body, ...] = ()
     torch: Torch | None = None
+    beside: tuple[BesideLink, ...] = ()
 
     def cell(self, toolpath: Toolpath) -> cells.Cell:
         """The cell of a toolpath of it."""
         found = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
-        return dataclasses.replace(found, obstacles=self.obstacles, torch=self.torch)
+        beside = links_beside(found.external, known=self.beside)
+        return dataclasses.replace(found, obstacles=self.obstacles, torch=self.torch, beside=beside)
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
         """What is wrong with it; rapids only of a whole one."""

@@ -78,4 +78,5 @@ def _of_motion(evidence: Evidence) -> list[Promise]:
         *joints.promises(motion, cell, evidence.condition, evidence.threshold),
         clearance.rapids(evidence.issues, rapids),
         clearance.arm(motion, cell, evidence.arm, evidence.true_shapes),
+        *clearance.beside(motion, cell, evidence.arm, evidence.true_shapes, evidence.issues),
     ]

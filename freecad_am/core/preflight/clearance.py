@@ -10,6 +10,7 @@ import numpy as np
 
 from ..issues import Issue
 from ..kinematics.cell import Cell
+from ..kinematics.links.contact import LINKS_MORE
 from ..kinematics.links.rounds import NONE
 from ..motion import Motion
 from ..simulation.arm import ArmTouches
@@ -68,3 +69,42 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
         return Promise(what, how, None, float(len(rows)), "points", None, place)
     how = f"shapes of all links, against each other too, every {step} deg of the whole motion: they {near} {met}"
     return Promise(what, how, not len(rows), float(len(rows)), "points", 0.0, place)
+
+
+def beside(
+    motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: bool, issues: Sequence[Issue]
+) -> list[Promise]:
+    """Of positioner and track; nothing of a cell without external axes. Links of the robot that are drawn from the
+    kinematics alone can neither keep the promise nor break it."""
+    if cell.external is None:
+        return []
+    what, names = "Positioner and track stay clear of nozzle, torch, robot and obstacles", [one.name for one in cell.beside]
+    known = {one.mechanism for one in cell.beside}
+    untold = [one.machine.title for k, one in enumerate(cell.external.mechanisms) if k not in known]
+    missing = f"no file tells what {', '.join(untold)} is made of" if untold else ""
+    if touches is None or not names:
+        return [Promise(what, f"not checked: no file tells what {', '.join(untold)} is made of", None)]
+    own = cell.robot.chain.axes
+    about = np.isin(touches.what, [touches.names.index(name) for name in names]) | (touches.link >= own + LINKS_MORE)
+    rows = np.flatnonzero((touches.link != NONE) & about)
+    rows = rows[np.argsort((touches.link[rows] <= own) & (not true_shapes), kind="stable")]  # those that count first
+    met, place = "nothing", None
+    if len(rows):
+        place = row_place(motion, int(rows[0]))
+        met = f"{touches.names[touches.what[rows[0]]]} with {touches.links[touches.link[rows[0]]]}"
+    told = [one for one in of_codes(issues, (*DEPOSITING, *RAPIDS)) if any(name in one.message for name in names)]
+    broken = bool(told) or bool(len(rows) and (true_shapes or touches.link[rows[0]] > own))
+    whole = true_shapes and not untold
+    step = number(math.degrees(touches.step))
+    how = (
+        f"{len(names)} links that move with their axes, every {step} deg of the whole motion, the nozzle every mm: they "
+        f"touch {met}"
+    )
+    if not whole:
+        lacks = missing or "links of the robot are drawn from the kinematics"
+        how = (
+            f"not checked in full, for {lacks}: {len(names)} links that move with their axes, every {step} deg of the whole "
+            f"motion, the nozzle every mm; they touch {met}"
+        )
+    ok = False if broken else True if whole else None
+    return [Promise(what, how, ok, float(len(rows)), "points", 0.0 if whole else None, issue_place(told) or place)]

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Where everything in a cell is for given joint values, seen from what stands still; and how a cell stands at rest.
 
-What stands still, the world, is the floor plate of a robot, or the bearings of a machine with rotary axes.
+What stands still, the world, is the floor plate of a robot, where it is with its track at zero, or the bearings of a
+machine with rotary axes.
 """
 
 from __future__ import annotations
@@ -23,27 +24,32 @@ _SPINS = 24
 @dataclass(frozen=True)
 class Placing:
     """Poses in the world, mm. links: (axes + 1, 4, 4), the robot's own. part: (4, 4), its own coordinates. nozzle: (4, 4),
-    the tip, its Z pointing into the nozzle. platform: (4, 4), what the part stands on."""
+    the tip, its Z pointing into the nozzle. platform: (4, 4), what the part stands on. beside: (k, 4, 4), the links of
+    positioner and track that are known."""
 
     links: Array
     part: Array
     nozzle: Array
     platform: Array
+    beside: Array
 
 
 def placing(cell: Cell, joints: ArrayLike) -> Placing:
     """Where links, part and nozzle are for a joint vector (axes,)."""
-    chain = cell.robot.chain
-    links = cell.links(np.asarray(joints, float))
+    chain, values = cell.robot.chain, np.asarray(joints, float)
+    links = cell.links(values)
     flange = links[-1] @ chain.flange
     carried = flange @ cell.carried
     on_robot = not cell.torch_stands
     platform = cell.station if on_robot else carried
     nozzle = carried @ frames.pose(frames.about_x(np.pi), np.zeros(3)) if on_robot else cell.station
-    to_world = frames.inverse(links[standing_link(chain)])
+    stands = links[standing_link(chain)]
+    if cell.external is not None:
+        stands = cell.world(values[None])[0] @ frames.inverse(cell.robot.base)
+    to_world = frames.inverse(stands)
     return Placing(
         links=to_world @ links, part=to_world @ platform @ frames.inverse(cell.mount), nozzle=to_world @ nozzle,
-        platform=to_world @ platform,
+        platform=to_world @ platform, beside=to_world @ cell.beside_frames(values[None])[0],
     )
 
 

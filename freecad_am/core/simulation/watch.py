@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..issues import NOTE, Issue
 from ..kinematics.cell import Cell
+from ..kinematics.links.contact import LINKS_MORE
 from ..kinematics.links.rounds import NONE
 from ..motion import Motion
 from ..types import Array
@@ -98,8 +99,11 @@ def bad_links(
     bad[1:] |= singular or not reachable
     if touching != NONE:  # what is carried, part or nozzle, counts as what carries it
         own = cell.robot.chain.axes
-        on_positioner = touching == own + 1 and not cell.torch_stands
-        bad[touching if touching <= own else -1 if on_positioner else own] = True
+        if touching >= own + LINKS_MORE:
+            bad[own + 1 + cell.beside[touching - own - LINKS_MORE].axis] = True
+        else:
+            on_positioner = touching == own + 1 and not cell.torch_stands
+            bad[touching if touching <= own else -1 if on_positioner else own] = True
     return bad
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from ...core.kinematics import cell as cells
 from ...core.kinematics.arrangement import of_setup
 from ...core.kinematics.cell import Cell
 from ...core.kinematics.limits import Limits
+from ...core.kinematics.links.beside import BesideLink, links_beside
 from ...core.kinematics.links.rods import Mesh
 from ...core.kinematics.links.solids import capsule
 from ...core.kinematics.machines.machine import Machine
@@ -26,7 +27,8 @@ from ...core.parameters.cell import CellParameters
 from ...core.simulation.placing import at_rest, placing
 from ...core.toolpath import Toolpath
 from ...objects.shapes.cell_obstacles import torch_of
-from ...objects.shapes.link_meshes import meshes_of
+from ...objects.shapes.link_meshes import meshes_of, readable_mesh
+from .beside import BesideNodes
 from .lines import placed, turned
 from .machine_links import Links, MachineNodes, move, of_mesh, of_solid, plain_links
 from .wall import unpickable
@@ -41,7 +43,8 @@ PLATFORM, NOZZLE = ((0.55, 0.58, 0.62), 0.2), ((0.8, 0.82, 0.85), 0.0)
 @dataclass(frozen=True)
 class Rest:
     """A machine at rest, in part coordinates: links (axes + 1, 4, 4), what they look like, and the meshes of files a user
-    gave them. reached: whether it gets there; else all axes are at 0. limits, joints (axes,): as it stands."""
+    gave them. reached: whether it gets there; else all axes are at 0. limits, joints (axes,): as it stands. beside: the
+    links of positioner and track that are known, at `stands` (k, 4, 4)."""
 
     machine: Machine
     links: Array
@@ -50,6 +53,8 @@ class Rest:
     reached: bool
     limits: Limits
     joints: Array
+    beside: tuple[BesideLink, ...] = ()
+    stands: Array = field(default_factory=lambda: np.zeros((0, 4, 4)))
 
 
 @dataclass(frozen=True)
@@ -86,6 +91,7 @@ def with_machine(parameters: CellParameters, toolpath: Toolpath | None, folders:
     `cell.resolve`."""
     frame, family = (np.eye(4), "revolution") if toolpath is None else (toolpath.frame, toolpath.family)
     cell = cells.resolve(parameters, frame, family, folders)
+    cell = replace(cell, beside=links_beside(cell.external, readable_mesh))
     point = resting_point(toolpath, cell.mount)
     joints = at_rest(cell, point)
     solids = plain_links(cell.robot, parameters.platform_diameter, parameters.nozzle.length)
@@ -98,7 +104,8 @@ def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[A
     nozzle = to_part @ place.nozzle
     reached = bool(np.linalg.norm(nozzle[:3, 3] - point) < _REACHED)
     machine = cell.robot
-    return nozzle, Rest(machine, to_part @ place.links, solids, meshes_of(machine), reached, cell.limits, joints)
+    return nozzle, Rest(machine, to_part @ place.links, solids, meshes_of(machine), reached, cell.limits, joints,
+                        cell.beside, to_part @ place.beside)
 
 
 def resting_point(toolpath: Toolpath | None, mount: Array) -> Array:
@@ -114,6 +121,7 @@ class CellNodes:
 
     def __init__(self, ghost: bool = False) -> None:
         self.machine: MachineNodes | None = None
+        self.beside: BesideNodes | None = None
         self.standing: Any = None  # the transformation of the nozzle
         self.looks: tuple[Any, ...] = ()  # what the machine's nodes were made of
         self.platform, self.nozzle, self.links = coin.SoSeparator(), coin.SoSeparator(), coin.SoSeparator()
@@ -163,9 +171,12 @@ class CellNodes:
         if rest is None:
             return
         if self.machine is None:
-            self.machine = MachineNodes(rest.machine, rest.solids, rest.meshes)
+            self.machine, self.beside = MachineNodes(rest.machine, rest.solids, rest.meshes), BesideNodes(rest.beside)
             self.links.addChild(self.machine.node)
+            self.links.addChild(self.beside.node)
         self.machine.pose(rest.links)
+        if self.beside is not None:
+            self.beside.pose(rest.stands)
 
 
 def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
@@ -176,15 +187,16 @@ def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
         rest.machine.id, chain.links(np.zeros(chain.axes)).tobytes(),
         () if of_setup(value.setup).links_known else (value.platform_diameter, value.nozzle.length),
         *(None if mesh is None else hash(mesh[0].tobytes()) for mesh in rest.meshes),
+        *((link.name, hash(link.body.vertices.tobytes())) for link in rest.beside),
     )
 
 
 def _seen_through() -> Any:
     """The node that makes what follows transparent, and leaves its colours."""
     material = coin.SoMaterial()
-    for field in (material.ambientColor, material.diffuseColor, material.specularColor, material.emissiveColor,
+    for channel in (material.ambientColor, material.diffuseColor, material.specularColor, material.emissiveColor,
                   material.shininess):
-        field.setIgnored(True)
+        channel.setIgnored(True)
     material.transparency = _GHOST
     material.setOverride(True)
     return material

@@ -23,6 +23,7 @@ from ...core.kinematics.links.rounds import NONE
 from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
+from ..nodes.beside import BesideNodes
 from ..nodes.cell import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
 from ..nodes.lines import Lines, fill
 from ..nodes.machine_links import MachineNodes, move, plain_links
@@ -46,6 +47,7 @@ class Scene:
         looks = run.looks
         self.machine = MachineNodes(
             cell.robot, plain_links(cell.robot, looks.platform_diameter, looks.nozzle.length))
+        self.beside = BesideNodes(cell.beside)
         self.part, self.nozzle = coin.SoMatrixTransform(), coin.SoMatrixTransform()
         self.part_matrix, self.nozzle_matrix = self.part.matrix, self.nozzle.matrix
         self.deposit, self.to_come = PathNodes(), PathNodes()
@@ -65,7 +67,7 @@ class Scene:
             platform.addChild(child)
         for child in (self.deposit.node, self.last.node, self.to_come.node, coloured(PLATFORM, platform)):
             part.addChild(child)
-        for child in (self.machine.node, nozzle, part):
+        for child in (self.machine.node, self.beside.node, nozzle, part):
             self.root.addChild(child)
         self._place(rest)  # where the machine stays as long as no point is reached
         self._fill()
@@ -100,7 +102,9 @@ class Scene:
         """Everything as it is on the way to a row, or at it. joints: (axes,), NaN leaves the machine where it is."""
         if np.isfinite(joints).all():
             self._place(placing(self.run.cell, joints))
-        self.machine.paint(bad[: len(self.machine.bad)])  # links of axes beside a robot are not drawn
+        own = len(self.machine.bad)
+        self.machine.paint(bad[:own])
+        self.beside.paint(bad[own:])
         done = int(self.rows_before[row if running else row + 1])
         if done != self.deposit.end:
             self.deposit.show(0, done)
@@ -117,6 +121,7 @@ class Scene:
 
     def _place(self, place: Placing) -> None:
         self.machine.pose(self.to_view @ place.links)
+        self.beside.pose(self.to_view @ place.beside)
         move(self.part_matrix, self.to_view @ place.part)
         move(self.nozzle_matrix, self.to_view @ place.nozzle)
 

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from ...core.kinematics.links.contact import BASE, DEPOSIT, NOZZLE, OWN, PART, PLATFORM, TORCH
+from ...core.kinematics.links.contact import BASE, DEPOSIT, OWN, PART, PLATFORM, TORCH
+from ...core.kinematics.links.nozzle_body import NOZZLE
 from .translation import tr
 
 
@@ -13,6 +14,8 @@ def link_touches(link: str, what: str) -> str:
     names[BASE] = tr("the base")
     if what.startswith(OWN):
         names[what] = tr("the link of {axis}").format(axis=what[len(OWN):])
+    if " " in link:  # of positioner or track, by its own name
+        return tr("{link} touches {what}").format(link=link, what=names.get(what, what))
     if link == BASE:
         return tr("the base touches {what}").format(what=names.get(what, what))
     if link == PART:

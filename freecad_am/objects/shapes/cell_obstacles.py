@@ -24,9 +24,11 @@ from ...core.issues import InputError
 from ...core.kinematics import cell as cells
 from ...core.kinematics import torch
 from ...core.kinematics.cell import Cell
+from ...core.kinematics.links.beside import links_beside
 from ...core.parameters.cell import NO_SHAPE, CellParameters, NozzleParameters
 from ...core.parameters.obstacles import WHERE, Obstacle, obstacles
 from ...core.toolpath import Toolpath
+from .link_meshes import readable_mesh
 
 CODE = "OBSTACLE"
 MOST_TORCHES = 4  # kept
@@ -40,7 +42,8 @@ def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str
     bodies = bodies_of(settings)
     if not cell.arrangement.links_known:
         return cell
-    cell = dataclasses.replace(cell, obstacles=bodies, torch=torch_of(settings))
+    cell = dataclasses.replace(
+        cell, obstacles=bodies, torch=torch_of(settings), beside=links_beside(cell.external, readable_mesh))
     if bodies:
         _refuse_at_start(cell, toolpath)
     return cell

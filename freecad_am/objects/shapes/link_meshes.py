@@ -13,13 +13,15 @@ from ...core.kinematics.machines.machine import Machine
 def meshes_of(machine: Machine) -> tuple[Mesh | None, ...]:
     """(axes + 1) points and triangles of each link's file, base first; None where there is none, or none that can be read:
     that is told when the link is drawn."""
-    found: list[Mesh | None] = []
-    for shape in machine.shapes:
-        try:
-            found.append(None if shape is None else mesh_of(shape))
-        except InputError:
-            found.append(None)
-    return tuple(found)
+    return tuple(None if shape is None else readable_mesh(shape) for shape in machine.shapes)
+
+
+def readable_mesh(shape: LinkShape) -> Mesh | None:
+    """As `mesh_of`, None where the file cannot be read."""
+    try:
+        return mesh_of(shape)
+    except InputError:
+        return None
 
 
 def mesh_of(shape: LinkShape) -> Mesh:

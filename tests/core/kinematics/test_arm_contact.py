@@ -13,7 +13,8 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import contact as arm_contact
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.links import rods as link_rods
-from freecad_am.core.kinematics.links.contact import DEPOSIT, NOZZLE, PLATFORM, ArmContact
+from freecad_am.core.kinematics.links.contact import DEPOSIT, PLATFORM, ArmContact
+from freecad_am.core.kinematics.links.nozzle_body import NOZZLE
 from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.simulation.placing import placing

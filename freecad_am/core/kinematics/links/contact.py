@@ -7,7 +7,9 @@ wide and high as they are. So what is not told to touch does not touch, as far a
 carries is not looked at against the last two links, which hold it and can hardly move against it, nor what stands still
 against the base. A part that moves is all there from the beginning: rods about its bodies and beads. The nozzle is looked
 at as it is against bodies, without clearance: it deposits next to them. What holds the nozzle is looked at where
-`cell.nozzle.shape` shows it. Links against each other: `own`. The floor and cables are not looked at at all.
+`cell.nozzle.shape` shows it. The links of positioner and track (`beside`) move with their axes: those of the robot, nozzle
+and torch are looked at against them, the part against those of the positioner that it does not stand on, and they against
+obstacles. Links of the robot against each other: `own`. The floor and cables are not looked at at all.
 """
 
 from __future__ import annotations
@@ -28,16 +30,19 @@ from ...collision.tolerances import ABOUT_FACES
 from ...geometry import frames
 from ...geometry.rods import Rod, about, row
 from ...geometry.surroundings import Body, disc
+from ...parameters.external import ROBOT
 from ...types import Array, Index, Mask
 from ..cell import Cell
+from .beside import STANDS, BesideLink
+from .nozzle_body import NOZZLE, nozzle_body
 from .own import OwnLinks
 from .rounds import NONE, Solid, about_link, ball, of_rod
 
-BASE, NOZZLE, PLATFORM, DEPOSIT, PART, TORCH = "base", "nozzle", "platform", "deposit", "part", "torch"
+BASE, PLATFORM, DEPOSIT, PART, TORCH = "base", "platform", "deposit", "part", "torch"
 WORLD = "world"
 OWN = "link "  # before the axis of a link, as it is touched
+LINKS_MORE = 4  # of `links` besides the axes, before those of what stands beside the robot
 PIECE = 4096  # joint vectors done together
-SIDES = 24  # of a nozzle
 LINK_PIECE, SHARE = 50.0, 0.01  # longest edge of a triangle that links are looked at against, mm, and of the body's size
 SLICES = 8  # rods about a deposit that moves
 
@@ -72,7 +77,8 @@ class ArmContact:
     """A robot in its cell. rods: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
     deposit: in part coordinates. clearance: mm, links that are nearer touch.
 
-    names: what can be touched, in the end links; links: what touches it: base, axes, then part, nozzle and torch.
+    names: what can be touched, in the end links of the robot; links: what touches it: base, axes, then part, nozzle and
+    torch, and the links of what stands beside the robot.
     groups: what can be touched; solids: of each of `links`, in its frame; balls: centre and radius of one about these.
     """
 
@@ -93,7 +99,8 @@ class ArmContact:
             around.append(disc(self.cell.platform_diameter, self.cell.mount, PLATFORM))
         held, holder = self.cell.torch, self._links(not self._carries_part)
         part = [*self._links(self._carries_part), *self._torch]
-        about_nozzle = [_nozzle(self.cell), *([] if held is None else [dataclasses.replace(held.body, name=TORCH)])]
+        about_nozzle = [nozzle_body(self.cell.nozzle)]
+        about_nozzle += [] if held is None else [dataclasses.replace(held.body, name=TORCH)]
         groups = [*(_of_body(body, holder, NOZZLE) for body in about_nozzle), *(_of_body(body, part) for body in around)]
         names = [body.name for body in (*about_nozzle, *around)]
         more = ABOUT_FACES + self.clearance
@@ -108,7 +115,11 @@ class ArmContact:
             groups.append(Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide))
         groups += [_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
         names += [body.name for body in self.cell.obstacles]
-        object.__setattr__(self, "links", (BASE, *self.cell.robot.axes, PART, NOZZLE, TORCH))
+        groups += [_of_body(one.body, self._against(one), one.name) for one in self.cell.beside]
+        names += [one.name for one in self.cell.beside]
+        solids += [[of_rod(rod, more) for rod in (one.rods if self.cell.obstacles else ())] for one in self.cell.beside]
+        object.__setattr__(self, "links", (
+            BASE, *self.cell.robot.axes, PART, NOZZLE, TORCH, *(one.name for one in self.cell.beside)))
         object.__setattr__(self, "names", (*names, BASE, *(OWN + axis for axis in self.cell.robot.axes)))
         object.__setattr__(self, "groups", tuple(groups))
         object.__setattr__(self, "solids", tuple(map(tuple, solids)))
@@ -139,11 +150,22 @@ class ArmContact:
         axes, cell = self.cell.robot.chain.axes, self.cell
         on_track = cell.external is not None and cell.external.slides is not None
         found = list(range(0 if on_track else 1, axes + 1))
-        return [*found, *([axes + 1] if cell.part_moves else []), *([] if cell.torch_stands else [axes + 2, *self._torch])]
+        beside = [axes + LINKS_MORE + k for k, one in enumerate(cell.beside) if one.axis != STANDS]
+        return [*found, *([axes + 1] if cell.part_moves else []), *([] if cell.torch_stands else [axes + 2, *self._torch]),
+                *beside]
+
+    def _against(self, one: BesideLink) -> list[int]:
+        """What is looked at against a link beside the robot: the robot's links, but not those that stand on the carriage of
+        a track, nozzle and torch, and the part but for the last two links of what it stands on, as with a flange."""
+        axes, on_robot = self.cell.robot.chain.axes, one.carries == ROBOT
+        on_track = self.cell.external is not None and self.cell.external.slides is not None
+        first = 2 if on_robot else 0 if on_track else 1
+        part = [] if on_robot or one.after <= 1 else [axes + 1]
+        return [*range(first, axes + 1), *part, axes + 2, *self._torch]
 
     def _part_rods(self, around: Sequence[Body]) -> list[Rod]:
         """Rods that hold the part with what it stands on, where it may meet obstacles."""
-        if not self.cell.obstacles or not self.cell.part_moves:
+        if not (self.cell.obstacles or self.cell.beside) or not self.cell.part_moves:
             return []
         found = [rod for body in around for rod in row(body.vertices, body.triangles)]
         if self.deposit is not None:
@@ -173,7 +195,9 @@ class ArmContact:
         platform, nozzle = (carried, still) if self._carries_part else (still, carried @ _TURNED)
         part = platform @ frames.inverse(self.cell.mount)
         seen_from = {PART: part, NOZZLE: nozzle, WORLD: self.cell.world(joints) if self.cell.obstacles else part}
-        return np.concatenate([links, part[:, None], nozzle[:, None], nozzle[:, None]], axis=1), seen_from
+        beside = self.cell.beside_frames(joints)
+        seen_from |= {one.name: beside[:, k] for k, one in enumerate(self.cell.beside)}
+        return np.concatenate([links, part[:, None], nozzle[:, None], nozzle[:, None], beside], axis=1), seen_from
 
     def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
         links, seen_from = self.seen(joints)
@@ -230,26 +254,6 @@ def _slices(corners: Array) -> list[Rod]:
 
 # the tip's Z points out of the nozzle that is carried, that of the deposition point into the one that stands
 _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
-
-
-def _nozzle(cell: Cell) -> Body:
-    """The nozzle in the frame of its tip, a many-sided cone about the round one."""
-    angle = np.linspace(0.0, 2.0 * np.pi, SIDES, endpoint=False)
-    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1) / np.cos(np.pi / SIDES)
-    tip, length = 0.5 * cell.nozzle.diameter, cell.nozzle.length
-    back = tip + length * float(np.tan(cell.nozzle.half_angle))
-    vertices = np.concatenate([
-        np.column_stack([tip * ring, np.zeros(SIDES)]), np.column_stack([back * ring, np.full(SIDES, length)]),
-        [[0.0, 0.0, 0.0], [0.0, 0.0, length]],
-    ])
-    here = np.arange(SIDES)
-    on = np.roll(here, -1)
-    triangles = np.concatenate([
-        np.stack([here, on, on + SIDES], axis=1), np.stack([here, on + SIDES, here + SIDES], axis=1),
-        np.stack([on, here, np.full(SIDES, 2 * SIDES)], axis=1),
-        np.stack([here + SIDES, on + SIDES, np.full(SIDES, 2 * SIDES + 1)], axis=1),
-    ])
-    return Body(NOZZLE, vertices, triangles.astype(np.int64))
 
 
 def _of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> Group:

@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 
 from ...geometry import frames
 from ...types import Array, Index
-from .contact import NOZZLE, ArmContact, Group
+from .contact import ArmContact, Group
+from .nozzle_body import NOZZLE
 from .rounds import NONE, Solid
 
 FIRST = 8  # joint vectors looked at before the others: what is known of these leaves most of the rest out

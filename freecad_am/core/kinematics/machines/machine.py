@@ -28,6 +28,7 @@ from ..inverse.opw import OpwArm
 from ..inverse.parallel_axes import ParallelAxesArm
 from ..inverse.serial_arm import SerialArm
 from ..limits import Limits, Payload
+from ..links.bodies import Pieces, link_bodies
 from ..links.shape import LinkShape, link_shapes
 from ..urdf import machine as urdf_machine
 from ..urdf.read import Description
@@ -42,7 +43,7 @@ NOT_TOLD = "a URDF does not tell what the controller shows"
 REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is not a machine file
 KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "payload",
-    "verified", "check_poses", "shapes",
+    "verified", "check_poses", "shapes", "bodies",
 )
 
 
@@ -51,14 +52,14 @@ class Machine:
     """A machine. Joint values are serial ones, rad, and mm of joints that slide; lengths mm.
 
     `arm` is the inverse of a robot, None of a machine with rotary axes and where `no_arm` tells why it cannot be planned
-    for; `opw` that of a spherical wrist. `base` (4, 4) is the maker's base frame in base_link, the frame of
-    the floor plate in which `chain` and `arm` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
+    for; `opw` that of a spherical wrist. `base` (4, 4) is the maker's base frame in base_link, the frame of the floor plate
+    in which `chain` and `arm` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
     `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
     C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
     the file does not say; `pulses_per_degree` (axes,) and the `speed_unit` of its path speeds, empty where it does not say.
     `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
     `shapes` (axes + 1) are the files a user gave the links to be drawn from, base first. `external`: how many of the axes,
-    the last ones, are not the robot's own (`external.coupled`).
+    the last ones, are not the robot's own (`external.coupled`). `bodies` (axes + 1): what its links are made of.
     """
 
     id: str
@@ -83,6 +84,7 @@ class Machine:
     shapes: tuple[LinkShape | None, ...]
     external: int = 0
     payload: Payload = Payload()
+    bodies: tuple[Pieces, ...] = ()
 
     @property
     def opw(self) -> OpwArm | None:
@@ -238,6 +240,8 @@ def _parse(top: Node) -> Machine:
         top["flange"].only("origin", "rpy").pose(),
         sliding,
     )
+    links = tuple(joint["name"].text() for joint in joints)
+    shapes = link_shapes(top, links)
     arm, no_arm = (entry.opw_arm(top["opw"], count), "") if top.has("opw") else entry.recognised(chain)
     machine = Machine(
         id=top["id"].text(), title=top["title"].text(), axes=names,
@@ -246,23 +250,21 @@ def _parse(top: Node) -> Machine:
         max_speed=np.array([entry.most_of(joint, "max_speed", "a speed") for joint in joints]) * units,
         limit_sets={name: entry.limits_of(name, node, names, units) for name, node in top["limits"].pairs()},
         controller_matrix=controller["matrix"].matrix(count, count),
-        controller_offset=controller["offset"].numbers(count) * units,
-        controller_remark=controller["remark"].text(),
+        controller_offset=controller["offset"].numbers(count) * units, controller_remark=controller["remark"].text(),
         posts=controller["posts"].texts() if controller.has("posts") else None,
         pulses_per_degree=entry.pulses_of(controller, count),
         speed_unit=entry.speed_unit_of(controller["speed_unit"]) if controller.has("speed_unit") else "",
-        sources=top["sources"].texts(),
-        remarks=top["remarks"].texts() if top.has("remarks") else (),
+        sources=top["sources"].texts(), remarks=top["remarks"].texts() if top.has("remarks") else (),
         max_acceleration=np.array([entry.most_of(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
         max_jerk=np.array([entry.most_of(joint, "max_jerk", "a jerk") for joint in joints]) * units,
-        shapes=link_shapes(top, tuple(joint["name"].text() for joint in joints)), payload=entry.payload_of(top),
+        shapes=shapes, payload=entry.payload_of(top), bodies=link_bodies(top, links, shapes),
     )
     if MAKER not in machine.limit_sets:
         raise top["limits"].bad(f"the set {MAKER!r} is missing")
     if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
         raise controller["matrix"].bad("the matrix has no inverse")
-    rates = (machine.max_speed, machine.max_acceleration, machine.max_jerk)
-    for array in (machine.base, *rates, machine.controller_matrix, machine.controller_offset):
+    for array in (machine.base, machine.max_speed, machine.max_acceleration, machine.max_jerk, machine.controller_matrix,
+                  machine.controller_offset):
         array.flags.writeable = False
     check_poses.check(chain, machine.opw, top["check_poses"])
     return machine
@@ -280,8 +282,7 @@ def _calibrated(machine: Machine, path: Path) -> Machine:
 
 
 def of_description(source: str, found: Description, arm: SerialArm | None) -> Machine:
-    """The machine of a URDF: limits and speeds are those of the file, and no post writes for a controller that it does not
-    tell of."""
+    """The machine of a URDF, with its limits and speeds; no post writes for a controller that it does not tell of."""
     count = found.chain.axes
     none = np.zeros((0, count))
     names = found.joints if found.chain.sliding.any() else tuple(f"q{index + 1}" for index in range(count))
@@ -294,6 +295,6 @@ def of_description(source: str, found: Description, arm: SerialArm | None) -> Ma
         id=found.name, title=found.name, axes=names, chain=found.chain, arm=arm, no_arm="",
         base=np.eye(4) if found.base is None else found.base, max_speed=found.max_speed, limit_sets={MAKER: limits},
         controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=NOT_TOLD, posts=(),
-        pulses_per_degree=(), speed_unit="",
-        sources=(source,), remarks=found.notes, max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes,
+        pulses_per_degree=(), speed_unit="", sources=(source,), remarks=found.notes,
+        max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes, bodies=found.bodies,
     )

@@ -16,6 +16,7 @@ from ..chain import Chain
 from ..inverse import opw_recognition, recognition
 from ..inverse.five_axis import is_five_axis
 from ..inverse.serial_arm import SerialArm
+from .collision import collision
 from .read import Description, Urdf
 from .reference import Reference
 
@@ -45,7 +46,10 @@ def described(meant: Reference) -> tuple[Description, SerialArm | None]:
 def chain_of(meant: Reference) -> Description:
     """The chain of a mechanism beside a robot. Raises InputError UNKNOWN_MACHINE without the file, BAD_URDF."""
     robot, base, tip = _ends(meant, WHERE)
-    return robot.between(base, tip)
+    found = robot.between(base, tip)
+    notes: list[str] = []
+    bodies = collision(robot, base, tip, notes)
+    return replace(found, bodies=bodies, notes=(*found.notes, *notes))
 
 
 def _ends(meant: Reference, where: str) -> tuple[Urdf, str, str]:

@@ -18,6 +18,7 @@ from ...geometry.located import is_there, located
 from ...issues import InputError
 from ...types import Array
 from ..chain import Chain
+from ..links.bodies import Pieces
 from ..links.shape import FORMATS, LinkShape
 from . import elements as urdf_xml
 from .elements import CODE, Element
@@ -37,7 +38,8 @@ class Description:
 
     lower, upper, max_speed (axes,) rad, mm and per s, infinite where endless or not known. base (4, 4): the frame of a link
     `base` that is fixed to the first one, which is the maker's own; None without. shapes (axes + 1): the meshes of the
-    links, first that of the first one. notes: what was left out or taken for something else.
+    links, first that of the first one. notes: what was left out or taken for something else. bodies (axes + 1): of a
+    mechanism, what its links are made of (`urdf.collision`).
     """
 
     name: str
@@ -49,6 +51,7 @@ class Description:
     base: Array | None
     shapes: tuple[LinkShape | None, ...]
     notes: tuple[str, ...]
+    bodies: tuple[Pieces, ...] = ()
 
 
 class Urdf:
@@ -163,6 +166,10 @@ class Urdf:
             found.append(link)
         return found
 
+    def carried(self, link: str) -> list[str]:
+        """The links that stand on a link."""
+        return [child for child, joint in self.parent.items() if joint.one("parent").text("link") == link]
+
     def _leaves(self) -> set[str]:
         return set(self.links) - {joint.one("parent").text("link") for joint in self.parent.values()}
 
@@ -191,26 +198,30 @@ class Urdf:
 
     def _mesh(self, link: str, notes: list[str]) -> LinkShape | None:
         """The first mesh of a link that is there and can be drawn; what stands in the way is noted."""
-        for visual in self.links[link].all("visual"):
-            geometry = visual.first("geometry")
-            mesh = None if geometry is None else geometry.first("mesh")
-            if mesh is None:
-                continue
-            name = mesh.text("filename")
-            file = self._file(name)
-            scales = mesh.numbers("scale", 3, "1 1 1")
-            if file is None:
-                notes.append(f"line {mesh.line}: {name} is not there; {link} is drawn plain")
-            elif file.suffix.lower() not in FORMATS:
-                notes.append(f"line {mesh.line}: {file.name} cannot be drawn; {link} is drawn plain")
-            elif (scales <= 0.0).any():
-                notes.append(f"line {mesh.line}: {file.name} is mirrored or flat by its scale {mesh.attributes['scale']}; "
-                             f"write a mirrored mesh out as it is; {link} is drawn plain")
-            elif np.ptp(scales) > 1e-9:
-                notes.append(f"line {mesh.line}: {file.name} has unequal scales; {link} is drawn plain")
-            else:
-                where = f"{self.path.name}: line {mesh.line}"
-                return LinkShape(file, visual.pose(), 1000.0 * float(scales[0]), self._colour(visual), where)
+        found = (self.mesh_of(visual, f"{link} is drawn plain", notes) for visual in self.links[link].all("visual"))
+        return next((shape for shape in found if shape is not None), None)
+
+    def mesh_of(self, element: Element, otherwise: str, notes: list[str]) -> LinkShape | None:
+        """The mesh of a <visual> or <collision>; what stands in the way is noted, with what happens then."""
+        geometry = element.first("geometry")
+        mesh = None if geometry is None else geometry.first("mesh")
+        if mesh is None:
+            return None
+        name = mesh.text("filename")
+        file = self._file(name)
+        scales = mesh.numbers("scale", 3, "1 1 1")
+        if file is None:
+            notes.append(f"line {mesh.line}: {name} is not there; {otherwise}")
+        elif file.suffix.lower() not in FORMATS:
+            notes.append(f"line {mesh.line}: {file.name} cannot be drawn; {otherwise}")
+        elif (scales <= 0.0).any():
+            notes.append(f"line {mesh.line}: {file.name} is mirrored or flat by its scale {mesh.attributes['scale']}; "
+                         f"write a mirrored mesh out as it is; {otherwise}")
+        elif np.ptp(scales) > 1e-9:
+            notes.append(f"line {mesh.line}: {file.name} has unequal scales; {otherwise}")
+        else:
+            where = f"{self.path.name}: line {mesh.line}"
+            return LinkShape(file, element.pose(), 1000.0 * float(scales[0]), self._colour(element), where)
         return None
 
     def _file(self, name: str) -> Path | None:

@@ -13,7 +13,8 @@ from ...geometry.rods import Rod
 from ...geometry.surroundings import Body
 from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
-from ...kinematics.links.contact import BASE, NOZZLE, PART, TORCH, ArmContact, Touches
+from ...kinematics.links.contact import BASE, PART, TORCH, ArmContact, Touches
+from ...kinematics.links.nozzle_body import NOZZLE
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from ..points import Points
@@ -84,14 +85,16 @@ def clearance_issue(
 ) -> Issue:
     """That a link, as `ArmContact.links` calls it, comes too near to something at a bead, or on the rapid way to it."""
     where = " on the rapid way to the bead" if on_way else ""
+    stands = what in [one.name for one in cell.beside]
     if link == NOZZLE:
-        return Issue(ERROR, CODE, f"the nozzle touches {what}{where}; move it in cell.obstacles, the part or "
-                     "cell.deposition_point", layer, bead)
+        moved = "lift the part over it by cell.platform, or move it in cell.external" if stands else (
+            "move it in cell.obstacles, the part or cell.deposition_point")
+        return Issue(ERROR, CODE, f"the nozzle touches {what}{where}; {moved}", layer, bead)
     name = (
         "the part" if link == PART else "the torch" if link == TORCH else "the base" if link == BASE else f"link {link}"
     )
+    remedy = "move one of them in cell.external or the part" if stands else "move the part or cell.deposition_point"
     return Issue(
         ERROR, CODE, f"{name} comes nearer than {cell.arm_clearance:g} mm to {what}, or touches it"
-        f"{where}; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance",
-        layer, bead,
+        f"{where}; {remedy}, try another cell.branch, or lower cell.arm_clearance", layer, bead,
     )

@@ -154,7 +154,7 @@ class RapidWays:
     def _clear_moves(self, moves: Moves) -> Mask:
         """(k,) whether nothing is met on moves."""
         met = self.surroundings.met(moves)
-        if self.cell.part_moves:
+        if self.cell.part_moves or self.cell.beside:
             met |= nozzle_beside.met(self.cell, moves.start, moves.end).any(axis=0)
         left = np.flatnonzero(~met)
         if self.arm is not None and len(left):
@@ -231,9 +231,10 @@ class RapidWays:
         """What the nozzle meets on way k."""
         moves = self._moves(k, self.ways[k])
         found = self.surroundings.names(moves)
-        if self.cell.part_moves:
+        if self.cell.part_moves or self.cell.beside:
             met = nozzle_beside.met(self.cell, moves.start, moves.end)
-            found += [body.name for body, here in zip(self.cell.obstacles, met) if here.any()]
+            beside = [name for name, here in zip(nozzle_beside.in_the_way(self.cell), met) if here.any()]
+            found += [name for name in beside if name not in found]
         return found
 
     def arm_issue(self, k: int) -> Issue | None:

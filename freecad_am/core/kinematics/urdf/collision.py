@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the links of a mechanism are made of, from the <collision> elements of a URDF, or its <visual> ones without any."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ...types import Array
+from ..links import bodies
+from ..links.bodies import Pieces
+from ..links.shape import LinkShape
+from ..links.solids import Solid
+from .elements import Element
+from .read import FIXED, Urdf
+
+NOT_LOOKED_AT = "nothing is kept clear of it"
+
+
+def collision(urdf: Urdf, base: str, tip: str, notes: list[str]) -> tuple[Pieces, ...]:
+    """The bodies (axes + 1) of the links between a base and a tip, base first, mm, each in the frame of the joint that moves
+    it: of all links that are fixed to it. Not of what stands on the tip: what is carried has joints of its own. What cannot
+    be read is noted.
+    """
+    chain = [tip, *urdf.above(tip)]
+    chain = chain[: chain.index(base) + 1][::-1]
+    groups: list[list[tuple[str, Array]]] = [[(base, np.eye(4))]]
+    for link in chain[1:]:
+        fixed = urdf.parent[link].text("type") == FIXED
+        if not fixed:
+            groups.append([(link, np.eye(4))])
+        elif link != tip or not _moves_others(urdf, link):
+            groups[-1].append((link, groups[-1][-1][1] @ urdf.parent[link].pose()))
+    for group in groups[1:]:
+        for link, pose in list(group):
+            group.extend(_fixed_to(urdf, link, pose, chain))
+    return tuple(
+        tuple(piece for link, pose in group for piece in _pieces(urdf, link, pose, notes)) for group in groups
+    )
+
+
+def _moves_others(urdf: Urdf, link: str) -> bool:
+    """Whether joints move what stands on a link."""
+    return any(urdf.parent[one].text("type") != FIXED or _moves_others(urdf, one) for one in urdf.carried(link))
+
+
+def _fixed_to(urdf: Urdf, link: str, pose: Array, but: Sequence[str]) -> Iterator[tuple[str, Array]]:
+    """The links that are fixed to a link that stands at a pose, with theirs."""
+    for child in urdf.carried(link):
+        joint = urdf.parent[child]
+        if child not in but and joint.text("type") == FIXED:
+            at = pose @ joint.pose()
+            yield child, at
+            yield from _fixed_to(urdf, child, at, but)
+
+
+def _pieces(urdf: Urdf, link: str, pose: Array, notes: list[str]) -> Iterator[LinkShape | Solid]:
+    element = urdf.links[link]
+    told = list(element.all("collision")) or list(element.all("visual"))
+    for one in told:
+        solid = _solid(one)
+        if solid is not None:
+            yield solid.moved(pose @ one.pose())
+            continue
+        shape = urdf.mesh_of(one, f"{link}: {NOT_LOOKED_AT}", notes)
+        if shape is not None:
+            yield LinkShape(shape.path, pose @ shape.pose, shape.scale, shape.colour, shape.where)
+
+
+def _solid(element: Element) -> Solid | None:
+    """The box, cylinder or ball of an element, about its origin; a ball as the cylinder about it."""
+    geometry = element.first("geometry")
+    if geometry is None:
+        return None
+    for child in geometry.children:
+        if child.tag == "box":
+            return bodies.box(1000.0 * _sizes(child, child.numbers("size", 3, "")))
+        if child.tag in ("cylinder", "sphere"):
+            radius = child.number("radius")
+            length = child.number("length") if child.tag == "cylinder" else 2.0 * radius
+            return bodies.cylinder(1000.0 * _sizes(child, np.array([2.0 * radius, length])))
+    return None
+
+
+def _sizes(element: Element, sizes: Array) -> Array:
+    if (sizes <= 0.0).any():
+        raise element.bad(f"<{element.tag}> has a size that is not larger than 0")
+    return sizes

@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Links of positioner and track as bodies: where they are by PyKDL, what they touch by points within their boxes."""
+
+import dataclasses
+import json
+import re
+
+import numpy as np
+import PyKDL
+import pytest
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.geometry.surroundings import box
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics.external import MECHANISMS
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links.beside import links_beside
+from freecad_am.core.kinematics.links.contact import ArmContact
+from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.kinematics.urdf.cell import texts_of
+from freecad_am.core.kinematics.urdf.reference import Reference
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.simulation.placing import placing
+from freecad_am.kdl.chain import KdlArm
+from tests.core.kinematics import urdf_cells
+
+D500, TRACK = "motoman-motopos-d500", "kuka-kl100-2"
+STANDS = (1150.0, 120.0, -50.0, 0.0, 0.0, 30.0)  # mm, deg: near, so that a good share of random postures touches
+RAIL = (0.0, -40.0, -356.0, 0.0, 0.0, 90.0)
+STEP = 12.0  # mm between points within boxes
+
+
+def cell_of(external, **more):
+    return cells.resolve(CellParameters(**{
+        "machine": "kuka-kr8-r2100-2-arc-hw", "setup": "tool-on-robot", "branch": "auto", "platform": 5.0,
+        "platform_diameter": 0.0, "external": external, "nozzle": NozzleParameters(tool=(20.0, 0.0, 300.0, 0.0, 0.6, 0.0)),
+        **more}), np.eye(4))
+
+
+def text(machine, pose, carries):
+    return f"{machine} at {' '.join(map(str, pose))} carries {carries}"
+
+
+BOTH = f"{text(D500, STANDS, 'part')}; {text(TRACK, RAIL, 'robot')}"
+
+
+def kdl_frame(xyz, rpy=(0.0, 0.0, 0.0)):
+    return PyKDL.Frame(PyKDL.Rotation.RPY(*np.radians(rpy)), PyKDL.Vector(*xyz))
+
+
+def matrix(frame):
+    found = np.eye(4)
+    found[:3, :3] = [[frame.M[i, j] for j in range(3)] for i in range(3)]
+    found[:3, 3] = list(frame.p)
+    return found
+
+
+def mechanism(name, pose, values):
+    """The frames of a mechanism's links in the world, floor first, by PyKDL from its file."""
+    told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
+    turned = PyKDL.Rotation.RotX(np.radians(pose[3])) * PyKDL.Rotation.RotY(np.radians(pose[4])) * PyKDL.Rotation.RotZ(
+        np.radians(pose[5]))
+    chain = PyKDL.Chain()
+    for joint in told["joints"]:
+        chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_frame(joint["origin"], joint["rpy"])))
+        kind = PyKDL.Joint.TransAxis if joint.get("type") == "prismatic" else PyKDL.Joint.RotAxis
+        chain.addSegment(PyKDL.Segment(PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), kind), PyKDL.Frame()))
+    solver, angles = PyKDL.ChainFkSolverPos_recursive(chain), PyKDL.JntArray(len(values))
+    for index, value in enumerate(values):
+        angles[index] = value
+    found = [turned_frame := PyKDL.Frame(turned, PyKDL.Vector(*pose[:3]))]
+    for k in range(len(values)):
+        frame = PyKDL.Frame()
+        solver.JntToCart(angles, frame, 2 * k + 2)
+        found.append(turned_frame * frame)
+    return [matrix(one) for one in found]
+
+
+def points_within(piece):
+    """Points within a box or a cylinder of a file, in the frame of its link."""
+    size = np.array(piece["box"] if "box" in piece else [piece["cylinder"][0]] * 2 + [piece["cylinder"][1]])
+    axes = [np.linspace(-0.5, 0.5, int(np.ceil(length / STEP)) + 1) * length for length in size]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    if "cylinder" in piece:
+        grid = grid[np.hypot(grid[:, 0], grid[:, 1]) <= 0.5 * size[0]]
+    at = matrix(kdl_frame(piece["origin"], piece["rpy"]))
+    return grid @ at[:3, :3].T + at[:3, 3]
+
+
+def bodies_of(name):
+    told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
+    links = ("base", *(joint["name"] for joint in told["joints"]))
+    return [np.concatenate([points_within(piece) for piece in told["bodies"][link]]) for link in links]
+
+
+def anywhere(cell, count, seed):
+    low, high = np.maximum(cell.limits.lower, -np.pi), np.minimum(cell.limits.upper, np.pi)
+    sliding = cell.machine.chain.sliding
+    low, high = np.where(sliding, cell.limits.lower, low), np.where(sliding, cell.limits.upper, high)
+    return np.random.default_rng(seed).uniform(low, high, (count, len(low)))
+
+
+def test_they_are_where_pykdl_has_them_seen_from_part_and_world():
+    cell = cell_of(BOTH)
+    q = anywhere(cell, 40, 1)
+    assert [one.name.rsplit(" ", 1)[1] for one in cell.beside] == ["base", "e1", "e2", "base", "e3"]
+    seen, world = cell.beside_frames(q), cell.world(q)
+    for k, row in enumerate(q):
+        wanted = [*mechanism(D500, STANDS, row[6:8]), *mechanism(TRACK, RAIL, row[8:])]
+        to_world = np.linalg.inv(world[k])
+        assert np.abs(to_world @ seen[k] - wanted).max() < 1e-9
+        # and the robot on the carriage, the platform on the face
+        moved = wanted[4] @ np.linalg.inv(mechanism(TRACK, RAIL, [0.0])[1])
+        arm = moved @ KdlArm(cell.robot).forward(row[None, :6])[0] if np.allclose(cell.robot.base, np.eye(4)) else None
+        if arm is not None:
+            assert np.abs(to_world @ cell.machine.chain.forward(row[None])[0] - arm).max() < 1e-6
+        face = (wanted[2] @ frames.pose(np.eye(3), [0, 0, 150.0]))[:3, 3]
+        assert np.abs(to_world[:3, 3] - face).max() < 1e-6
+
+
+def test_in_the_simulation_the_rail_stands_still_and_the_carriage_goes_under_the_robot():
+    cell = cell_of(text(TRACK, RAIL, "robot"))
+    q = anywhere(cell, 2, 3)
+    q[:, :6] = q[0, :6]
+    first, second = (placing(cell, one) for one in q)
+    assert np.abs(first.beside[0] - second.beside[0]).max() < 1e-9 and np.abs(first.part - second.part).max() < 1e-9
+    went = np.linalg.norm((second.links[0] - first.links[0])[:3, 3])
+    assert went == pytest.approx(abs(q[1, 6] - q[0, 6])) and went > 100.0
+    for place in (first, second):
+        assert np.abs((np.linalg.inv(place.beside[1]) @ place.links[0])[:3, 3] - [40.0, 0.0, 356.0]).max() < 1e-6
+
+
+@pytest.mark.parametrize("external", [text(D500, STANDS, "part"), BOTH], ids=["positioner", "with track"])
+def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is_told_is_near(external):
+    cell = cell_of(external)
+    rods = link_rods.of_robot(cell.robot.chain)
+    arm = ArmContact(cell, rods)
+    q = anywhere(cell, 1500, 2)
+    found, beside = arm.touches(q), bodies_of(D500)
+    told = np.flatnonzero(found.any & np.isin(found.what, [arm.names.index(one.name) for one in cell.beside[:3]]))
+    assert len(told) > 25 and (~found.any).sum() > 40
+    links, seen = cell.links(q), cell.beside_frames(q)
+
+    def depth(k, link, body):
+        """mm, how deep points of a body are in rods of a link, negative of how far they are off."""
+        to_link = np.linalg.inv(links[k, link]) @ seen[k, body]
+        points = beside[body] @ to_link[:3, :3].T + to_link[:3, 3]
+        best = -np.inf
+        for rod in rods[link]:
+            axis = (rod.end - rod.start) / rod.length
+            along = (points - rod.start) @ axis
+            out = np.linalg.norm(points - rod.start - along[:, None] * axis, axis=1)
+            best = max(best, float(np.minimum(np.minimum(along, rod.length - along), rod.radius - out).max()))
+        return best
+
+    for k in np.flatnonzero(~found.any)[:60]:
+        for link in range(0 if "track" in external else 1, 7):
+            for body in range(3):
+                assert depth(k, link, body) < 0.5, (k, link, body)
+    checked = 0
+    for k in told[:120]:
+        body = int(found.what[k]) - arm.names.index(cell.beside[0].name)
+        if found.link[k] <= 6:  # of nozzle and torch others tell
+            assert depth(k, int(found.link[k]), body) > -1.8 * STEP
+            checked += 1
+    assert checked > 15
+
+
+def test_the_nozzle_is_looked_at_too():
+    """About a posture whose tip is in the middle of a post: where it is deep within, and where it is far."""
+    posture = np.array([0.3, -0.6, 1.0, 0.2, 0.5, 0.1])
+    middle, half = np.array([0.0, 290.0, 289.5]), 0.5 * np.array([300.0, 178.0, 429.0])
+
+    def tip_of(cell, q):
+        return (np.linalg.inv(cell.world(q)) @ (cell.machine.chain.forward(q) @ cell.carried))[:, :3, 3]
+
+    anyhow = cell_of(text(D500, STANDS, "part"))
+    place = tip_of(anyhow, np.append(posture, [0.0, 0.0])[None])[0] - middle
+    cell = cell_of(text(D500, (*place, 0.0, 0.0, 0.0), "part"))
+    q = np.concatenate([posture + np.random.default_rng(5).uniform(-1.0, 1.0, (800, 6)) ** 3, np.zeros((800, 2))], axis=1)
+    found, at = ArmContact(cell, [[] for _ in range(7)]).touches(q), tip_of(cell, q) - place
+    deep = (np.abs(at - middle) < half - 5.0).all(axis=1)
+    assert deep.sum() > 30 and (found.link[deep] == 8).all()
+    assert {cell.beside[0].name} == {ArmContact(cell, [[] for _ in range(7)]).names[what] for what in found.what[deep]}
+    far = np.linalg.norm(at - [0.0, -90.0, 260.0], axis=1) > 900.0
+    assert far.sum() > 10 and (found.link[far] == NONE).all()
+
+
+def test_a_mechanism_against_an_obstacle_and_the_part_against_what_carries_it_not():
+    """The table tilts into a box beside it; the box is touched by the table, or by what stands on it, by nothing else."""
+    cell = cell_of(text(D500, (1400.0, 0.0, 0.0, 0.0, 0.0, 0.0), "part"))
+    lamp = box((40.0, 40.0, 40.0), frames.pose(np.eye(3), [1400.0 - 255.0, 0.0, 245.0]), "lamp")
+    cell = dataclasses.replace(cell, obstacles=(lamp,))
+    arm = ArmContact(cell, [[] for _ in range(7)])
+    q = np.zeros((3, 8))
+    q[:, :6] = [0.0, -1.6, 1.2, 0.0, 0.3, 0.0]
+    q[1, 6], q[2, 6] = np.radians(60.0), np.radians(15.0)
+    found = arm.touches(q)
+    # by the file e1 turns about -Y: positive values tilt the face towards -X, where the lamp is
+    names = [None if link == NONE else arm.links[link] for link in found.link]
+    assert names == [None, "Yaskawa MotoPos D500 e2", None]
+    assert arm.names[found.what[1]] == "lamp"
+
+
+def test_links_read_once_are_not_read_again():
+    cell = cell_of(BOTH)
+    moved = cell_of(text(D500, (900.0, 0.0, 0.0, 0.0, 0.0, 0.0), "part"))
+    again = links_beside(moved.external, known=cell.beside)
+    assert [one.body.vertices is other.body.vertices for one, other in zip(again, cell.beside)] == [True] * 3
+
+
+URDF_BODIES = """\
+<collision><origin xyz="0.1 0.2 0.3" rpy="0.3 0 0.4"/><geometry><box size="0.2 0.3 0.4"/></geometry></collision>
+<collision><origin xyz="0 0 -0.05"/><geometry><cylinder radius="0.06" length="0.1"/></geometry></collision>
+"""
+PLATE = """\
+<link name="plate"><collision><geometry><mesh filename="plate.stl" scale="0.001 0.001 0.001"/></geometry></collision></link>
+"""
+CORNERS = np.array([[0.0, 0.0, 0.0], [90.0, 0.0, 0.0], [0.0, 80.0, 0.0], [0.0, 0.0, 70.0]])
+FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+
+
+def stl(path):
+    """A tetrahedron in a file of text."""
+    facets = "".join(
+        "facet normal 0 0 1\nouter loop\n" + "".join("vertex {} {} {}\n".format(*corner) for corner in CORNERS[face])
+        + "endloop\nendfacet\n" for face in FACES)
+    path.write_text(f"solid plate\n{facets}endsolid plate\n", encoding="utf-8")
+
+
+def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
+    """Boxes, cylinders and a mesh, also of a link that is fixed to the table; the frames by a walk of our own."""
+    stl(tmp_path / "plate.stl")
+    text_ = urdf_cells.whole_cell(track=True)
+    for link in ("positioner_base_link", "positioner_link_1", "track_link_1"):
+        text_ = text_.replace(f'<link name="{link}"/>', f'<link name="{link}">{URDF_BODIES}</link>')
+    text_ = text_.replace("</robot>", PLATE + urdf_cells.fixed("positioner_tool0", "plate", "0.01 0.02 0.03", "0 0 1")
+                          + "</robot>")
+    path = tmp_path / "bay.urdf"
+    path.write_text(text_, encoding="utf-8")
+    machine, external = texts_of(Reference(str(path)))
+    cell = cells.resolve(CellParameters(machine=machine, setup="tool-on-robot", external=external, platform=0.0), np.eye(4))
+    cell = dataclasses.replace(cell, beside=links_beside(cell.external, mesh_of))
+    axes = {one.name.rsplit(" ", 1)[1] for one in cell.beside}
+    assert axes == {"e1", "e2", "e3", "base"}
+    values = {"track_E1": 0.4, "positioner_E1": 0.3, "positioner_E2": -0.7}
+    order = [name for one in cell.external.mechanisms for name in (
+        ["track_E1"] if one.carries == "robot" else ["positioner_E1", "positioner_E2"])]
+    joints = np.array([[0.0] * 6 + [values[name] * (1000.0 if name == "track_E1" else 1.0) for name in order]])
+    zero = dict.fromkeys(re.findall(r'joint name="(robot_[^"]+)" type="rev', text_), 0.0)
+    at = urdf_cells.placed(text_, {**zero, **values})
+    still = urdf_cells.placed(text_, {**zero, **values, "track_E1": 0.0})
+    to_world = np.linalg.inv(still["robot_base_link"] @ cell.robot.base)
+    seen = np.linalg.inv(cell.world(joints))[0] @ cell.beside_frames(joints)[0]
+    for one, frame in zip(cell.beside, seen):
+        corners = one.body.vertices @ frame[:3, :3].T + frame[:3, 3]
+        if one.after == 0 and one.carries == "part":
+            there = to_world @ at["plate"]
+            expected = CORNERS @ there[:3, :3].T + there[:3, 3]
+        else:
+            moved = {"track_E1": "track_link_1", "positioner_E1": "positioner_link_1"}
+            link = "positioner_base_link" if one.axis < 0 else moved[order[one.axis]]
+            own = frames.from_rpy([100.0, 200.0, 300.0], [0.3, 0.0, 0.4])
+            there = to_world @ at[link] @ own
+            sides = np.array([[x, y, z] for x in (-100, 100) for y in (-150, 150) for z in (-200, 200)])
+            expected = sides @ there[:3, :3].T + there[:3, 3]
+        gap = np.linalg.norm(corners[None] - expected[:, None], axis=2).min(axis=1)
+        assert gap.max() < 1e-5, one.name
+
+
+def mesh_of(shape):
+    """What a reader of files gives: the tetrahedron in the frame of the link."""
+    assert shape.path.name == "plate.stl" and shape.scale == pytest.approx(1.0)
+    return CORNERS @ shape.pose[:3, :3].T + shape.pose[:3, 3], FACES
+
+
+@pytest.mark.parametrize(("changed", "words"), [
+    ({"source": "made up", "base": [{"box": [1, 2]}]}, "bodies.base.0..box"),
+    ({"source": "made up", "base": [{"cylinder": [-1, 2]}]}, "larger than 0"),
+    ({"source": "made up", "elbow": []}, "'elbow' is not known"),
+    ({"base": []}, "'source' is missing"),
+], ids=["two numbers", "negative", "unknown link", "no source"])
+def test_what_a_file_says_wrongly_is_refused(tmp_path, changed, words):
+    told = json.loads((MECHANISMS / f"{TRACK}.json").read_text(encoding="utf-8"))
+    path = tmp_path / "rail.json"
+    path.write_text(json.dumps({**told, "bodies": changed}), encoding="utf-8")
+    with pytest.raises(InputError, match=words) as raised:
+        cell_of(text(path, RAIL, "robot"))
+    assert raised.value.code == "BAD_MACHINE"

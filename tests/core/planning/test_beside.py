@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Plans keep links and nozzle clear of the positioner: held against points within the boxes of its file."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from freecad_am.core.kinematics.external import MECHANISMS
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links.contact import ArmContact
+from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.parameters.cell import NozzleParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.planning import nozzle_beside
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.preflight import clearance
+from freecad_am.core.simulation.arm import arm_touches
+from tests.core.kinematics.test_beside import STEP, bodies_of, points_within
+from tests.core.planning.test_external_axes import POSITIONER, cell_for, levelled_to
+
+CLEAR = 10.0  # mm
+SHORT = NozzleParameters(tool=(0.0, 0.0, 90.0, 0.0, 0.6, 0.0))  # the arm comes near to the table with it
+
+
+@pytest.fixture(scope="module")
+def hemisphere(sliced):
+    return levelled_to(sliced("sphere", 10.0, chord_error=0.1), 10.0)
+
+
+@pytest.fixture(scope="module")
+def cell(hemisphere):
+    return cell_for(hemisphere, nozzle=SHORT)
+
+
+def nearest(cell, joints, rods):
+    """mm, how far points within the positioner's boxes are from rods of the links, the least of all joints (k, axes)."""
+    bodies, links, seen = bodies_of(POSITIONER), cell.links(joints), cell.beside_frames(joints)
+    least = np.inf
+    for k in range(len(joints)):
+        for body, points in enumerate(bodies):
+            for link in range(1, 7):
+                to_link = np.linalg.inv(links[k, link]) @ seen[k, body]
+                inside = points @ to_link[:3, :3].T + to_link[:3, 3]
+                for rod in rods[link]:
+                    axis = (rod.end - rod.start) / rod.length
+                    along = (inside - rod.start) @ axis
+                    out = np.linalg.norm(inside - rod.start - along[:, None] * axis, axis=1) - rod.radius
+                    beyond = np.maximum(np.maximum(-along, along - rod.length), 0.0)
+                    least = min(least, float(np.hypot(np.maximum(out, 0.0), beyond).min()))
+    return least
+
+
+def test_with_clearance_the_links_stay_off_a_positioner_that_they_touch_without(hemisphere, cell):
+    rods = link_rods.of_robot(cell.robot.chain)
+    plain = plan_joints(hemisphere, cell, JointParameters())
+    assert plain.feasible and nearest(cell, plain.joints[::9], rods) < CLEAR
+    kept = dataclasses.replace(cell, arm_clearance=CLEAR)
+    path = plan_joints(hemisphere, kept, JointParameters(), rods=rods)
+    assert path.feasible and nearest(cell, path.joints[::5], rods) > CLEAR - 0.5
+    motion, rapids = assemble(path, kept, ProcessParameters(), hemisphere.surroundings, None, 10.0, rods)
+    assert not rapids and nearest(cell, motion.joints[~motion.deposit][::7], rods) > CLEAR - 0.5
+
+
+def turned(joints, count, axis, angle):
+    """Joints (count, axes) on the way from some to the same with one axis turned by an angle."""
+    found = np.tile(joints, (count, 1))
+    found[:, axis] += np.linspace(0.0, angle, count)
+    return found
+
+
+def test_a_nozzle_driven_into_the_positioner_is_told_with_its_link_and_on_the_preflight(hemisphere, cell):
+    """The plan, with the table left as it is, and the arm lowered: the nozzle goes through the table."""
+    path = plan_joints(hemisphere, cell, JointParameters())
+    motion, _ = assemble(path, cell, ProcessParameters(), hemisphere.surroundings, None, 10.0)
+    assert nozzle_beside.findings(motion, cell) == []
+    rows = np.flatnonzero(motion.deposit)[-40:]
+    lowered = turned(motion.joints[rows[0]], 40, 1, np.radians(14.0))
+    joints = motion.joints.copy()
+    joints[rows] = lowered
+    wrong = dataclasses.replace(motion, joints=joints)
+    told = nozzle_beside.findings(wrong, cell)
+    seen = cell.beside_frames(lowered)[:, 2]
+    tip = cell.machine.chain.forward(lowered) @ cell.carried
+    at = (np.linalg.inv(seen) @ tip)[:, :3, 3]
+    pieces = json.loads((MECHANISMS / f"{POSITIONER}.json").read_text(encoding="utf-8"))["bodies"]["joint_2"]
+    within = np.concatenate([points_within(piece) for piece in pieces])
+    gap = np.linalg.norm(at[:, None] - within[None], axis=2).min(axis=1)
+    assert (gap < STEP).any()  # it does go in
+    assert {issue.code for issue in told} == {"CLEARANCE"}
+    assert any("Yaskawa MotoPos D500 e2" in issue.message for issue in told)
+    touches = arm_touches(wrong, ArmContact(cell, link_rods.of_robot(cell.robot.chain)))
+    (row,) = clearance.beside(wrong, cell, touches, True, told)
+    assert row.ok is False and row.worst > 0 and (touches.link != NONE).any()
+    assert "they touch Yaskawa MotoPos D500" in row.how
+
+
+def test_what_is_not_known_of_the_shapes_is_said_on_the_preflight(hemisphere):
+    far = cell_for(hemisphere)
+    path = plan_joints(hemisphere, far, JointParameters())
+    motion, _ = assemble(path, far, ProcessParameters(), hemisphere.surroundings, None, 10.0)
+    touches = arm_touches(motion, ArmContact(far, link_rods.of_robot(far.robot.chain)))
+    assert [one.ok for one in clearance.beside(motion, far, touches, True, ())] == [True]
+    (drawn,) = clearance.beside(motion, far, touches, False, ())
+    assert drawn.ok is None and drawn.how.startswith("not checked in full, for links of the robot are drawn")
+    blank = dataclasses.replace(far, beside=())
+    (none,) = clearance.beside(motion, blank, arm_touches(motion, ArmContact(blank, [[] for _ in range(7)])), True, ())
+    assert none.ok is None and "no file tells what Yaskawa MotoPos D500 is made of" in none.how
