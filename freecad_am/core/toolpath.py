@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from .geometry.columns import lengths
 from .geometry.curves.outline import Outline, estimated, outline
-from .geometry.fitted import Fitted
+from .geometry.fitted import Fitted, PredictedShape
 from .geometry.surroundings import Body
 from .issues import Issue
 from .types import Array
@@ -277,7 +277,7 @@ class Toolpath:
     then speaks for the first of them. uneven: (k, 3) number, least and largest height, mm, of layers that are not as
     high everywhere; None where all are. twice: mm3 of beads, as wide as they are apart, laid over others of their layer;
     None where it is not known. max_from_vertical: rad, how far the tool axis may be from the vertical of a cell with a
-    positioner. fitted: what a scan told of the surface that layers were fitted to; None without one.
+    positioner. fitted: to a scan, predicted: what its deposit comes to against the part; None where nobody asked.
     """
 
     layers: tuple[Layer, ...]
@@ -300,6 +300,7 @@ class Toolpath:
     twice: float | None = None
     max_from_vertical: float = math.pi
     fitted: Fitted | None = None
+    predicted: PredictedShape | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))

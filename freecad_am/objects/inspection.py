@@ -17,6 +17,7 @@ from ..core.inspection import inspect, point_file, surfaces, table
 from ..core.inspection.planned import Planned, of_triangles
 from ..core.issues import InputError
 from ..core.parameters.inspection import InspectionParameters
+from ..core.parameters.process import ProcessParameters
 from .fields.properties import HIDDEN, OUTPUT
 from .results.fingerprints import fingerprint
 from .shapes.bodies import taken
@@ -57,6 +58,8 @@ class Inspection(Stage):
         parameters, path, where = self.parameters(obj, InspectionParameters), file_of(obj), f"{obj.Label}.File"
         if not path:
             raise InputError("NO_FILE", where, "no file of measured points is given; choose one")
+        if is_predicted(obj):
+            return self._predicted(obj, linked, parameters)
         obj.FileDigest = _digest(path, where)
         planned = _stage_surface(linked["Planned"]) if linked else _shape_surface(obj.Planned)
 
@@ -64,6 +67,24 @@ class Inspection(Stage):
             progress.report(0.0, "reading the points")
             measured = point_file.read(path, parameters.unit)
             found = inspect.inspect(measured, planned(), parameters, progress.report)
+            return Outcome(found, found.issues, _figures(found))
+
+        return work
+
+    def _predicted(self, obj: Any, linked: dict[str, Any], parameters: InspectionParameters) -> Work:
+        """The deposit that a toolpath is predicted to leave, in place of what was measured."""
+        from .checks import predicted_shape  # few inspections need it
+
+        toolpath = linked.get("Planned")
+        if toolpath is None or toolpath.Proxy.kind != "toolpath":
+            raise InputError("NO_INPUT", f"{obj.Label}.Planned", "only the deposit of a toolpath can be predicted; choose a "
+                             "toolpath under Planned, or a file of measured points")
+        obj.FileDigest = ""
+        value, targets, label = toolpath.Proxy.value(toolpath), toolpath.Proxy.targets(toolpath), toolpath.Label
+        allowance = toolpath.Proxy.parameters(toolpath, ProcessParameters).machining_allowance or 0.0
+
+        def work() -> Outcome:
+            found = predicted_shape.inspected(value, targets, allowance, parameters.tolerance, label, progress.report)
             return Outcome(found, found.issues, _figures(found))
 
         return work
@@ -82,11 +103,18 @@ class Inspection(Stage):
         return [] if stage_of(obj.Planned) is None else [obj.Planned]
 
     def further_inputs(self, obj: Any) -> list[str]:
+        if is_predicted(obj):
+            return [inspect.PREDICTED]
         path = file_of(obj)
         # a file that is gone is taken to be what it was: the result has its points
         known = _digest(path, f"{obj.Label}.File") if is_there(path) else obj.FileDigest
         shape = [] if stage_of(obj.Planned) is not None else [fingerprint(obj.Planned)]
         return [os.path.basename(path), known, *shape]
+
+
+def is_predicted(obj: Any) -> bool:
+    """Whether an inspection is of a predicted deposit, not of a file."""
+    return bool(obj.File.strip() == inspect.PREDICTED)
 
 
 def file_of(obj: Any) -> str:

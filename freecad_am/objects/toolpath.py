@@ -28,6 +28,7 @@ from .stage_parts import Link, Outcome, Section, Work
 
 if TYPE_CHECKING:
     from ..core.planning.remedies import Fixed
+    from .checks.predicted_shape import Target
 
 FIXED = "fixed"
 LEANING = (RevolutionParameters, SurfaceParameters)  # whose build directions follow the wall, unless asked to be one
@@ -76,7 +77,7 @@ class Toolpath(Stage):
         given = [
             _given(feature, process, cell) for feature, process in zip(features, self.processes(obj), strict=True)
         ]
-        fixed = self.fixed(obj)
+        fixed, look = self.fixed(obj), self._look(obj)
         if len(features) > 1:
             if obj.Scan is not None:
                 raise InputError("NOT_YET", f"{obj.Label}.Scan", "several features in one go are not fitted to a scan yet; "
@@ -84,7 +85,7 @@ class Toolpath(Stage):
             members = [member(feature, one, features) for feature, one in zip(features, given, strict=True)]
             names = [tuple(one.Name for one in _sources(feature)) for feature in features]
             order = obj.Sequence
-            return lambda: _outcome(with_remedy(planned_in_sequence(members, order, names), fixed))
+            return lambda: _outcome(with_remedy(look(planned_in_sequence(members, order, names)), fixed))
         sources = tuple(taken(one) for one in _sources(features[0]))
         fit = self._fit(obj)
 
@@ -94,9 +95,30 @@ class Toolpath(Stage):
             told = deposit_balance.issues(
                 deposit_balance.of_toolpath(given[0].wall, toolpath, given[0].process.bead_width)
             )
-            return _outcome(with_remedy(dataclasses.replace(toolpath, issues=(*told, *toolpath.issues)), fixed))
+            return _outcome(with_remedy(look(dataclasses.replace(toolpath, issues=(*told, *toolpath.issues))), fixed))
 
         return work
+
+    def targets(self, obj: Any) -> list[Target]:
+        """What each of its features is to deposit, for work that does not touch the document. InputError."""
+        features = features_of(obj)
+        cell = None if obj.Cell is None else obj.Cell.Proxy.value(obj.Cell)
+        from .checks.predicted_shape import Target
+
+        return [
+            Target(_given(one, process, cell), tuple(map(taken, _sources(one))), tuple(one.Source[1]))
+            for one, process in zip(features, self.processes(obj), strict=True)
+        ]
+
+    def _look(self, obj: Any) -> Callable[[CoreToolpath], CoreToolpath]:
+        """What compares the predicted deposit with the part where an allowance is asked for; else nothing."""
+        allowance = self.parameters(obj, ProcessParameters).machining_allowance
+        if allowance is None:
+            return lambda made: made
+        from .checks import predicted_shape  # jobs without an allowance need none of it
+
+        targets = self.targets(obj)
+        return lambda made: predicted_shape.told(made, targets, allowance)
 
     def _fit(self, obj: Any) -> Callable[[CoreToolpath], CoreToolpath] | None:
         """What fits the layers to a scan; None without one. InputError."""

@@ -31,7 +31,7 @@ from freecad_am.core.strategies.families import family_of
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.core.types import Array
 
-from . import scan_figures
+from . import predicted_figures, scan_figures
 from .asked import Feature
 
 VERSION = 1
@@ -65,6 +65,7 @@ def build(
             zip(("places", "worst_mm", "allowed_mm"), (int(toolpath.on_part[0]), *toolpath.on_part[1:]), strict=True)
         ),
         "scan": None if toolpath.fitted is None else scan_figures.as_dict(toolpath.fitted),
+        "predicted_shape": None if toolpath.predicted is None else predicted_figures.as_dict(toolpath.predicted),
         "joints": None,
         "preflight": [],
         "comparison": [],

@@ -14,7 +14,7 @@ from freecad_am.core.strategies.walls.comparison import Compared
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.plots.source import Source
 
-from . import hub_figures, places, scan_figures, view, wall_figures
+from . import hub_figures, places, predicted_figures, scan_figures, view, wall_figures
 from .of_feature import OfFeature
 from .pictures import MISSING, Pictures
 from .style import STYLE
@@ -79,6 +79,7 @@ def render(content: Content) -> str:
         "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
         "" if content.toolpath.fitted is None else scan_figures.section(content.toolpath.fitted, content.toolpath.frame),
+        "" if content.toolpath.predicted is None else predicted_figures.section(content.toolpath.predicted),
         _process(content, pictures),
         _on_hub(content, pictures),
         *(_spacings(one) for one in content.features if one.rows),

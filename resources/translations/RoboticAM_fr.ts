@@ -299,6 +299,11 @@
         <translation>De combien un point palpé peut s&apos;écarter d&apos;où les autres le situent.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far the deposit is to reach beyond the part everywhere, to be machined off: its shape is predicted and compared with the part; none: it is not. (mm)</source>
+        <translation>De combien le dépôt doit dépasser la pièce partout, pour être usiné : sa forme est prédite et comparée à la pièce ; rien : elle ne l&apos;est pas. (mm)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the deposit stands out on all sides of the part, to be machined off.</source>
         <translation>De combien le dépôt dépasse de tous les côtés de la pièce, pour être usiné.</translation>
@@ -2737,6 +2742,11 @@
         <translation>Général</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>Give strategy.margin {0} mm more than it has, or wider beads</source>
+        <translation>Donnez à strategy.margin {0} mm de plus, ou des cordons plus larges</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Given polynomials</source>
         <translation>Polynômes donnés</translation>
@@ -2850,6 +2860,11 @@
         <location filename="../../freecad_am/core/parameters/place.py"/>
         <source>How far its z is changed to either side.</source>
         <translation>De combien son z est changé de chaque côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far the deposit is to reach beyond the part everywhere, to be machined off: its shape is predicted and compared with the part; none: it is not.</source>
+        <translation>De combien le dépôt doit dépasser la pièce partout, pour être usiné : sa forme est prédite et comparée à la pièce ; rien : elle ne l&apos;est pas.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -3152,6 +3167,16 @@
         <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>Lay layers as high as they come out first</source>
+        <translation>Déposez d&apos;abord les couches à la hauteur qu&apos;elles ont réellement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>Lay one more layer, or leave less of it to machine</source>
+        <translation>Déposez une couche de plus, ou laissez moins à usiner</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>Layer</source>
         <translation>Couche</translation>
@@ -3185,6 +3210,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
         <translation>Couches à la hauteur de couche du point le plus proche de celle du dessous (constant-distance), dans une bande autour d&apos;elle et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>Layers come out as high as they are planned</source>
+        <translation>Les couches ont la hauteur prévue</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -3425,6 +3455,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Machine {} is written: {}</source>
         <translation>La machine {} est écrite : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Machining allowance</source>
+        <translation>Surépaisseur d&apos;usinage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
@@ -3740,6 +3775,11 @@
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Nothing stands against it so far.</source>
         <translation>Rien ne s&apos;y oppose jusqu&apos;ici.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>Nothing was measured: the deposit that the toolpath is predicted to leave</source>
+        <translation>Rien n&apos;a été mesuré : le dépôt que la trajectoire d&apos;outil devrait laisser</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -4195,6 +4235,11 @@
         <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Post</source>
         <translation>Post-processeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>Predicted</source>
+        <translation>Prédit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -5387,6 +5432,11 @@
         <translation>La vitesse générale est à 100 %</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>The part lies inside the predicted deposit, by its machining allowance</source>
+        <translation>La pièce est à l&apos;intérieur du dépôt prédit, avec sa surépaisseur d&apos;usinage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>The part that they are laid on; none is needed on a platform.</source>
         <translation>La pièce sur laquelle ils sont déposés ; inutile sur un plateau.</translation>
@@ -5415,6 +5465,11 @@
         <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>The pose was entered into {}.</source>
         <translation>La pose a été entrée dans {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>The predicted deposit holds what the wire feeds</source>
+        <translation>Le dépôt prédit contient ce que le fil apporte</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/preview.py"/>
@@ -5855,6 +5910,11 @@
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>Upwards</source>
         <translation>Ordonnée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>Use beads {0} mm wider on either side, by process.bead_width, or leave less of it to machine</source>
+        <translation>Utilisez des cordons plus larges de {0} mm de chaque côté, par process.bead_width, ou laissez moins à usiner</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/inputs.py"/>
@@ -7347,6 +7407,11 @@
         <translation>des virgules séparent à la fois les colonnes et les décimales ; exportez-le avec des points décimaux, ou des points-virgules entre les colonnes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>comparing the predicted deposit with the part</source>
+        <translation>comparaison du dépôt prédit avec la pièce</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/report/of_document.py"/>
         <source>comparing the spacing of layers</source>
         <translation>comparaison de l&apos;espacement des couches</translation>
@@ -7437,9 +7502,19 @@
         <translation>sens antihoraire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>cubes of the deposit against wire section x feed x time, or what beads count where no wire is known</source>
+        <translation>cubes du dépôt contre section du fil x vitesse x temps, ou ce que comptent les cordons là où aucun fil n&apos;est connu</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/surfaces.py"/>
         <source>curves and cladding plan no surface; compare the points with the part</source>
         <translation>les courbes et le rechargement ne planifient pas de surface ; comparez les points à la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>curves have no faces that a deposit could be held against; leave out process.machining_allowance</source>
+        <translation>les courbes n&apos;ont pas de faces auxquelles comparer un dépôt ; omettez process.machining_allowance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
@@ -7830,6 +7905,11 @@
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>how a job waits for an analogue input differs with the controller&apos;s options, and the post yaskawa knows none</source>
         <translation>la façon dont un job attend une entrée analogique dépend des options de la commande, et le post-processeur yaskawa n&apos;en connaît aucune</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>how far a deposit of cubes of {0} mm, filled bead by bead with what the wire feeds, reaches beyond {1} places of the part&apos;s faces, along their normals</source>
+        <translation>de combien un dépôt de cubes de {0} mm, remplis cordon par cordon de ce que le fil apporte, dépasse {1} endroits des faces de la pièce, le long de leurs normales</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
@@ -8497,6 +8577,11 @@
         <translation>ce n&apos;est pas une trajectoire d&apos;AdaOne, ou elle est endommagée ({0}) ; exportez-la à nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>it is not known how wide its beads count; plan it anew</source>
+        <translation>la largeur que comptent ses cordons n&apos;est pas connue ; replanifiez-la</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>it is not of revolution</source>
         <translation>elle n&apos;est pas de révolution</translation>
@@ -8960,6 +9045,11 @@
         <location filename="../../freecad_am/core/issues.py"/>
         <source>layer {0} bead {1} point {2}</source>
         <translation>couche {0} cordon {1} point {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/shape/laying.py"/>
+        <source>layer {0} of {1}</source>
+        <translation>couche {0} sur {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/curved/on_faces.py"/>
@@ -9717,6 +9807,21 @@
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée, et aucun contournement n’a été trouvé ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>on {0} % of the faces the predicted deposit does not reach {1} mm beyond the part, on {2} % it ends within the part: at {3} the part sticks out by {4} mm. {5}</source>
+        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} la pièce dépasse de {4} mm. {5}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>on {0} % of the faces the predicted deposit does not reach {1} mm beyond the part, on {2} % it ends within the part: at {3} there is none within {4} mm. {5}</source>
+        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} il n&apos;y en a pas à moins de {4} mm. {5}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>on {0} % of the faces the predicted deposit does not reach {1} mm beyond the part, on {2} % it ends within the part: at {3} {4} mm are left to machine. {5}</source>
+        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} il reste {4} mm à usiner. {5}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model/notes.py"/>
         <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the width asked for takes a speed outside of the table&apos;s {4} to {5} mm/min; it is kept within, and the width is not held: it is {6} mm at its farthest from the {7} mm</source>
         <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm</translation>
@@ -9770,6 +9875,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>only solids in plane layers have sections and volumes of layers</source>
         <translation>seuls les solides en couches planes ont des sections et des volumes de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>only the deposit of a toolpath can be predicted; choose a toolpath under Planned, or a file of measured points</source>
+        <translation>seul le dépôt d&apos;une trajectoire de dépôt peut être prédit ; choisissez-en une sous Planned, ou un fichier de points mesurés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
@@ -9960,6 +10070,11 @@
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>positions on the part need the kinematics that M428 chooses; set it to true, or use `motion: joint`</source>
         <translation>les positions sur la pièce demandent la cinématique que choisit M428 ; mettez-le à true, ou utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>predicting the deposit, {0}</source>
+        <translation>prédiction du dépôt, {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/simulation/payload.py"/>
@@ -10350,6 +10465,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
         <source>such as: pendant of R-30iB, 21 November; or a simulator with its version</source>
         <translation>par exemple : pupitre du R-30iB, 21 novembre ; ou un simulateur avec sa version</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>surface of each layer of the predicted deposit, in the mean, against where the next one should begin</source>
+        <translation>surface de chaque couche du dépôt prédit, en moyenne, par rapport à l&apos;endroit où la suivante devrait commencer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -11040,6 +11160,11 @@
         <location filename="../../freecad_am/core/planning/arm/kept.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>the part has no faces above where the deposit begins</source>
+        <translation>la pièce n&apos;a pas de faces au-dessus du début du dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
@@ -11817,6 +11942,16 @@
         <translation>cette clé manque ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>this layer is predicted to end {0} mm above where the next one should begin: up to here layers come out {1} mm high in the mean, and {2} mm are planned; set strategy.layer_height to {3} mm, or change what the wire feeds</source>
+        <translation>d&apos;après la prédiction, cette couche finit {0} mm au-dessus du début prévu de la suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut, et {2} mm sont prévus ; mettez strategy.layer_height à {3} mm, ou changez ce que le fil apporte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>this layer is predicted to end {0} mm below where the next one should begin: up to here layers come out {1} mm high in the mean, and {2} mm are planned; set strategy.layer_height to {3} mm, or change what the wire feeds</source>
+        <translation>d&apos;après la prédiction, cette couche finit {0} mm au-dessous du début prévu de la suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut, et {2} mm sont prévus ; mettez strategy.layer_height à {3} mm, ou changez ce que le fil apporte</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>this machine has no condition</source>
         <translation>cette machine n&apos;a pas de condition</translation>
@@ -12520,6 +12655,11 @@
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>{0} has neither I and J nor R; an arc needs its middle or its radius</source>
         <translation>{0} n&apos;a ni I et J ni R ; un arc a besoin de son centre ou de son rayon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
+        <source>{0} has no faces that a deposit could be held against</source>
+        <translation>{0} n&apos;a pas de faces auxquelles comparer un dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>

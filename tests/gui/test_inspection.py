@@ -8,6 +8,8 @@ import pytest
 from freecad_am import api
 from freecad_am.core.inspection.bands import bands
 from freecad_am.gui.path import legend
+from freecad_am.gui.simulation.run import run_of
+from freecad_am.gui.simulation.scene import _beads
 
 PANEL = "RoboticAM_Inspection"
 
@@ -171,3 +173,40 @@ def test_panel_survives_its_document(person, part, points):
     if person.gui.Control.activeDialog():
         person.press("Cancel")
     person.panel_closed()
+
+
+def test_a_predicted_deposit_is_shown_by_a_click_and_grows_as_high(person, hand, part):
+    """Without a file: the deposit that the toolpath is predicted to leave, in the colours of its deviations, with histogram
+    and figures; a simulation then draws beads as high as they are predicted to end."""
+    document = part.Document
+    made = api.make_cell(document, limits="paper")
+    path = api.make_toolpath(document, document.Feature, made, bead_width=6)
+    joints = api.make_joint_path(document, path, made)
+    for drawn in (made, path, joints, document.Feature):
+        drawn.ViewObject.Visibility = False
+    hand.click(person.button("RoboticAM_Inspect"))
+    panel = person.panel(PANEL)
+    hand.click(person.field(panel, "PredictedDeposit"))
+    assert person.field(panel, "Planned").currentText() == path.Label
+    hand.enter(panel, "Tolerance", "1 mm")
+    person.press("Apply")
+    inspection = document.getObject("Inspection")
+    assert inspection is not None, person.panel_error(panel)
+    found = api.result(inspection)
+    assert person.field(panel, "DeviationHistogram").isVisible()
+    assert int(figures(panel, person)["Points"]) == len(found.deviation)
+    assert [legend._lines((), scale) for scale in legend.shown(document)] == [["deviation, mm"]]
+    person.look()
+    shades = {band.text: 255.0 * np.array(band.colour) for band in bands(1.0)}
+    pixels = person.picture()
+    assert max(int((np.abs(pixels - shade).max(axis=1) < 12).sum()) for shade in shades.values()) > 500
+    person.screenshot("predicted-deposit")
+    person.press("Ok")
+    person.panel_closed()
+    run = run_of(joints)
+    assert run.laid is not None and len(run.laid) == len(found.laid)
+    beads = _beads(run)
+    low = found.laid[found.laid[:, 3] == 0]
+    assert float(beads[0].height.mean()) == pytest.approx(float(np.maximum(low[:, 4], 1e-3).mean()), rel=0.02)
+    path.BeadWidth = 5  # another deposit, of which nothing is known
+    assert run_of(joints).laid is None

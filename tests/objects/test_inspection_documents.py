@@ -135,3 +135,36 @@ def test_walls_on_parts_are_exact_and_outside_is_a_plus(doc, root, wall, ground)
     across = feet - 5.0 * normal
     wide, narrow = (np.linalg.norm(one - one.mean(axis=0), axis=1).mean() for one in (feet, across))
     assert narrow < wide
+
+
+def test_a_predicted_deposit_is_inspected_as_a_measured_one(doc, root):
+    """A tube 3 mm thick of beads 6 mm wide, on the middle of its wall: 1.5 mm are left on both sides, but for the round top;
+    saved with the document, stale when the toolpath changes, and refused of what has no beads."""
+    tube = doc.addObject("Part::Feature", "Tube")
+    tube.Shape = Part.makeCylinder(31.5, 20.0).cut(Part.makeCylinder(28.5, 20.0))
+    feature = api.make_feature(doc, tube, layer_height=2, wall="middle")
+    path = api.make_toolpath(doc, feature, bead_width=6, machining_allowance=1)
+    made = api.inspect(doc, path, "predicted deposit", tolerance=0.5)
+    found = api.result(made)
+    exact = tube.Shape.distToShape
+    normal = np.array([1.0 if abs(np.hypot(*p[:2]) - 33.0) < 1.0 else -1.0 for p in found.points])
+    sides = (found.points[:, 2] > 2.0) & (found.points[:, 2] < 15.0) & (found.deviation > 0.0)
+    radius = np.hypot(*found.points[:, :2].T)
+    expected = np.where(normal > 0.0, 33.0, 27.0)
+    assert sides.sum() > 3000 and np.abs(radius - expected)[sides].max() < 0.4
+    for k in np.flatnonzero(sides)[::400]:
+        away = exact(Part.Vertex(*found.points[k]))[0]
+        assert away == pytest.approx(found.deviation[k], abs=0.06)  # by the kernel; triangles are within 0.05 mm
+    predicted = api.result(path).predicted
+    assert abs(predicted.laid / predicted.fed - 1.0) < 1e-6
+    assert predicted.fed == pytest.approx(12.0 * api.result(path).length, rel=1e-9)
+    assert predicted.allowance == 1.0 and predicted.places == len(found.deviation)
+    assert found.laid is not None and found.spread.least == pytest.approx(predicted.least)
+    assert made.Status == "up to date"
+    path.BeadWidth = 5
+    assert made.Status == "stale"
+    doc.recompute()
+    narrower = api.result(made)
+    assert np.median(narrower.deviation) == pytest.approx(1.0, abs=0.15)
+    with pytest.raises(InputError, match="choose a toolpath"):
+        api.inspect(doc, feature, "predicted deposit")

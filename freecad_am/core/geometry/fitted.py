@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a toolpath was fitted to: where a scan found the surface that its first layer lies on."""
+"""What a toolpath keeps of what it was held against: a scan that its layers were fitted to, and the part that its predicted
+deposit is to hold."""
 
 from __future__ import annotations
 
@@ -32,3 +33,31 @@ class Fitted:
     slope: float
     remains: float
     motion: Array
+
+
+@dataclass(frozen=True)
+class PredictedShape:
+    """fed, laid: mm3 that the wire feeds, and that the predicted deposit holds. edge: mm of the cubes that it is told in.
+    drift: (layers,) mm by which the surface of each layer ends above where the next one should begin, NaN where it has no
+    beads. allowance: mm asked for on all faces. places: how many of the faces were looked at. least, mean, most: mm that the
+    deposit reaches beyond the faces there, along their normals, less than 0 where the part sticks out of it. short: share of
+    the faces with less than the allowance; outside: share that sticks out. bare: share with no deposit within `reach` mm.
+    worst: (3,) mm, the place with the least; layer, bead, point: what of the path is nearest to it."""
+
+    fed: float
+    laid: float
+    edge: float
+    drift: Array
+    allowance: float
+    places: int
+    least: float
+    mean: float
+    most: float
+    short: float
+    outside: float
+    bare: float
+    reach: float
+    worst: Array
+    layer: int
+    bead: int
+    point: int

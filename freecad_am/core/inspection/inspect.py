@@ -32,6 +32,7 @@ from .registration import (
 
 Report = Callable[[float, str], None]
 
+PREDICTED = "predicted deposit"  # in place of a file, where nothing was measured
 UNLIKE = 8.0  # times smaller than the part points are hardly of all of it; cm, inches and m are 10 times and more
 SHIFTS = np.vstack([np.zeros((3, 3)), np.eye(3)])
 
@@ -44,6 +45,8 @@ class Inspected:
     from what was planned, plus where there is more. counted: (n,) False for points past the edges of what was planned, which
     no figure counts; fitted: (n,) False for those and for what the fit left out. motion: (4, 4) from where points were
     measured. free: motions that the deviations do not feel. tolerance: mm. file, against: what was compared with what.
+    laid: (m, 5) of a deposit that was predicted, not measured: mm of the middles of its pieces, their layers, and mm of its
+    surface above them; None of what was measured.
     """
 
     points: Array
@@ -60,6 +63,7 @@ class Inspected:
     circles: tuple[Circle, ...]
     thickness: Thickness | None
     issues: tuple[Issue, ...]
+    laid: Array | None = None
 
 
 def inspect(measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report) -> Inspected:

@@ -169,6 +169,10 @@ class ProcessParameters:
     start: BeadStart = f.group(BeadStart, "What differs where beads begin.")
     end: BeadEnd = f.group(BeadEnd, "What differs where beads end.")
     material: MaterialParameters = f.group(MaterialParameters, "What is deposited.")
+    machining_allowance: float | None = f.parameter(
+        None, f.LENGTH, "How far the deposit is to reach beyond the part everywhere, to be machined off: its shape is "
+        "predicted and compared with the part; none: it is not.", low=0.0, optional=True, advanced=True,
+    )
 
     def __post_init__(self) -> None:
         f.check(self, "process")

@@ -63,6 +63,7 @@ def promises(evidence: Evidence) -> tuple[Promise, ...]:
         deposit.carried(evidence.toolpath, issues),
         deposit.layers(evidence.toolpath, issues, evidence.distances),
         deposit.fed(evidence.toolpath, evidence.process),
+        *deposit.predicted(evidence.toolpath, issues),
         clearance.nozzle(issues, evidence.looked),
         *_of_motion(evidence),
         *written.promises(evidence.read, evidence.on_controller),

@@ -14,9 +14,12 @@ from ..process.deposit import balance as deposit_balance
 from ..process.deposit import layer_heights, on_part, spacing, support
 from ..process.deposit.balance import MM3, Balance
 from ..process.model import wire, wire_taken
+from ..process.shape import compare
 from ..toolpath import Toolpath
 from ..types import Array
 from .promise import PERCENT, Place, Promise, issue_place, of_codes
+
+HELD = 1e-6  # of what is fed, that a predicted deposit may hold more or less
 
 
 def layers(toolpath: Toolpath, issues: Sequence[Issue], known: Sequence[Array] | None = None) -> Promise:
@@ -98,6 +101,36 @@ def carried(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     how = "each short piece of a bead, against its build direction, over earlier deposit as wide as it is and what is there"
     kept = not found and toolpath.unsupported <= 0.0
     return Promise(what, how, kept, toolpath.unsupported, "mm", 0.0, issue_place(found))
+
+
+def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...]:
+    """Of the deposit that is predicted, at the speeds asked for, where an allowance is; nothing elsewhere."""
+    found = toolpath.predicted
+    if found is None:
+        return ()
+    how = (
+        f"how far a deposit of cubes of {found.edge:.3g} mm, filled bead by bead with what the wire feeds, reaches beyond "
+        f"{found.places} places of the part's faces, along their normals"
+    )
+    inside = Promise(
+        "The part lies inside the predicted deposit, by its machining allowance", how, found.short <= 0.0, found.least, "mm",
+        found.allowance, Place(found.layer, found.bead, found.point), at_least=True,
+    )
+    off = abs(found.laid - found.fed) / max(found.fed, 1e-300)
+    drifts = of_codes(issues, (compare.DRIFT,), WARNING)
+    known = found.drift[np.isfinite(found.drift)]
+    most = float(known[np.abs(known).argmax()]) if len(known) else 0.0
+    return (
+        inside,
+        Promise(
+            "Layers come out as high as they are planned", "surface of each layer of the predicted deposit, in the mean, "
+            "against where the next one should begin", not drifts, most, "mm", place=issue_place(drifts),
+        ),
+        Promise(
+            "The predicted deposit holds what the wire feeds", "cubes of the deposit against wire section x feed x time, or "
+            "what beads count where no wire is known", off <= HELD, PERCENT * off, "%", PERCENT * HELD,
+        ),
+    )
 
 
 def fed(toolpath: Toolpath, process: ProcessParameters) -> Promise:

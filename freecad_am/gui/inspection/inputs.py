@@ -10,6 +10,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
+from ...core.inspection.inspect import PREDICTED
 from ...core.inspection.point_file import MESHES, TABLES
 from ...core.issues import InputError
 from ...objects.inspection import KINDS
@@ -43,6 +44,17 @@ class PlannedChoice(inputs.Input):
         if wanted is not None:
             self.widget.setCurrentIndex(max(0, self.widget.findData(wanted.Name)))
 
+    def choose_toolpath(self) -> None:
+        """The last toolpath, where none is chosen."""
+        paths = [k for k in range(self.widget.count()) if self._kind(k) == "toolpath"]
+        if paths and self.widget.currentIndex() not in paths:
+            self.widget.setCurrentIndex(paths[-1])
+
+    def _kind(self, index: int) -> str:
+        obj = self.document.getObject(self.widget.itemData(index))
+        stage = None if obj is None else stage_of(obj)
+        return "" if stage is None else str(stage.kind)
+
     @property
     def missing(self) -> str:
         return "" if self.widget.count() else tr("There is nothing to compare with in this document; open the part first.")
@@ -74,8 +86,14 @@ class FileChoice(inputs.Input):
         for widget in (self.widget, self.line, self.button):
             widget.setToolTip(help)
             widget.setWhatsThis(help)
-        row.addWidget(self.line)
-        row.addWidget(self.button)
+        self.predict = QtGui.QPushButton(tr("Predicted"))
+        self.predict.setObjectName("PredictedDeposit")
+        self.predict.setAutoDefault(False)
+        self.predict.setToolTip(tr("Nothing was measured: the deposit that the toolpath is predicted to leave"))
+        self.predict.setWhatsThis(self.predict.toolTip())
+        self.predict.clicked.connect(lambda *_: self.line.setText(PREDICTED))
+        for widget in (self.line, self.button, self.predict):
+            row.addWidget(widget)
         self.widget.setObjectName("File")
 
     @property

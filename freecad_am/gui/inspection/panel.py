@@ -34,6 +34,7 @@ class InspectionPanel(StagePanel):
     def __init__(self, obj: Any = None) -> None:
         link = Inspection.links[0]
         choices = [PlannedChoice(link, None if obj is None else obj.Planned), FileChoice("" if obj is None else obj.File)]
+        choices[1].predict.clicked.connect(lambda *_: choices[0].choose_toolpath())
         super().__init__(Inspection, tr("Inspect") if obj is None else obj.Label, choices, obj)
         if obj is None and not choices[0].missing:
             self.say("")  # the file is still to be chosen, which needs no telling in red

@@ -18,6 +18,7 @@ from ...core.simulation.timeline import Timeline, timeline
 from ...core.simulation.totals import Totals, totals
 from ...core.simulation.watch import Watch, watch
 from ...core.toolpath import Toolpath
+from ...core.types import Array
 from ...objects import user_machines
 from ...objects.checks.links_clear import arm_of
 from ...objects.joint_path import planned_of
@@ -26,13 +27,14 @@ from ...objects.results.findings import issues_of
 from ...objects.shapes.cell_obstacles import resolved
 from ...objects.shapes.link_meshes import meshes_of
 from ...objects.stage import stage_of
-from ...objects.staleness import STALE
+from ...objects.staleness import STALE, UP_TO_DATE
 
 
 @dataclass(frozen=True)
 class Run:
     """All of a simulation but its pictures. title: what is played. objects: names of the objects it was made from. stale:
-    whether these have changed since."""
+    whether these have changed since. laid: of the predicted deposit, as an inspection of the toolpath has it, where there
+    is one that fits; None else."""
 
     document: str
     title: str
@@ -47,6 +49,7 @@ class Run:
     watch: Watch
     totals: Totals
     stale: bool = False
+    laid: Array | None = None
 
 
 def run_of(obj: Any) -> Run:
@@ -67,6 +70,7 @@ def prepared(obj: Any) -> Callable[[], Run]:
     if not len(planned.motion):
         raise InputError("NO_RESULT", path.Label, "it has no points; there is nothing to play")
     issues, stale, label = issues_of(path), path.Status == STALE, obj.Label
+    laid = _predicted(path.Toolpath)
     names = tuple(dict.fromkeys((obj.Name, path.Name, path.Toolpath.Name, path.Cell.Name)))
     document = obj.Document.Name
     settings = obj.Proxy.parameters(obj, ProgramParameters) if stage.kind == "program" else None
@@ -85,7 +89,18 @@ def prepared(obj: Any) -> Callable[[], Run]:
                 motion, cell, kept, run.condition, run.threshold, run.issues,
                 arm_of(motion, cell, toolpath, process, shapes),
             ),
-            totals=totals(motion, times, process, toolpath), stale=stale,
+            totals=totals(motion, times, process, toolpath), stale=stale, laid=laid,
         )
 
     return work
+
+
+def _predicted(toolpath: Any) -> Array | None:
+    """The deposit that the last inspection of a toolpath has predicted, where it fits that."""
+    for obj in reversed(toolpath.InList):
+        stage = stage_of(obj)
+        if stage is not None and stage.kind == "inspection" and obj.Key and obj.Status == UP_TO_DATE:
+            found: Array | None = stage.value(obj).laid
+            if found is not None:
+                return found
+    return None

@@ -20,6 +20,7 @@ from freecad_am.core.types import Array
 
 from ...core.geometry import frames
 from ...core.kinematics.links.rounds import NONE
+from ...core.simulation.grown import heights
 from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
@@ -153,14 +154,17 @@ def _wrong(run: Run) -> NDArray[np.bool_]:
 
 
 def _beads(run: Run) -> list[Bead]:
-    """The beads as they are run, a bead for every stretch of deposit rows; their points are those rows."""
+    """The beads as they are run, a bead for every stretch of deposit rows; their points are those rows. As high as they are
+    predicted to end, where that is known."""
     motion = run.motion
+    height = None if run.laid is None else heights(run.laid, motion.position, motion.layer)
     rows = np.flatnonzero(motion.deposit)
     pieces = np.split(rows, np.flatnonzero(motion.point[rows] == 0)[1:])
     return [
         Bead(points=motion.position[piece], build=motion.build[piece], tool=motion.tool[piece],
              parameter=np.arange(len(piece)), speed=motion.speed[piece], closed=False,
-             width=None if np.isnan(motion.width[piece]).any() else motion.width[piece])
+             width=None if np.isnan(motion.width[piece]).any() else motion.width[piece],
+             height=None if height is None or np.isnan(height[piece]).any() else height[piece])
         for piece in pieces
     ]
 

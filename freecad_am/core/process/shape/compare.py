@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A predicted deposit against the part: how far it reaches beyond each place of the faces, and whether that is enough."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...geometry.columns import dots
+from ...geometry.fitted import PredictedShape
+from ...geometry.told import place
+from ...issues import WARNING, Issue
+from ...types import Array, Index, Mask
+from .faces import Faces
+from .grid import Grid
+from .laying import Laid
+
+CODE, DRIFT = "ALLOWANCE", "LAYER_DRIFT"
+MUCH = 0.5  # of a layer height: layers that end farther off than this are told
+KNOWN = 0.25  # of a cube's edge, to which a surface is known
+HALF = 0.5  # of a cube: the surface runs where it is half full
+STEP = 0.5  # of a cube's edge, between places that are asked along a normal
+REACH = 2.0  # widths and layer heights that the deposit is looked for, outwards and inwards
+STANDS = 0.25  # layer heights above where a first layer begins, up to which a face that looks down stands there
+DOWN = 0.5  # cosine against the build direction of such a face
+NEAR = 1.5  # widths from a first layer's bead, beyond which nothing is known of what it stands on
+AT_ONCE = 4_000
+
+
+@dataclass(frozen=True)
+class Compared:
+    """faces: the places that are to be covered. deviation: (n,) mm that the deposit reaches beyond them along their normals,
+    less than 0 where the part sticks out; of open faces on the side where it is less. bare: (n,) where there is none within
+    `reach` mm, which deviations are cut off at. piece: (n,) of the deposit's pieces the nearest one."""
+
+    faces: Faces
+    deviation: Array
+    bare: Mask
+    reach: float
+    piece: Index
+
+    @property
+    def surface(self) -> Array:
+        """(n, 3) mm, the places of the deposit's surface that were met."""
+        found: Array = self.faces.points + self.deviation[:, None] * self.faces.normals
+        return found
+
+
+def compared(of: Laid, faces: Faces) -> Compared:
+    """The deposit from all faces, but those on which the part stands and what lies below where it begins."""
+    pieces = of.pieces
+    kept = faces.rows(_to_be_covered(of, faces))
+    reach = REACH * (float(pieces.width.max()) + float(pieces.height.max()))
+    out, bare = _reached(of.grid, kept.points, kept.normals, reach)
+    if kept.open.any():
+        other, other_bare = _reached(of.grid, kept.points, -kept.normals, reach)
+        less = kept.open & (other < out)
+        turned = np.where(less[:, None], -kept.normals, kept.normals)
+        kept = Faces(kept.points, turned, kept.areas, kept.open)
+        out, bare = np.where(less, other, out), np.where(less, other_bare, bare)
+    piece = np.asarray(cKDTree(pieces.middle).query(kept.points)[1]) if len(kept) else np.zeros(0, dtype=np.intp)
+    return Compared(kept, out, bare, reach, piece)
+
+
+def _to_be_covered(of: Laid, faces: Faces) -> Mask:
+    """Which places are not below a first layer, nor on faces that stand on what that lies on."""
+    begins = of.pieces.rows(np.flatnonzero(of.pieces.first))
+    away, near = cKDTree(begins.middle).query(faces.points)
+    build, height = begins.build[near], begins.height[near]
+    up = dots(faces.points - begins.middle[near], build)
+    beside = np.sqrt(np.maximum(away * away - up * up, 0.0)) < NEAR * begins.width[near]
+    down = dots(faces.normals, build) < -DOWN
+    below = beside & ((up < -STANDS * height) | ((up < STANDS * height) & down))
+    found: Mask = ~below
+    return found
+
+
+def _reached(grid: Grid, points: Array, normals: Array, reach: float) -> tuple[Array, Mask]:
+    """How far (n,) mm the deposit reaches from points (n, 3) along unit normals, and where there is none within `reach`:
+    outwards to where it first ends, or where there is none at a point inwards to where it begins."""
+    count = int(np.ceil(reach / (STEP * grid.edge)))
+    steps = np.linspace(0.0, reach, count + 1)
+    found, bare = np.empty(len(points)), np.zeros(len(points), dtype=bool)
+    for start in range(0, len(points), AT_ONCE):
+        rows = slice(start, start + AT_ONCE)
+        inside = grid.at(points[rows]) >= HALF
+        way = np.where(inside, 1.0, -1.0)
+        length, met = _first_change(grid, points[rows], way[:, None] * normals[rows], steps, inside)
+        found[rows], bare[rows] = way * length, ~met & ~inside
+    return found, bare
+
+
+def _first_change(grid: Grid, points: Array, ways: Array, steps: Array, inside: Mask) -> tuple[Array, Mask]:
+    """How far (n,) mm along ways it first is as at the point no more; the last step where it stays so, and whether not."""
+    length, met = np.full(len(points), steps[-1]), np.zeros(len(points), dtype=bool)
+    left = np.arange(len(points))
+    before = grid.at(points)
+    for near, far in zip(steps[:-1], steps[1:], strict=True):
+        now = grid.at(points[left] + far * ways[left])
+        changed = (now >= HALF) != inside[left]
+        rows = left[changed]
+        share = (HALF - before[changed]) / (now[changed] - before[changed])
+        length[rows], met[rows] = near + share * (far - near), True
+        left, before = left[~changed], now[~changed]
+        if not len(left):
+            break
+    return length, met
+
+
+def figures(of: Laid, found: Compared, allowance: float) -> PredictedShape:
+    """What it comes to, for an allowance of so many mm on all faces. ValueError without faces to be covered."""
+    if not len(found.faces):
+        raise ValueError("there are no faces to be covered")
+    area, worst = found.faces.areas, int(found.deviation.argmin())
+    whole, known = float(area.sum()), KNOWN * of.grid.edge
+    pieces, piece = of.pieces, found.piece[worst]
+
+    def share(some: Mask) -> float:
+        return float(area[some].sum()) / whole
+
+    return PredictedShape(
+        of.fed, of.laid, of.grid.edge, of.drift, allowance, len(area), float(found.deviation[worst]),
+        float(found.deviation @ area) / whole, float(found.deviation.max()), share(found.deviation < allowance - known),
+        share(found.deviation < -known), share(found.bare), found.reach, found.faces.points[worst],
+        int(pieces.layer[piece]), int(of.bead_in_layer[piece]), int(pieces.point[piece]),
+    )
+
+
+def issues(found: PredictedShape, layer_heights: Array, first: Mask, remedy: str) -> tuple[Issue, ...]:
+    """That layers come out higher or lower than they are planned, and that the part is not inside the predicted deposit by
+    the allowance. layer_heights: (layers,) mm; first: (layers,) of those that nothing of their feature lies below. remedy:
+    what to do where the deposit is too small, with {} for by how much."""
+    drifts = _drift(found.drift, layer_heights, first)
+    if found.short <= 0.0:
+        return drifts
+    lacks = found.allowance - found.least
+    if found.least <= -found.reach:
+        told = f"there is none within {found.reach:.3g} mm"
+    elif found.least < 0.0:
+        told = f"the part sticks out by {-found.least:.3g} mm"
+    else:
+        told = f"{found.least:.3g} mm are left to machine"
+    low = any(" mm below where " in issue.message for issue in drifts)  # more of it would be needed everywhere
+    remedy = "Lay layers as high as they come out first" if low else remedy.format(f"{lacks:.3g}")
+    return (*drifts, Issue(
+        WARNING, CODE, f"on {100.0 * found.short:.3g} % of the faces the predicted deposit does not reach "
+        f"{found.allowance:g} mm beyond the part, on {100.0 * found.outside:.3g} % it ends within the part: at "
+        f"{place(found.worst)} {told}. {remedy}", found.layer, found.bead, found.point,
+    ))
+
+
+def _drift(drift: Array, layer_heights: Array, first: Mask) -> tuple[Issue, ...]:
+    """That layers end farther above or below where the next should begin than MUCH of their height, at the worst one."""
+    off = np.nan_to_num(drift) / layer_heights
+    worst = int(np.abs(off).argmax()) if len(off) else 0
+    if not len(off) or abs(off[worst]) <= MUCH:
+        return ()
+    lowest = int(np.flatnonzero(first[: worst + 1])[-1]) if first[: worst + 1].any() else 0
+    made = layer_heights[worst] + drift[worst] / (worst - lowest + 1)
+    way = "below" if drift[worst] < 0.0 else "above"
+    return (Issue(
+        WARNING, DRIFT, f"this layer is predicted to end {abs(drift[worst]):.3g} mm {way} where the next one should begin: "
+        f"up to here layers come out {made:.3g} mm high in the mean, and {layer_heights[worst]:g} mm are planned; set "
+        f"strategy.layer_height to {made:.3g} mm, or change what the wire feeds", worst,
+    ),)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Places all over the faces of a part, to look from them where a deposit ends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geometry.mesh.solid import spread
+from ...types import Array, Index, Mask
+
+PLACES = 20_000  # about
+OUTSIDE, BOTH = "outside", "both"
+
+
+@dataclass(frozen=True)
+class Faces:
+    """points: (n, 3) mm on the faces of a part. normals: (n, 3) unit vectors out of it. areas: (n,) mm2 that each stands
+    for. open: (n,) of faces that enclose nothing: both sides of them count, and the side with less."""
+
+    points: Array
+    normals: Array
+    areas: Array
+    open: Mask
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def rows(self, some: Mask) -> Faces:
+        """Some of them."""
+        return Faces(self.points[some], self.normals[some], self.areas[some], self.open[some])
+
+
+def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
+    """Places evenly spread over triangles (m, 3) of vertices (k, 3) mm, which are counter-clockwise seen from outside; with
+    BOTH they enclose nothing."""
+    corners = vertices[triangles]
+    vectors = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    twice = np.linalg.norm(vectors, axis=1)
+    kept = twice > 1e-12 * max(float(twice.max(initial=0.0)), 1e-300)
+    corners, vectors, twice = corners[kept], vectors[kept], twice[kept]
+    points, of = spread(corners, float(np.sqrt(2.0 * twice.sum() / PLACES)))  # halves of squares
+    count = np.bincount(of, minlength=len(corners))
+    return Faces(
+        points, vectors[of] / twice[of, None], 0.5 * twice[of] / count[of], np.full(len(points), side == BOTH)
+    )
+
+
+def together(some: Sequence[Faces]) -> Faces:
+    """Faces of several parts as one."""
+    return Faces(*(np.concatenate([getattr(one, name) for one in some]) for name in ("points", "normals", "areas", "open")))
