@@ -112,6 +112,17 @@ def turns(rows, *names):
 BUILD, TOOL = ("bx", "by", "bz"), ("tx", "ty", "tz")
 
 
+def from_beads(points, below, build):
+    """How far (n,) mm points are from beads as wide as they are apart, by places (m, 3) of these and build directions."""
+    away = np.full(len(points), np.inf)
+    for near in cKDTree(below).query(points, k=24)[1].T:
+        step = points - below[near]
+        along = (step * build[near]).sum(axis=1)
+        aside = np.linalg.norm(step - along[:, None] * build[near], axis=1)
+        away = np.minimum(away, np.hypot(np.maximum(aside - 0.5 * SPACING, 0.0), along))
+    return away
+
+
 @pytest.mark.parametrize("shape", [tee, wye, mushroom])
 def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(planned, shape):
     """To a program: nothing over nothing, and the nozzle is clear of what stands; one of 80 deg would not be, but for the
@@ -126,10 +137,19 @@ def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(pla
     assert shape is mushroom or deepest(rows, np.radians(80.0)) > 0.1
     points, build, layer = places(rows)
     assert np.abs(points[layer == 0][:, 2]).max() < 0.01
+    apart = []  # of places of beads that have one of the layer below right under them
     for number in range(1, layer.max() + 1):
-        below = cKDTree(points[layer == number - 1])
-        away = below.query(points[layer == number] - HEIGHT * build[layer == number])[0]
+        here, low = layer == number, layer == number - 1
+        below = cKDTree(points[low])
+        away = below.query(points[here] - HEIGHT * build[here])[0]
         assert away.max() < 0.6 * SPACING, number  # beads below lie a spacing apart, half a one beside at most
+        apart.append(below.query(points[here][away < 0.5 * HEIGHT])[0] / HEIGHT)
+        assert from_beads(points[here], points[low], build[low]).max() < 1.2 * HEIGHT, number
+    ratio = np.concatenate(apart)
+    assert ratio.min() > 0.6 and ratio.max() < 1.4 and ((ratio > 0.8) & (ratio < 1.2)).mean() > 0.95
+    if shape is wye:  # its arms are two islands, and stay so
+        parted = [number for number in range(layer.max() + 1) if np.abs(points[layer == number][:, 0]).min() > 2.0]
+        assert len(parted) > 3 and parted == list(range(parted[0], layer.max() + 1))
     lifted = points[::7] + 0.5 * HEIGHT * build[::7]
     solid = part.Solids[0]
     outside = [p for p in lifted if not solid.isInside(FreeCAD.Vector(*p), 0.3, True)]
