@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A ladder graph, as Descartes plans, against `cell.arm_clearance` on the same points; and a certificate of a hemisphere.
+
+The peer is written here plainly and given what it needs: the joints of all rotations at all points at once by our closed
+form, our frames of links, and steps from rung to rung in one array each. At each point it asks python-fcl of each rotation that
+keeps limits and condition whether a link meets the wall or another link, of the pairs that we look at, all of them larger by
+half the clearance; the cheapest way up the ladder, bead by bead, is the exact one of its rotations. Ours is the whole joint
+path, at the same points, with the refinement and the last look that the peer has not.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.geometry.angles import TURN, shortest
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.curves.sampling import sampled
+from freecad_am.core.geometry.surroundings import box
+from freecad_am.core.issues import has_errors
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics.cell import Cell
+from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links.contact import ArmContact
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.planning.joint_path import JointPath
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.points import gather
+from freecad_am.core.planning.task import Task, condition_margin
+from freecad_am.core.strategies.revolution import plan as revolution
+from freecad_am.core.toolpath import Toolpath
+
+from rows import Row
+
+RADIUS, ROUNDS = 45.0, 3
+TURNS, CLEARANCE = 72, 10.0  # rotations of a rung, mm
+CERTIFIED = 10.0  # s
+ROBOT, STATION, LEAN = "fanuc-arcmate120ic", (1000.0, 0.0, -100.0), 45.0
+WALL_LOW, WALL = (-130.0, 104.0, 0.0), (260.0, 12.0, 420.0)
+
+
+def run() -> list[Row]:
+    """Both in turns on the same job, then the certificate."""
+    dome, cell = hemisphere(15.0, 0.2, "fixed"), _beside_a_wall()
+    rods, task = link_rods.of_robot(cell.robot.chain), Task(cell, cell.branch or 0, JointParameters())
+    found = []
+    times: list[tuple[float, float]] = []
+    for _ in range(ROUNDS):
+        began = time.perf_counter()
+        path = plan_joints(dome, cell, task.parameters, rods=rods)
+        ours = time.perf_counter() - began
+        assert not has_errors(path.issues), path.issues
+        began = time.perf_counter()
+        cost = _ladder(dome, task, rods)
+        times.append((ours, time.perf_counter() - began if cost is not None else np.nan))
+    took, peer = (median(column) for column in zip(*times))
+    known = np.isfinite(peer)
+    found.append(Row("joint path beside a wall with cell.arm_clearance, against a ladder graph of "
+                     f"{TURNS} rotations at the same {dome.point_count} points", took, peer if known else None, "s", 10.0))
+    if cost is not None:
+        found.append(Row(
+            "what that path costs (displacement), against the cheapest way up the ladder", _cost(path), cost, "rad", 0.98))
+    found.append(Row("joint path of the hemisphere of 71 layers with its certificate", _certified(), CERTIFIED, "s", 1.0))
+    return found
+
+
+def hemisphere(layer_height: float, chord_error: float, mode: str) -> Toolpath:
+    """The paper's hemisphere (Chalvin 2020, eq. 20)."""
+    meridian = sampled(lambda t: (
+        np.c_[RADIUS * np.cos(t), RADIUS * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]), [0, np.pi / 2])
+    return revolution.plan(
+        RevolvedWall(Meridian.chained([meridian]), np.eye(4)),
+        RevolutionParameters(layer_height=layer_height, chord_error=chord_error), BuildDirectionParameters(mode=mode),
+        ProcessParameters(), NozzleParameters(), 113.0,
+    )
+
+
+def _beside_a_wall() -> Cell:
+    nozzle = NozzleParameters(length=60.0, tool=(120.0, 0.0, 200.0, 0.0, float(np.radians(LEAN)), 0.0))
+    cell = cells.resolve(CellParameters(
+        machine=ROBOT, limits="paper", setup="tool-on-robot", deposition_point=(*STATION, 0.0, 0.0, 0.0), nozzle=nozzle,
+        branch=("front", "down", "noflip"), arm_clearance=CLEARANCE), np.eye(4))
+    middle = np.add(WALL_LOW, 0.5 * np.array(WALL)) + STATION
+    return dataclasses.replace(cell, obstacles=(box(WALL, frames.pose(np.eye(3), middle), "wall"),))
+
+
+def _cost(path: JointPath) -> float:
+    return sum(bead.objective for bead in path.beads)
+
+
+def _certified() -> float:
+    """Seconds of a joint path with its certificate."""
+    dome, cell = hemisphere(1.0, 0.02, "local"), cells.resolve(CellParameters(limits="paper"), np.eye(4))
+    began = time.perf_counter()
+    path = plan_joints(dome, cell, JointParameters(certificate=True))
+    took = time.perf_counter() - began
+    assert path.optimality is not None and len(dome.layers) == 71, (path.issues, len(dome.layers))
+    return took
+
+
+def _ladder(toolpath: Toolpath, task: Task, rods: Any) -> float | None:
+    """What the cheapest ways up the ladders of all beads cost, rad; None without python-fcl."""
+    try:
+        import fcl
+    except ImportError:
+        return None
+    looks, total = _Looks(fcl, task.cell, rods), 0.0
+    phi = np.arange(TURNS)[:, None] * (TURN / TURNS)
+    for _, _, bead in toolpath:
+        points = gather([bead], task.cell)
+        rungs = np.broadcast_to(phi, (TURNS, len(points)))
+        joints = task.raw_joints(points, rungs)
+        singular = condition_margin(task.condition(points, rungs, joints), task.thresholds(points))
+        stands = np.minimum(task.rows.margin(joints), singular) >= 0.0
+        for turn, point in zip(*np.nonzero(stands)):
+            stands[turn, point] = not looks.meet(joints[turn, point])
+        best = np.where(stands[:, 0], 0.0, np.inf)
+        for point in range(1, len(points)):
+            step = shortest(joints[None, :, point] - joints[:, None, point - 1])
+            best = (best[:, None] + np.nan_to_num(step * step @ task.weights, nan=np.inf)).min(axis=0)
+            best[~stands[:, point]] = np.inf
+        total += float(best.min())
+    return total
+
+
+class _Looks:
+    """Links as cylinders of python-fcl, each larger by the clearance, against the wall, and pairs of links of each other."""
+
+    def __init__(self, fcl: Any, cell: Cell, rods: Any) -> None:
+        self.fcl, self.cell = fcl, cell
+        middle = (cell.machine.base @ frames.pose(np.eye(3), np.add(WALL_LOW, 0.5 * np.array(WALL)) + STATION))[:3, 3]
+        self.wall = fcl.CollisionObject(fcl.Box(*np.add(WALL, CLEARANCE)), fcl.Transform(middle))
+        self.rods = [[_cylinder(fcl, rod) for rod in link] for link in rods]
+        self.pairs = ArmContact(cell, rods, (), None, CLEARANCE).own.pairs
+        self.request, self.result = fcl.CollisionRequest(), fcl.CollisionResult
+
+    def meet(self, q: np.ndarray) -> bool:
+        """Whether anything is met with joints (axes,)."""
+        poses = self.cell.links(q[None])[0]
+        for number, link in enumerate(self.rods):
+            for one, turned, at in link:
+                pose = poses[number]
+                one.setTransform(self.fcl.Transform(pose[:3, :3] @ turned, pose[:3, :3] @ at + pose[:3, 3]))
+                if number and self.fcl.collide(one, self.wall, self.request, self.result()):
+                    return True
+        return any(
+            self.fcl.collide(one, other, self.request, self.result())
+            for outer, inner in self.pairs for one, _, _ in self.rods[outer] for other, _, _ in self.rods[inner]
+        )
+
+
+def _cylinder(fcl: Any, rod: Any) -> tuple[Any, np.ndarray, np.ndarray]:
+    """A cylinder larger by half the clearance, and how it lies in the frame of its link."""
+    axis = (rod.end - rod.start) / rod.length
+    one = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    one /= np.linalg.norm(one)
+    more = 0.5 * CLEARANCE
+    cylinder = fcl.CollisionObject(fcl.Cylinder(rod.radius + more, rod.length + 2.0 * more), fcl.Transform())
+    return cylinder, np.column_stack([one, np.cross(axis, one), axis]), 0.5 * (rod.start + rod.end)
