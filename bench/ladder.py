@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A ladder graph, as Descartes plans, against `cell.arm_clearance` on the same points; and a certificate of a hemisphere.
 
-The peer is written here plainly and given what it needs: the joints of all rotations at all points at once by our closed
-form, our frames of links, and steps from rung to rung in one array each. At each point it asks python-fcl of each rotation that
-keeps limits and condition whether a link meets the wall or another link, of the pairs that we look at, all of them larger by
-half the clearance; the cheapest way up the ladder, bead by bead, is the exact one of its rotations. Ours is the whole joint
-path, at the same points, with the refinement and the last look that the peer has not.
+The peer is written here plainly and given what it needs: the joints of all rotations at all points at once by our
+closed form, our frames of links, and steps from rung to rung in one array each. At each point it asks python-fcl of
+each rotation that keeps limits and condition whether a link meets the wall or another link, of the pairs that we look
+at, all of them larger by half the clearance; the cheapest way up the ladder, bead by bead, is the exact one of its
+rotations. Ours is the whole joint path, at the same points, with the refinement and the last look that the peer has
+not.
 """
 
 from __future__ import annotations

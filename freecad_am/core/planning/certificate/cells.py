@@ -51,10 +51,13 @@ def cells_of(task: Task, points: Points, index: Index, phi: Array, half: float, 
     """The cells phi (n,) +- half (rad) at points `index` (n,), with the smallest condition allowed there (n,), from their
     middle and ends."""
     count = len(phi)
-    sampled = np.concatenate([phi - half, phi, phi + half])
-    three = points.each(np.tile(index, 3))
-    joints = task.raw_joints(three, sampled)
-    before, middle, after = joints.reshape(3, count, -1)
+    begins = ~_goes_on(index, phi, half)  # where the end of the cell before is not the beginning of this one
+    sampled = np.concatenate([phi[begins] - half, phi, phi + half])
+    looked = points.each(np.concatenate([index[begins], index, index]))
+    joints, first = task.raw_joints(looked, sampled), int(begins.sum())
+    rows = first + np.arange(2 * count).reshape(2, count)
+    rows = np.stack([np.where(begins, np.cumsum(begins) - 1, rows[1] - 1), *rows])
+    before, middle, after = joints[rows]
     ahead, behind = _short(after - middle), _short(middle - before)
     # a cell at the edge of reach goes on beyond the edge as it does before it
     lost_ahead, lost_behind = (np.isnan(one).any(axis=1) for one in (ahead, behind))
@@ -68,10 +71,19 @@ def cells_of(task: Task, points: Points, index: Index, phi: Array, half: float, 
     reach = np.abs(slope) * half + off + np.abs(bend)
     feasible &= _within(task, middle, reach)
     open_ = np.flatnonzero(feasible)
-    rows = np.concatenate([open_, open_ + count, open_ + 2 * count])
-    ratio = _condition(task, three, sampled, joints, rows, np.tile(threshold[open_], 3)).reshape(3, -1)
+    once, which = np.unique(rows[:, open_], return_inverse=True)
+    least = np.empty(len(once))
+    least[which.ravel()] = np.tile(threshold[open_], 3)
+    ratio = _condition(task, looked, sampled, joints, once, least)[which].reshape(3, -1)
     feasible[open_] = 2.0 * ratio.max(axis=0) - ratio.min(axis=0) >= threshold[open_]
     return Cells(middle + 0.25 * bend, slope, off, feasible, half)
+
+
+def _goes_on(index: Index, phi: Array, half: float) -> NDArray[np.bool_]:
+    """(n,) whether a cell phi +- half at a point begins where the one before it ends, at the same point."""
+    found = np.zeros(len(phi), dtype=bool)
+    found[1:] = (index[1:] == index[:-1]) & (np.abs(phi[1:] - phi[:-1] - 2.0 * half) < 1e-6 * half)
+    return found
 
 
 def _within(task: Task, joints: Array, reach: Array) -> NDArray[np.bool_]:
