@@ -39,7 +39,8 @@ class Motion:
     before there was one, it is that of one retract and one approach row between beads, and of none where there are too few.
     bead_class: (n,) place in `parameters.bead_classes.CLASSES` of the class of the bead that the row is of, or leads to;
     UNKNOWN where left out.
-    phase: (n,) of PHASES.
+    phase: (n,) of PHASES. halt: (n,) bool, the rows within beads at which the machine stops, as where it turns back; none
+    where left out.
     """
 
     deposit: NDArray[np.bool_]
@@ -57,6 +58,7 @@ class Motion:
     role: Roles = None  # type: ignore[assignment]
     bead_class: Roles = None  # type: ignore[assignment]
     phase: Roles = None  # type: ignore[assignment]
+    halt: NDArray[np.bool_] = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         n = len(self.deposit)
@@ -64,6 +66,8 @@ class Motion:
             object.__setattr__(self, "bead_class", np.full(n, UNKNOWN))
         if self.phase is None:
             object.__setattr__(self, "phase", np.full(n, MIDDLE))
+        if self.halt is None:
+            object.__setattr__(self, "halt", np.zeros(n, dtype=bool))
         if self.role is None:
             object.__setattr__(self, "role", _roles(self.deposit))
         if self.wire is None:
@@ -84,10 +88,10 @@ class Motion:
 
     @cached_property
     def stops(self) -> NDArray[np.bool_]:
-        """(n,) bool: the rows at which the machine comes to a stop: all of a rapid, and the last of each bead."""
+        """(n,) bool: the rows at which the machine comes to a stop: all of a rapid, ends of beads, and where it halts."""
         # kept, as every bead of a program asks for its own rows
         last = np.append(~self.deposit[1:] | (self.point[1:] == 0), True)[: len(self)]
-        stops: NDArray[np.bool_] = ~self.deposit | last
+        stops: NDArray[np.bool_] = ~self.deposit | last | self.halt
         stops.setflags(write=False)
         return stops
 

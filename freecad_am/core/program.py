@@ -33,6 +33,7 @@ class Moves:
     kind: 'deposit' or 'rapid'. interpolation: what runs straight on every move of the run, 'joint' or 'linear' (the tip).
     stops: (n,) bool, whether the machine stands still at the end of a move or passes through, rounding the corner as far as
     `Program.blend` and `NcOptions.tolerance` let it; left out, at every point of a rapid and at the last one of a bead.
+    halt: (n,) bool, those of the stops that are within a bead.
     role: n words, what each move is for; left out, a rapid of several moves begins with a retract.
     layer, bead: the bead the moves belong or lead to. joints: (n, axes) controller
     values, rad, and mm of linear axes. duration: (n,) s of the move that ends at each point, > 0. speed: (n,) mm/s at the
@@ -60,9 +61,12 @@ class Moves:
     interpolation: str = JOINT_MOVE
     stops: Mask = None  # type: ignore[assignment]
     role: tuple[str, ...] = ()
+    halt: Mask = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         count = len(self.joints)
+        if self.halt is None:
+            object.__setattr__(self, "halt", np.zeros(count, dtype=bool))
         if self.stops is None:
             last = np.arange(count) == count - 1
             object.__setattr__(self, "stops", last | (self.kind == RAPID))

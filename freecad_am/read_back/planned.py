@@ -24,7 +24,7 @@ class Planned:
         self.deposit, self.joints = motion.deposit[rows], motion.joints[rows]
         self.position, self.tool = motion.position[rows], motion.tool[rows]
         self.duration, self.speed = motion.duration[rows], motion.speed[rows]
-        self.stops = motion.stops[rows]
+        self.stops, self.halt = motion.stops[rows], motion.halt[rows]
         # moves that begin where another one ended: of beads, and of rapids
         moved = np.arange(len(rows)) > 0
         self.ends, self.rapids = np.flatnonzero(self.deposit & moved), np.flatnonzero(~self.deposit & moved)

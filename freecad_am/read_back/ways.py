@@ -60,6 +60,7 @@ def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, read: Rea
     told = np.where(np.isnan(read.rounding), 0.0, read.rounding)
     # a stop that names no rounding says all there is to say where a stop was planned
     rounding = np.where(planned.deposit & ~(planned.stops & read.stops & np.isnan(read.rounding)), rounding, 0.0)
+    rounding = np.where(planned.halt, 0.0, rounding)
     off = ~(np.abs(told - rounding) <= (1e-5 if table else THOUSANDTH))
     return np.asarray((planned.stops & ~read.stops) | ~planned.stops & read.stops & (told > 0.0) | off)
 

@@ -334,6 +334,11 @@
         <translation>De combien l&apos;outil est retiré le long de son axe entre les cordons.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far the torch goes back over an open bead from its end, still depositing, so that its crater is filled.</source>
+        <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>How long computing took.</source>
         <translation>Combien de temps a pris le calcul.</translation>
@@ -467,6 +472,16 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid. (s)</source>
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing.</source>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing. (s)</source>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -2898,6 +2913,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far the torch goes back over an open bead from its end, still depositing, so that its crater is filled.</source>
+        <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How long to wait between layers.</source>
         <translation>Temps d&apos;attente entre les couches.</translation>
     </message>
@@ -3302,6 +3322,11 @@
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing.</source>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Left as it was entered; for {} it would be {}.</source>
         <translation>Laissé comme saisi ; pour {} ce serait {}.</translation>
@@ -3597,7 +3622,7 @@
         <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Min layer time</source>
         <translation>Durée minimale de couche</translation>
     </message>
@@ -4450,6 +4475,11 @@
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Result</source>
         <translation>Résultat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Retreat</source>
+        <translation>Retour en fin de cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -6582,6 +6612,11 @@
         <translation>une vitesse comme 6 mm/s ou 360 mm/min</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>a spiral has no layers to wait between; use path: layers, a slower process.travel_speed, or leave it out</source>
+        <translation>une spirale n&apos;a pas de couches entre lesquelles attendre ; utilisez path: layers, une process.travel_speed plus lente, ou retirez cette clé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/turns/fit.py"/>
         <source>a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with an endless axis</source>
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
@@ -6937,7 +6972,7 @@
         <translation>en ({0}) la face a une arête en son sein, de {1} deg ; arrondissez-la, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>at least {0}</source>
         <translation>au moins {0}</translation>
     </message>
@@ -10955,6 +10990,11 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>the machine file tells no largest speeds</source>
         <translation>le fichier machine ne donne pas de vitesses maximales</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/order.py"/>
+        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in all, so that no layer takes less than {4} s</source>
+        <translation>la machine attend avant {0} des {1} couches, jusqu&apos;à {2} s et {3} s au total, afin qu&apos;aucune couche ne dure moins de {4} s</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>

@@ -215,7 +215,7 @@ def body(setup):
 
 
 @functools.cache
-def planned(name, lift=LIFT):
+def planned(name, lift=LIFT, retreat=0.0):
     """The cell, the beads and the motion of a set-up. Without a retract distance all beads are on one side, each on the one
     before: the straight way back to the next start leads through what was just laid."""
     setup = SETUPS[name]
@@ -225,7 +225,9 @@ def planned(name, lift=LIFT):
             cell.machine, pulses_per_degree=PULSES[: cell.machine.chain.axes], speed_unit="mm/s"))
     sides = range(SIDES if lift else 1)
     layers = tuple(Layer(tuple(_bead(setup.hub, side, k) for side in sides)) for k in range(2))
-    toolpath = Toolpath(layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable", max_from_vertical=setup.most)
+    toolpath = Toolpath(
+        layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable", max_from_vertical=setup.most, retreat=retreat,
+    )
     path = plan_joints(toolpath, cell, JointParameters(degree=1))
     assert path.feasible, [issue.message for issue in path.issues]
     process = dataclasses.replace(PROCESS, between_layers=dataclasses.replace(PROCESS.between_layers, lift=lift))
@@ -235,10 +237,10 @@ def planned(name, lift=LIFT):
 
 
 @functools.cache
-def written(way, max_points=2000, lift=LIFT):
+def written(way, max_points=2000, lift=LIFT, retreat=0.0):
     """The cell, the motion, the program and its files."""
     post, kind, feed, name = way
-    cell, beads, motion = planned(name, lift)
+    cell, beads, motion = planned(name, lift, retreat)
     if post == "staubli" and kind == "cartesian" and cell.setup == "part-on-robot":
         motion = moving_tool.kept_straight(motion, cell, CHORD_ERROR, beads)
     parameters = ProgramParameters(post=post, motion=kind, max_points=max_points, nc=NcParameters(feed=feed))

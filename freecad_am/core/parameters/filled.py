@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ..issues import InputError
 from . import field as f
-from .strategy import MEND, LayerParameters
+from .strategy import LAYER_TIME, MEND, LayerParameters
 
 LEAST_BEAD = 2.0  # mm, as short as a bead of usual width is worth a start
 PLANES, GEODESIC = "planes", "geodesic"  # layers that are proposed by themselves
@@ -111,8 +111,8 @@ class FilledParameters(LayerParameters):
         0.0, f.TIME, "Least time between the end of a solid's layer and the start of its next.", low=0.0
     )
     min_layer_time: float = f.parameter(
-        0.0, f.TIME, "Least time of a layer, from its first bead to the next layer's; the machine waits for what is "
-        "missing, and islands come in the same order in every layer, so that each cools while the others are laid.", low=0.0,
+        0.0, f.TIME, f"{LAYER_TIME}, and islands come in the same order in every layer, so that each cools while the others "
+        "are laid.", low=0.0,
     )
     deflection: float = f.parameter(
         0.0, f.ANGLE, "Torch turned outwards about the bead on outer contours.", low=-math.pi / 3.0, high=math.pi / 3.0

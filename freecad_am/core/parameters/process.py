@@ -146,6 +146,10 @@ class ProcessParameters:
     lead_on: float = f.parameter(0.0, f.TIME, "Deposit switched on this long before a bead starts.", low=0.0)
     lead_off: float = f.parameter(0.0, f.TIME, "Deposit switched off this long after a bead ends.", low=0.0)
     overlap: float = f.parameter(0.0, f.LENGTH, "How far a closed bead runs on past its seam.", low=0.0)
+    retreat: float = f.parameter(
+        0.0, f.LENGTH, "How far the torch goes back over an open bead from its end, still depositing, so that its crater is "
+        "filled.", low=0.0,
+    )
     between_layers: BetweenLayersParameters = f.group(BetweenLayersParameters, "What happens between two layers.")
     cooling: CoolingParameters = f.group(CoolingParameters, "A temperature to wait for before returning to a place.")
     bead_model: str = f.parameter(

@@ -6,10 +6,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..issues import InputError
 from . import field as f
 
 SPACINGS = ("constant-distance", "smooth", "iso-parameter")
 MEND = "Holes of meshes up to this size across are closed, which is told; larger ones are refused."
+LAYER_TIME = (
+    "Least time of a layer, from its first bead to the next layer's; the machine waits for what is missing"
+)
 MOST_LAYERS = 20_000  # more is a mistake in the units: half a millimetre each on the widest platform, 10 m
 
 
@@ -45,9 +49,15 @@ class RevolutionParameters(LayerParameters):
     min_points: int = f.parameter(
         24, f.COUNT, "Fewest points of a full turn, however small its radius.", low=6, high=10000, advanced=True
     )
+    min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
 
     def __post_init__(self) -> None:
         f.check(self, "strategy")
+        if self.path == "spiral" and self.min_layer_time > 0.0:
+            raise InputError(
+                "BAD_VALUE", "strategy.min_layer_time", "a spiral has no layers to wait between; use path: layers, a slower "
+                "process.travel_speed, or leave it out",
+            )
 
 
 @dataclass(frozen=True)
@@ -80,6 +90,7 @@ class SurfaceParameters(LayerParameters):
         (), f.TEXT, "Further spacings whose joint paths are planned for the comparison of the report."
     )
     mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
+    min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
 
     def __post_init__(self) -> None:
         f.check(self, "strategy", skip=frozenset({"compare"}))
@@ -99,6 +110,7 @@ class CurvesParameters(LayerParameters):
     )
     repeat: int = f.parameter(1, f.COUNT, "How many times the curves are laid, one layer height over the other.", low=1,
                               high=MOST_LAYERS)
+    min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
 
     def __post_init__(self) -> None:
         f.check(self, "strategy")

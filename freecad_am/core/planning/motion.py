@@ -19,6 +19,7 @@ from ..parameters.process import ProcessParameters
 from ..types import Array
 from . import nozzle_beside
 from .arm.kept import Rods
+from .beads.retreat import turns_back
 from .joint_path import BeadPath, JointPath
 from .rapids.findings import findings
 from .rapids.retract_ways import Leg
@@ -47,6 +48,7 @@ class _Rows:
     duration: Array
     wire: Array
     phase: Array
+    halt: Array
 
 
 def assemble(
@@ -92,16 +94,16 @@ def _rapid(path: BeadPath, way: Way, onto: Leg | None, cell: Cell) -> _Rows:
     position[-1], tool[-1] = path.bead.points[0], path.bead.tool[0]
     build = tool.copy()
     build[-1] = path.bead.build[0]
-    none = np.full(len(joints), np.nan)
-    return _Rows(way.role, *_place(path), position, build, tool, none, none, joints, none, none, 0.0 * none)
+    none, zero = np.full(len(joints), np.nan), np.zeros(len(joints))
+    return _Rows(way.role, *_place(path), position, build, tool, none, none, joints, none, none, zero, zero)
 
 
 def _retract(path: BeadPath, way: Way, away: Leg | None) -> _Rows:
     assert away is not None
     count = len(way.joints)
     tool, build = (np.repeat(column[-1:], count, axis=0) for column in (path.bead.tool, path.bead.build))
-    none = np.full(count, np.nan)
-    return _Rows(way.role, *_place(path), away.position, build, tool, none, none, way.joints, none, none, 0.0 * none)
+    none, zero = np.full(count, np.nan), np.zeros(count)
+    return _Rows(way.role, *_place(path), away.position, build, tool, none, none, way.joints, none, none, zero, zero)
 
 
 def _deposit(path: BeadPath) -> _Rows:
@@ -113,6 +115,7 @@ def _deposit(path: BeadPath) -> _Rows:
     return _Rows(
         np.full(len(bead), DEPOSIT), *_place(path), bead.points, bead.build, bead.tool, bead.speed, width,
         path.joints, duration, wire, np.zeros(len(bead)) if bead.phase is None else bead.phase,
+        turns_back(bead),
     )
 
 
@@ -141,5 +144,5 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
         point=np.concatenate([np.arange(count) for count in counts]),
         position=position, build=columns["build"], tool=columns["tool"], speed=speed, width=columns["width"],
         joints=joints, duration=duration, wire=columns["wire"], role=columns["role"],
-        phase=np.nan_to_num(columns["phase"]).astype(np.int64),
+        phase=np.nan_to_num(columns["phase"]).astype(np.int64), halt=columns["halt"] > 0.0,
     )

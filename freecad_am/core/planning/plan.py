@@ -20,6 +20,7 @@ from .arm import clear as arm_clear
 from .arm.kept import ArmKept, Rods, of_job
 from .beads import phases
 from .beads.overlap import run_on
+from .beads.retreat import go_back
 from .beads.speeds import corners_slowed, rings_slowed, too_fast
 from .beads.straight import kept_straight
 from .certificate import bound
@@ -236,7 +237,7 @@ def _finished(
     task: Task, toolpath: Toolpath, places: Sequence[Place], paths: Sequence[BeadPath]
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with the points that straight motion asks for, turns counted on, and what is wrong with them."""
-    longer = [run_on(task, path, toolpath.overlap) for path in paths]
+    longer = [run_on(task, go_back(task, path, toolpath.retreat), toolpath.overlap) for path in paths]
     straight = [kept_straight(task, path, toolpath.chord_error) for path in longer]
     paths, notes = turns.counted_on(task, [path for path, _ in straight])
     paths, told = _phased(task.cell, paths, task.condition_at)

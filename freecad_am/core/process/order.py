@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..toolpath import Bead, Layer
+from ..issues import NOTE, Issue
+from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array
 
 
@@ -89,3 +90,17 @@ def waited(course: Course, wait: float, rapid_speed: float, least: float = 0.0) 
         ended.update({solid: now + pause + end for solid, end in ends.items()})
         now += pause + time
     return tuple(layers)
+
+
+def no_shorter(toolpath: Toolpath, least: float, rapid_speed: float) -> Toolpath:
+    """The toolpath with waits before its layers, so that none takes less than `least` s, and a note of them."""
+    if least <= 0.0:
+        return toolpath
+    solids = tuple(((0, 0),) * len(layer.beads) for layer in toolpath.layers)
+    layers = waited(Course(toolpath.layers, solids), 0.0, rapid_speed, least)
+    waits = [layer.wait for layer in layers if layer.wait > 0.0]
+    told = [Issue(
+        NOTE, "WAITS", f"the machine waits before {len(waits)} of {len(layers)} layers, up to {max(waits):.4g} s and "
+        f"{sum(waits):.5g} s in all, so that no layer takes less than {least:g} s",
+    )] if waits else []
+    return dataclasses.replace(toolpath, layers=layers, issues=(*toolpath.issues, *told))

@@ -27,6 +27,7 @@ from ...core.process.model import bead_table, held_width
 from ...core.process.model.bead_model import BeadModel
 from ...core.process.model.material import speeds_told
 from ...core.process.model.wire import fed
+from ...core.process.order import no_shorter
 from ...core.strategies import support
 from ...core.strategies.clearance import look as clearance_look
 from ...core.strategies.families import family_of
@@ -101,8 +102,10 @@ def layers_of(of: Given) -> CoreToolpath:
     if model is not None and not family.filled:
         laid = held_width.held(laid, process, model)
     made = classes.with_ends(laid, process)
+    if not family.filled:
+        made = no_shorter(made, getattr(of.strategy, "min_layer_time", 0.0), process.rapid_speed)
     twice = made.twice if family.filled else laid_twice(made)
-    return dataclasses.replace(made, max_from_vertical=of.build.max_from_vertical, twice=twice)
+    return dataclasses.replace(made, max_from_vertical=of.build.max_from_vertical, twice=twice, retreat=process.retreat)
 
 
 def kept_clear(

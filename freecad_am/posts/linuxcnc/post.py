@@ -208,8 +208,7 @@ def _axes_again(program: Program) -> list[str]:
 def _instructions(program: Program, block: Block) -> list[str]:
     cartesian = program.motion == "cartesian"
     if isinstance(block, DepositOn):
-        tolerance = f"{program.nc.tolerance:.5f}"
-        enter = [*(["M428", OFFSETS[program.user_frame - 1]] if cartesian else []), f"G64 P{tolerance} Q{tolerance}"]
+        enter = [*(["M428", OFFSETS[program.user_frame - 1]] if cartesian else []), _through(program)]
         # at rest: at once
         wire = [] if block.wire is None else [f"M68 {_wire(program).format(*numbers.wire(program, [block.wire]))}"]
         return [*enter, *(["G4 P0"] if program.dry_run else [*wire, _output(program, True), *_dwell(block.lead)])]
@@ -239,6 +238,11 @@ def _output(program: Program, on: bool) -> str:
     return f"M{64 if on else 65} P{program.deposit_output - 1}"
 
 
+def _through(program: Program) -> str:
+    """From here on corners are rounded as far as the tolerance lets them."""
+    return f"G64 P{program.nc.tolerance:.5f} Q{program.nc.tolerance:.5f}"
+
+
 def _wire(program: Program) -> str:
     """Which analogue output and, to be filled in, its value."""
     return f"E{program.nc.wire_output - 1} Q{{}}"
@@ -263,8 +267,12 @@ def _motion(program: Program, run: Run) -> list[str]:
         values = np.hstack([np.round(moves.position[part], numbers.DECIMALS) + 0.0, values[:, rotary]])
         names = [*"XYZ", *(name for name, turns in zip(names, rotary.tolist(), strict=True) if turns)]
     blocks = numbers.blocks(numbers.rows(numbers.template(names), values), run.words[part])
+    ahead = len(blocks) - len(values)
+    for row in np.flatnonzero(moves.halt[part]).tolist():
+        blocks[ahead + row] = f"{EXACT_STOP}\n{blocks[ahead + row]}\n{_through(program)}"
     # queued: it takes effect where the next move begins, and corners are rounded all the same
-    return numbers.told_of_wire(program, moves, blocks, f"M67 {_wire(program)}")
+    told = numbers.told_of_wire(program, moves, blocks, f"M67 {_wire(program)}")
+    return [line for block in told for line in block.split("\n")]
 
 
 def _file(lines: list[str]) -> bytes:

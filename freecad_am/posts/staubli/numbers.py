@@ -54,15 +54,17 @@ class Descriptors:
     def __call__(self, moves: Moves) -> Sequence[str]:
         """The attributes of one descriptor per move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
         shown = degrees(moves.joints)
-        blend = self._blend(moves)
+        blends = self._blends(moves)
         if moves.interpolation == LINEAR_MOVE:
-            words = [_descriptor("100", f"{speed:.3f}", blend) for speed in _speeds(moves).tolist()]
+            speeds = _speeds(moves).tolist()
+            words = [_descriptor("100", f"{speed:.3f}", blend) for speed, blend in zip(speeds, blends, strict=True)]
         else:
             start = shown[:1] if self.before is None else self.before
             percent = self._percent(moves, np.diff(shown, axis=0, prepend=start))
             if self.before is None:
                 percent[0] = 100.0 * FIRST_SHARE
-            words = [_descriptor(f"{share:.5f}", UNLIMITED, blend) for share in percent.tolist()]
+            shares = percent.tolist()
+            words = [_descriptor(f"{share:.5f}", UNLIMITED, blend) for share, blend in zip(shares, blends, strict=True)]
         self.before = shown[-1:]
         return words
 
@@ -84,14 +86,18 @@ class Descriptors:
             )
         return np.where(share > 0.0, np.clip(percent, LEAST_PERCENT, 100.0), 100.0)
 
-    def _blend(self, moves: Moves) -> str:
-        """Corners within a bead are passed through, never farther from one than half its shortest move."""
+    def _blends(self, moves: Moves) -> list[str]:
+        """How each move ends. Corners within a bead are passed through, never farther from one than half its shortest move,
+        but for where it halts; at its end it is waited for."""
         distance = 0.0
         if moves.kind == DEPOSIT:
             shortest = float(np.nan_to_num(moves.speed * moves.duration).min())
             distance = math.floor(1000.0 * min(0.005 * self.blend * shortest, 100.0)) / 1000.0
         kind = ("Cartesian" if self.cartesian else "joint") if distance > 0.0 else "off"
-        return f'blend="{kind}" leave="{distance:.3f}" reach="{distance:.3f}"'
+        through, exact = (
+            f'blend="{word}" leave="{size:.3f}" reach="{size:.3f}"' for word, size in ((kind, distance), ("off", 0.0))
+        )
+        return [exact if stops else through for stops in moves.halt.tolist()]
 
 
 def _speeds(moves: Moves) -> Array:

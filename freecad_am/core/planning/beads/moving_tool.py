@@ -50,6 +50,7 @@ def kept_straight(motion: Motion, cell: Cell, chord_error: float, beads: Sequenc
     flange = _turned(motion, cell, start, end, along[:, 0], columns["position"][added])
     columns["joints"][added] = _joints(motion, cell, flange, columns["joints"][added])
     columns["tool"][added] = cell.tip_in_part(flange)[1]
+    columns["halt"][added] = False
     columns["duration"] = columns["duration"] / pieces[row]
     first = np.repeat(np.maximum.accumulate(np.where(motion.point == 0, np.cumsum(pieces) - pieces, 0)), pieces)
     columns["point"] = np.arange(len(row)) - first

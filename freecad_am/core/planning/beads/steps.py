@@ -48,13 +48,14 @@ def _kept(motion: Motion, seconds: float, least: float, chord_error: float) -> M
     steps = np.nan_to_num(motion.duration) / seconds
     steps = np.where(inside, np.minimum(steps, way / least) if least else steps, 1.0)
     kept: Mask = np.ones(len(motion), dtype=np.bool_)
-    last = inside & motion.stops
+    last = inside & np.append(~inside[1:], True)
     starts = np.flatnonzero(motion.deposit & (motion.point == 0))
     soon = np.flatnonzero(inside & (steps < 1.0))
     for bead in np.unique(np.searchsorted(starts, soon, side="right") - 1).tolist():
         start = int(starts[bead])
         rows = slice(start, start + int(np.argmax(last[start:])) + 1)
         kept[rows] = _sparse(np.r_[0.0, np.cumsum(steps[rows][1:])])
+    kept |= motion.halt
     return _with_needed(motion, kept, OFF * chord_error)
 
 

@@ -22,6 +22,7 @@ from ...kinematics.inverse.five_axis import FiveAxis
 from ...parameters.joints import JointParameters
 from ...toolpath import Bead, Toolpath
 from ...types import Array
+from ..beads.retreat import gone_back
 from ..joint_path import BeadPath
 from ..reserve import RESERVE
 from ..turns import fit_five_axis as table_room
@@ -59,7 +60,8 @@ def plan(
     for number, (layer, bead) in enumerate(beads):
         progress(number / len(beads), f"bead {number + 1} of {len(beads)}")
         index = index if paths and paths[-1].layer == layer else 0
-        runs = _laid(_Task(arm, cell, lock, toolpath.chord_error), bead, toolpath.overlap, before, (layer, index))
+        task = _Task(arm, cell, lock, toolpath.chord_error, toolpath.overlap, toolpath.retreat)
+        runs = _laid(task, bead, before, (layer, index))
         if len(runs) > 1 or runs[0].bead.points[0].tolist() != bead.points[0].tolist():
             helped[len(runs) > 1].append(layer)
         for run in runs:
@@ -83,6 +85,8 @@ class _Task(NamedTuple):
     cell: Cell
     lock: Lock | None
     chord_error: float
+    overlap: float
+    retreat: float
 
 
 class _Run(NamedTuple):
@@ -93,16 +97,18 @@ class _Run(NamedTuple):
     issues: list[Issue]
 
 
-def _laid(task: _Task, bead: Bead, overlap: float, before: Array | None, place: tuple[int, int]) -> list[_Run]:
+def _laid(task: _Task, bead: Bead, before: Array | None, place: tuple[int, int]) -> list[_Run]:
     """The bead as it is, or where a turning axis has no room for it, from another seam or in pieces."""
-    whole = _bead(task, bead.run_on(overlap), before, place)
+    whole = _bead(task, gone_back(bead, task.retreat).run_on(task.overlap), before, place)
     limits, turning = task.cell.limits, task.arm.turning
     if not has_errors(whole.issues) or not table_room.short_of(limits, turning, whole.axes, RESERVE):
         return [whole]
-    for parts in table_room.ways(limits, turning, _courses(task, bead), bead, overlap):
+    for parts in table_room.ways(limits, turning, _courses(task, bead), bead, task.overlap):
         runs: list[_Run] = []
         last = before
         for number, part in enumerate(parts):
+            # a closed one begun elsewhere is one part, and runs on instead
+            part = part if len(parts) == 1 else gone_back(part, task.retreat)
             runs.append(_bead(task, part, last, (place[0], place[1] + number)))
             last = runs[-1].axes[-1]
             if has_errors(runs[-1].issues):

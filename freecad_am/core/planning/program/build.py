@@ -234,7 +234,7 @@ class _Blocks:
             position=position, rotation=rotation, configuration=configuration, direction=direction,
             wire=wire if told else None, flange=flange,
             interpolation=LINEAR_MOVE if kind == DEPOSIT and parameters.motion == "cartesian" else JOINT_MOVE,
-            stops=motion.stops[rows], role=_roles(motion.role[rows]),
+            stops=motion.stops[rows], halt=motion.halt[rows], role=_roles(motion.role[rows]),
         )
 
 

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Takes open beads back over their own end, where the material fills the crater."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.columns import dots, lengths
+from ...geometry.frames import unit
+from ...toolpath import Bead
+from ...types import Array
+from ..joint_path import BeadPath
+from ..task import Task
+
+BACK = -0.999  # cosine between the way to a point and the way on from it
+
+
+class _Way(NamedTuple):
+    """Back from the end of a bead of n points: past so many of them, and by a share of the segment to the last."""
+
+    past: int
+    share: float
+
+    def of(self, column: Array) -> Array:
+        """(past, ...) a column (n, ...) of the bead on the way back, without its end."""
+        back = column[::-1]
+        last = back[self.past - 1] + self.share * (back[self.past] - back[self.past - 1])
+        return np.concatenate([back[1 : self.past], [last]])
+
+
+def gone_back(bead: Bead, length: float) -> Bead:
+    """An open bead whose last `length` mm are laid once more, backwards, at most all of it; a closed one as it is."""
+    if length <= 0.0 or bead.closed:
+        return bead
+    way = _way(bead, length)
+    at = len(bead) - 1 - way.past  # the segment in which it ends
+    (point,), (tangent,) = bead.outline.at(np.array([at]), 1.0 - way.share)
+    points = way.of(bead.points)
+    points[-1] = point
+
+    def longer(change: Callable[[Array], Array]) -> Callable[[Array], Array]:
+        return lambda column: np.concatenate([column, change(column)])
+
+    def directions(column: Array) -> Array:
+        found = way.of(column)
+        return np.asarray(found / lengths(found)[:, None])
+
+    def both(column: Array | None) -> Array | None:
+        return None if column is None else longer(way.of)(column)
+
+    # told from here on: a row of points that turns back would be straight next to its end
+    tangents = _tangents(bead)
+    back = -tangents[::-1, ::-1]
+    turning = np.stack([tangents[-1, 0], back[0, 1]])[None]
+    ends = np.repeat(-tangent[None, None], 2, axis=1)
+    return dataclasses.replace(
+        bead, points=np.concatenate([bead.points, points]),
+        tangents=np.concatenate([tangents[:-1], turning, back[1 : way.past], ends]),
+        build=longer(directions)(bead.build), tool=longer(directions)(bead.tool),
+        # it goes on in the same sense: how far along a bead is told by it
+        parameter=longer(lambda column: 2.0 * column[-1] - way.of(column))(bead.parameter),
+        speed=np.concatenate([bead.speed, bead.speed[::-1][: way.past]]),
+        width=both(bead.width), height=both(bead.height), external=both(bead.external),
+    )
+
+
+def go_back(task: Task, path: BeadPath, length: float) -> BeadPath:
+    """The path of an open bead gone back by `length` mm: by the joints that have led there."""
+    if length <= 0.0 or path.bead.closed or not path.reachable:
+        return path
+    way, bead, n = _way(path.bead, length), gone_back(path.bead, length), len(path.bead)
+    phi, joints = way.of(path.phi), way.of(path.joints)
+    flange = task.cell.flange_poses(bead.points[n:], bead.tool[n:], phi, joints)
+    last = task.inverse(flange[-1:], joints[-1:])[0]
+    turned = ~task.cell.machine.chain.sliding
+    joints[-1] = last - np.where(turned, 2.0 * np.pi * np.round((last - joints[-1]) / (2.0 * np.pi)), 0.0)
+    return dataclasses.replace(
+        path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
+        condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
+        threshold=np.concatenate([path.threshold, way.of(path.threshold)]),
+    )
+
+
+def turns_back(bead: Bead) -> Array:
+    """(n,) 1 at the points at which a bead turns back on itself, where a machine has to stop to be there at all; else 0."""
+    if bead.tangents is None:
+        return np.zeros(len(bead))
+    return (dots(bead.tangents[:, 0], bead.tangents[:, 1]) < BACK).astype(float)
+
+
+def _tangents(bead: Bead) -> Array:
+    """(n, 2, 3) the unit tangents of the curve that the points of a bead outline, arriving and leaving."""
+    if bead.tangents is not None:
+        return bead.tangents
+    leaving, arriving = unit(bead.outline.leaving), unit(bead.outline.arriving)
+    return np.stack([np.r_[leaving[:1], arriving], np.r_[leaving, arriving[-1:]]], axis=1)
+
+
+def _way(bead: Bead, length: float) -> _Way:
+    along = np.cumsum(lengths(np.diff(bead.points[::-1], axis=0)))
+    length = min(length, float(along[-1]))
+    count = int(np.searchsorted(along, length))
+    before = float(along[count - 1]) if count else 0.0
+    return _Way(count + 1, (length - before) / (float(along[count]) - before))
