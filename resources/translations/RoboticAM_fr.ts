@@ -476,12 +476,12 @@
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing.</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing. (s)</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque. (s)</translation>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -3324,7 +3324,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing.</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cell.py"/>
@@ -6614,7 +6614,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>a spiral has no layers to wait between; use path: layers, a slower process.travel_speed, or leave it out</source>
-        <translation>une spirale n&apos;a pas de couches entre lesquelles attendre ; utilisez path: layers, une process.travel_speed plus lente, ou retirez cette clé</translation>
+        <translation>une spirale n&apos;a pas de couches entre lesquelles attendre ; utilisez path: layers, une process.travel_speed plus lente, ou retirez cette clé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/fit.py"/>

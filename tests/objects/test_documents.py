@@ -29,7 +29,7 @@ ADDED = (
     "role", "bead_width", "unsupported", "wire_feed", "depths", "on_part", "volumes", "feature_label", "features", "feature",
     "uneven", "twice", "external", "max_from_vertical", "world_up", "optimality", "certificate", "of_level",
     "arm_clearance", "obstacles", "bead_class", "classes", "schedule", "ends", "phase", "fitted",
-    "material", "touched", "touched_tolerance", "shape",
+    "material", "touched", "touched_tolerance", "shape", "halt", "retreat", "min_layer_time",
 )
 
 

@@ -104,12 +104,11 @@ def _laid(task: _Task, bead: Bead, before: Array | None, place: tuple[int, int])
     if not has_errors(whole.issues) or not table_room.short_of(limits, turning, whole.axes, RESERVE):
         return [whole]
     for parts in table_room.ways(limits, turning, _courses(task, bead), bead, task.overlap):
-        runs: list[_Run] = []
-        last = before
+        runs, last = list[_Run](), before
         for number, part in enumerate(parts):
             # a closed one begun elsewhere is one part, and runs on instead
-            part = part if len(parts) == 1 else gone_back(part, task.retreat)
-            runs.append(_bead(task, part, last, (place[0], place[1] + number)))
+            held = part if len(parts) == 1 else gone_back(part, task.retreat)
+            runs.append(_bead(task, held, last, (place[0], place[1] + number)))
             last = runs[-1].axes[-1]
             if has_errors(runs[-1].issues):
                 break
