@@ -277,7 +277,7 @@ class Toolpath:
     then speaks for the first of them. uneven: (k, 3) number, least and largest height, mm, of layers that are not as
     high everywhere; None where all are. twice: mm3 of beads, as wide as they are apart, laid over others of their layer;
     None where it is not known. max_from_vertical: rad, how far the tool axis may be from the vertical of a cell with a
-    positioner. fitted: to a scan, predicted: its deposit against the part; None where nobody asked. retreat: mm, of open beads.
+    positioner. fitted: to a scan, predicted: its deposit against the part; None where nobody asked. retreat: mm, at ends.
     """
 
     layers: tuple[Layer, ...]

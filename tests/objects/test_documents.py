@@ -30,6 +30,7 @@ ADDED = (
     "uneven", "twice", "external", "max_from_vertical", "world_up", "optimality", "certificate", "of_level",
     "arm_clearance", "obstacles", "bead_class", "classes", "schedule", "ends", "phase", "fitted",
     "material", "touched", "touched_tolerance", "shape", "halt", "retreat", "min_layer_time",
+    "predicted", "shape_of_deposit", "machining_allowance",
 )
 
 
