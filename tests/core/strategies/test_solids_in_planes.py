@@ -15,7 +15,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.layers.planes.stacking import stacked
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
-from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
 from freecad_am.core.process.deposit import spacing
 from freecad_am.core.strategies.solids.plan import plan
 
@@ -458,3 +458,30 @@ def test_random_hulls_are_filled():
             assert out < 2.0 + ERROR  # single beads of narrow tips stand out by up to half a bead
         volume = ConvexHull(body.vertices).volume
         assert 0.9 * volume < made.length * 12.0 < 1.2 * volume  # beads that close gaps overlap others
+
+
+@pytest.mark.parametrize(("angle", "step"), [(0.0, 0.0), (90.0, 0.0), (30.0, 40.0), (-15.0, -120.0)])
+def test_closed_beads_of_plane_layers_start_where_the_seam_says(angle, step):
+    """On a ring that lies beside the origin: each layer's by the azimuth about its middle; where a box is farthest out that
+    way. With a step no layer's start lies over that of the layer below."""
+    process = ProcessParameters(seam=SeamParameters(math.radians(angle), math.radians(step)))
+    ring = tube(RING)
+    ring = Body("ring", ring.vertices + [25.0, -70.0, 0.0], ring.triangles)
+    made = planned(ring, process=process)
+    starts = []
+    for number, layer in enumerate(made.layers):
+        closed = [bead for bead in layer.beads if bead.closed]
+        assert len(closed) > 3
+        for bead in closed:
+            off = bead.points[0, :2] - bead.points[:-1, :2].mean(axis=0)
+            asked = angle + number * step
+            turned = math.degrees(math.atan2(off[1], off[0])) - asked
+            assert abs((turned + 180.0) % 360.0 - 180.0) < math.degrees(4.0 / np.hypot(*off)), (number, turned)
+        starts.append(max(closed, key=lambda bead: np.ptp(bead.points[:, 0])).points[0, :2])
+    apart = np.linalg.norm(np.diff(starts, axis=0), axis=1)
+    assert (apart > 8.0).all() if step else (apart < 0.1).all()
+    for number, layer in enumerate(planned(box((0, 0, 0), (40, 24, 12)), process=process).layers):
+        way = np.array([math.cos(math.radians(angle + number * step)), math.sin(math.radians(angle + number * step))])
+        for bead in layer.beads:
+            reach = bead.points[:, :2] @ way
+            assert not bead.closed or reach[0] > reach.max() - 1e-6
