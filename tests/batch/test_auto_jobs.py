@@ -86,6 +86,20 @@ def test_what_stands_on_something_bent_gets_layers_of_its_shape():
     assert of(Part.makeBox(20, 20, 20, Vector(30, -10, 20)), hub).layers == "planes"
 
 
+def test_a_round_boss_is_filled_and_a_shell_is_a_wall():
+    """On a substrate: rods no thicker than two beads, of which no place is deeper than one; a cone; half of a tube."""
+    plate = Part.makeBox(80, 80, 10, Vector(-40, -40, -10))
+    for radius in (3.0, 4.0, 5.0):
+        found = of(Part.makeCylinder(radius, 40), plate, width=4.0)
+        assert found.kind == "solid" and found.layers == "planes", radius
+    assert of(Part.makeCone(5, 3, 30), plate, width=4.0).kind == "solid"
+    cut = Part.makeBox(80, 40, 80, Vector(-40, -40, -20))
+    half = tube(20, 16, 40).cut(cut)
+    outer = max((face.Surface.Radius, f"Face{k}") for k, face in enumerate(half.Faces, 1)
+                if face.Surface.TypeId == "Part::GeomCylinder")[1]
+    assert of(half, plate, faces=(outer,), width=4.0).kind == "surface"
+
+
 def test_what_nothing_serves_gets_the_nearest():
     bent = Part.makeSphere(30).Faces[0].toNurbs().Faces[0].Surface.toShape(0.1, 2.0, 0.1, 0.9)
     bent = bent.transformGeometry(FreeCAD.Matrix(1, 0.3, 0, 0, 0, 0.7, 0.2, 0, 0, 0, 1, 0, 0, 0, 0, 1))

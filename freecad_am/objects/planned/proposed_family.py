@@ -40,11 +40,11 @@ TOUCHING = 0.05  # mm from the surface of a hub
 LEAST = 3  # corners of a solid that lie on what it stands on
 OVER = 0.1  # of the surface; parts of which more hangs over get layers that need no support
 HARDLY = 0.005  # of the surface; what rounds to nothing
-STEEP = float(np.radians(45.0))
-LEVEL = float(np.cos(np.radians(1.0)))
+STEEP, LEVEL = float(np.radians(45.0)), float(np.cos(np.radians(1.0)))
 FLAT = 0.01  # of the height, above the lowest point; what lies there stands on something
 OPEN = 0.1  # of its size; a mesh with a wider hole is a wall
 LYING = 0.95  # of its area; an open mesh of which more is less than STEEP from level is not a wall that stands
+TWOFOLD = 1.5  # of a part; one bead on the side of what is no shell lays more: on a rod it meets itself in the middle
 WIDEST = 10000.0  # mm; the bound of `strategy.mend`
 ROUND = ("Part::GeomCylinder", "Part::GeomCone")
 UP = (0.0, 0.0, 1.0)
@@ -271,7 +271,8 @@ def _thin(part: Taken, width: float, chosen: Sequence[str] = ()) -> bool:
     except (InputError, *kernel.FAULTS):
         return False
     balance = None if deep is None else of_wall(deep, width)
-    return balance is not None and (balance.left_out or 0.0) <= LITTLE * (balance.part or 0.0)
+    return balance is not None and (balance.left_out or 0.0) <= LITTLE * (balance.part or 0.0) and (
+        bool(chosen) or (balance.beads or 0.0) - (balance.beside or 0.0) <= TWOFOLD * (balance.part or 0.0))
 
 
 def _own_hub(part: Taken, faces: Sequence[str] = ()) -> bool:
