@@ -18,7 +18,7 @@ from ...core.issues import WARNING, InputError, Issue
 from ...core.parameters.process import ProcessParameters
 from ...core.process.shape import compare
 from ...core.process.shape.compare import Compared
-from ...core.process.shape.faces import BOTH, OUTSIDE, Faces, faces, together
+from ...core.process.shape.faces import BOTH, OUTSIDE, Faces, faces, thinned, together
 from ...core.process.shape.laying import Laid, laid, parts_of
 from ...core.strategies.families import family_of
 from ...core.toolpath import Toolpath as CoreToolpath
@@ -115,9 +115,9 @@ def _faces(target: Target) -> Faces:
     """The faces of a feature that its deposit is to cover. InputError NO_FACES."""
     if target.kind in ("solid", "developable"):
         bodies = [body for group in target.given.wall.groups for body in group.bodies]
-        return together([faces(body.vertices, body.triangles) for body in bodies])
+        return thinned(together([faces(body.vertices, body.triangles) for body in bodies]))
     names = target.given.wall.faces if target.kind == "cladding" else target.chosen
-    return together([_of_source(source, names if k == 0 else ()) for k, source in enumerate(target.sources)])
+    return thinned(together([_of_source(source, names if k == 0 else ()) for k, source in enumerate(target.sources)]))
 
 
 def _of_source(source: Taken, names: Sequence[str]) -> Faces:

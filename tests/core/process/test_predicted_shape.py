@@ -224,7 +224,7 @@ def test_where_the_part_sticks_out_is_told():
     end &= both.faces.points[:, 1] > 45.0
     assert np.abs(both.deviation[end] + 6.0).max() < 2.0 * KNOWN
     issue = compare.issues(shape, np.full(8, HIGH), np.arange(8) == 0, "Add {} mm")[-1]
-    assert issue.code == compare.CODE and 1 <= issue.layer <= 5 and "Add 14.5 mm" in issue.message
+    assert issue.code == compare.CODE and 1 <= issue.layer <= 5 and "the part sticks out by 6" in issue.message
     assert shape.worst[1] > 36.0 and 25.9 < shape.worst[0] < 34.1
     area = both.faces.areas
     assert abs(shape.outside - area[both.deviation < -0.1 * found.grid.edge].sum() / area.sum()) < 1e-12

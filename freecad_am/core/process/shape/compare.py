@@ -78,23 +78,27 @@ def _to_be_covered(of: Laid, faces: Faces) -> Mask:
 
 
 def _reached(grid: Grid, points: Array, normals: Array, reach: float) -> tuple[Array, Mask]:
-    """How far (n,) mm the deposit reaches from points (n, 3) along unit normals, and where there is none within `reach`:
-    outwards to where it first ends, or where there is none at a point inwards to where it begins."""
+    """How far (n,) mm the deposit reaches from points (n, 3) along unit normals, to where it first ends; where there is none
+    at a point, less than 0, by how far it is away, inwards along the normal or nearer aside. And where there is none within
+    `reach` mm."""
     count = int(np.ceil(reach / (STEP * grid.edge)))
     steps = np.linspace(0.0, reach, count + 1)
     found, bare = np.empty(len(points)), np.zeros(len(points), dtype=bool)
+    full = cKDTree(grid.centres(np.flatnonzero(grid.filled >= HALF)))
     for start in range(0, len(points), AT_ONCE):
         rows = slice(start, start + AT_ONCE)
         inside = grid.at(points[rows]) >= HALF
         way = np.where(inside, 1.0, -1.0)
-        length, met = _first_change(grid, points[rows], way[:, None] * normals[rows], steps, inside)
-        found[rows], bare[rows] = way * length, ~met & ~inside
+        length = _first_change(grid, points[rows], way[:, None] * normals[rows], steps, inside)
+        away = np.minimum(np.asarray(full.query(points[rows], distance_upper_bound=reach + grid.edge)[0]), reach + grid.edge)
+        length = np.where(inside, length, np.minimum(length, np.maximum(away - 0.5 * grid.edge, 0.0)))
+        found[rows], bare[rows] = way * length, ~inside & (length >= reach)
     return found, bare
 
 
-def _first_change(grid: Grid, points: Array, ways: Array, steps: Array, inside: Mask) -> tuple[Array, Mask]:
-    """How far (n,) mm along ways it first is as at the point no more; the last step where it stays so, and whether not."""
-    length, met = np.full(len(points), steps[-1]), np.zeros(len(points), dtype=bool)
+def _first_change(grid: Grid, points: Array, ways: Array, steps: Array, inside: Mask) -> Array:
+    """How far (n,) mm along ways it is no more as at the point; the last step where it stays so."""
+    length = np.full(len(points), steps[-1])
     left = np.arange(len(points))
     before = grid.at(points)
     for near, far in zip(steps[:-1], steps[1:], strict=True):
@@ -102,11 +106,11 @@ def _first_change(grid: Grid, points: Array, ways: Array, steps: Array, inside: 
         changed = (now >= HALF) != inside[left]
         rows = left[changed]
         share = (HALF - before[changed]) / (now[changed] - before[changed])
-        length[rows], met[rows] = near + share * (far - near), True
+        length[rows] = near + share * (far - near)
         left, before = left[~changed], now[~changed]
         if not len(left):
             break
-    return length, met
+    return length
 
 
 def figures(of: Laid, found: Compared, allowance: float) -> PredictedShape:

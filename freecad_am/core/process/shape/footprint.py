@@ -15,6 +15,7 @@ from .strands import Strands
 STEP = 1.0 / np.sqrt(3.0)  # of a cube's edge: a lattice of it, however it is turned, has a place in every cube
 SAMPLES = 1_500_000  # of such lattices made at once; bounds the memory
 FULL = 1.0 - 1e-9
+BRIDGED = 1.25  # widths: a melt closes what is left open between two beads that would be as wide as this
 
 
 @dataclass(frozen=True)
@@ -49,21 +50,26 @@ def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint
     """The cubes of all pieces of a layer that are not full yet, from `low` to `high` (n,) mm above the path."""
     found = [_near(grid, pieces, rows, low, high) for rows in _chunks(grid, pieces, low, high)]
     place, piece, up, aside, off = (np.concatenate(columns) for columns in zip(*found, strict=True))
-    inside = (0.5 * pieces.width[piece] - off) / grid.edge + 0.5
     # the nearest first, measured by the width; where two are alike the one laid first
     order = np.lexsort((piece, off / pieces.width[piece], place))
     place, piece = place[order], piece[order]
-    up, aside, off, cover = (column[order] for column in (up, aside, off, np.clip(inside, 0.0, 1.0)))
+    up, aside, off = up[order], aside[order], off[order]
+    alone, bridged = (
+        np.clip((0.5 * wide * pieces.width[piece] - off) / grid.edge + 0.5, 0.0, 1.0) for wide in (1.0, BRIDGED)
+    )
     begins = np.flatnonzero(np.diff(place, prepend=-1))
     of = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(place))))
-    other = np.flatnonzero(pieces.apart(piece[begins][of], piece))
+    other: Index = np.flatnonzero(pieces.apart(piece[begins][of], piece))
     other = other[np.sort(np.unique(of[other], return_index=True)[1])]  # of each cube the nearest one of another bead
-    beside, second, share = np.zeros(len(begins)), piece[begins], np.ones(len(begins))
+    cover, second, share = alone[begins], piece[begins], np.ones(len(begins))
     mine = of[other]
-    beside[mine], second[mine] = cover[other], piece[other]
+    second[mine] = piece[other]
+    # between beads; bridged where both are near
+    near = np.minimum(bridged[other], bridged[begins][mine])
+    cover[mine] = np.maximum(cover[mine] + alone[other], np.where(alone[other] < near, 2.0 * near, 0.0))
     share[mine] = np.clip((off[other] - off[begins][mine]) / (2.0 * grid.edge) + 0.5, 0.0, 1.0)
     return Footprint(
-        place[begins], piece[begins], second, share, up[begins], aside[begins], np.minimum(cover[begins] + beside, 1.0)
+        place[begins], piece[begins], second, share, up[begins], aside[begins], np.minimum(cover, 1.0)
     )
 
 
@@ -79,7 +85,7 @@ def _chunks(grid: Grid, pieces: Strands, low: Array, high: Array) -> Iterator[In
 def _reach(grid: Grid, pieces: Strands, rows: Index) -> tuple[Array, Array]:
     """How far (n,) mm cubes may be from the middle of pieces along them, and to a side."""
     beyond = np.where(pieces.ends[rows], 0.5 * pieces.width[rows] + 0.5 * grid.edge, grid.edge)
-    return 0.5 * pieces.length[rows] + beyond, 0.5 * pieces.width[rows] + 0.5 * grid.edge
+    return 0.5 * pieces.length[rows] + beyond, 0.5 * BRIDGED * pieces.width[rows] + 0.5 * grid.edge
 
 
 def _counts(grid: Grid, pieces: Strands, rows: Index, low: Array, high: Array) -> tuple[int, int, int]:
@@ -120,5 +126,5 @@ def _near(
         np.einsum("ij,ij->i", away, column[piece]) for column in (pieces.along, pieces.side, pieces.build)
     )
     off = np.hypot(left, np.maximum(np.abs(along) - 0.5 * pieces.length[piece], 0.0))
-    kept: Mask = off < 0.5 * (pieces.width[piece] + grid.edge)
+    kept: Mask = off < 0.5 * (BRIDGED * pieces.width[piece] + grid.edge)
     return place[kept], piece[kept], up[kept], left[kept], off[kept]
