@@ -18,6 +18,7 @@ from freecad_am.gui.simulation import dock as docks
 from freecad_am.gui.simulation import fields, tool
 from freecad_am.gui.simulation.run import run_of
 from freecad_am.gui.simulation.scene import SLOW, WRONG
+from freecad_am.gui.texts.touching import link_touches
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.joint_path import Planned
 
@@ -284,6 +285,11 @@ def test_a_robot_that_reaches_nothing_stands_in_one_piece(person, hemisphere, no
     drawn = np.array([base @ matrix(transform) for transform in scene.machine.transforms])
     want = cell.machine.chain.links(np.zeros(6))
     assert np.abs(drawn - frames.inverse(want[0]) @ want).max() < 5e-3
+
+
+def test_links_that_touch_each_other_are_told_by_both_names():
+    assert link_touches("q5", "link q2") == "the link of q5 touches the link of q2"
+    assert link_touches("q3", "base") == "the link of q3 touches the base"
 
 
 def test_a_link_that_touches_turns_red_and_is_told(person, hemisphere):
