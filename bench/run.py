@@ -23,8 +23,8 @@ SLICER = (
     "imageio", "jsonschema", "schema", "typing_extensions",
 )
 BENCHMARKS = (
-    "arm", "collision", "filling", "kinematics", "ladder", "load", "long_work", "paths", "planning", "simulation", "slicing",
-    "surface", "threads", "whole",
+    "arm", "collision", "filling", "kinematics", "ladder", "load", "long_work", "paths", "planning", "positioner",
+    "simulation", "slicing", "surface", "threads", "whole",
 )
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 

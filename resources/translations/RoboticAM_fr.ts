@@ -6052,6 +6052,11 @@
         <translation>Ce qui juge une trajectoire articulaire.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/payload.py"/>
+        <source>What carries the part carries its weight</source>
+        <translation>Ce qui porte la pièce porte son poids</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>What differs for classes of beads (first_layer, contour, fill, closing, link, wall), such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.</source>
         <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
@@ -7565,6 +7570,16 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>deposit</source>
         <translation>dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/payload.py"/>
+        <source>deposit and what it grows on, where that is closed, at {0} g/cm3 (process.density), against what {1} carries</source>
+        <translation>dépôt et ce sur quoi il repose, dans la mesure où c’est fermé, à {0} g/cm3 (process.density), comparé à ce que {1} porte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/payload.py"/>
+        <source>deposit and what it grows on, where that is closed, at {0} g/cm3 (process.density), against what {1} carries, and its moment about the last axis, as it grows</source>
+        <translation>dépôt et ce sur quoi il repose, dans la mesure où c’est fermé, à {0} g/cm3 (process.density), comparé à ce que {1} porte, et son moment autour du dernier axe, à mesure qu’il croît</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -9705,6 +9720,11 @@
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
         <source>not checked: schedules of their own, which nobody here knows, tell the welder to feed {0}</source>
         <translation>non vérifié : des programmes de soudage propres, que personne ne connaît ici, disent au poste comment alimenter {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/payload.py"/>
+        <source>not checked: the file of {0} tells no payload; deposit and what it grows on, where that is closed, at {1} g/cm3 (process.density)</source>
+        <translation>non vérifié : le fichier de {0} n’indique pas de charge ; dépôt et ce sur quoi il repose, dans la mesure où c’est fermé, à {1} g/cm3 (process.density)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,3 +50,18 @@ def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
     vertices = np.vstack([np.zeros((1, 3)), flat]) @ frame[:3, :3].T + frame[:3, 3]
     rim = np.arange(1, DISC_SIDES + 1)
     return Body(name, vertices, np.stack([np.zeros_like(rim), rim, np.roll(rim, -1)], axis=1).astype(np.int64))
+
+
+def enclosed(around: Sequence[Body]) -> tuple[float, Array]:
+    """The volume of all closed bodies, mm3, and where its middle (3,) is."""
+    volume, weighted = 0.0, np.zeros(3)
+    for body in around:
+        edges = np.concatenate([body.triangles[:, [0, 1]], body.triangles[:, [1, 2]], body.triangles[:, [2, 0]]])
+        count = len(body.vertices)
+        if not np.array_equal(np.sort(edges @ (count, 1)), np.sort(edges @ (1, count))):
+            continue
+        corners = body.corners()
+        parts = np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+        volume += abs(float(parts.sum()))
+        weighted += np.sign(parts.sum()) * (parts[:, None] * corners.sum(axis=1) / 4.0).sum(axis=0)
+    return volume, weighted / volume if volume > 0.0 else weighted

@@ -246,7 +246,9 @@ def _beside_robot(job: Tried, codes: set[str]) -> Iterator[Tried]:
     """A positioner elsewhere, or axes beside a robot that has none."""
     for told, settings in external_remedies.moved(job.settings, job.folders):
         yield dataclasses.replace(job, settings=settings, told=told)
-    for told, settings in external_remedies.added(job.settings, job.folders, job.toolpath(), codes):
+    toolpath = job.toolpath()
+    mass = external_remedies.weight(toolpath, job.process)
+    for told, settings in external_remedies.added(job.settings, job.folders, toolpath, codes, mass):
         yield dataclasses.replace(job, settings=settings, told=told)
 
 

@@ -15,7 +15,7 @@ from ..simulation.rapid_look import RapidsLooked
 from ..strategies.clearance.look import Looked
 from ..toolpath import Toolpath
 from ..types import Array
-from . import clearance, deposit, joints, written
+from . import clearance, deposit, joints, payload, written
 from .promise import Promise
 from .written import ReadBack
 
@@ -80,4 +80,5 @@ def _of_motion(evidence: Evidence) -> list[Promise]:
         clearance.rapids(evidence.issues, rapids),
         clearance.arm(motion, cell, evidence.arm, evidence.true_shapes),
         *clearance.beside(motion, cell, evidence.arm, evidence.true_shapes, evidence.issues),
+        *payload.carried(motion, cell, evidence.toolpath, evidence.process, evidence.issues),
     ]

@@ -7,12 +7,10 @@ nothing. A load may be farther from the axis the less it weighs: what counts is 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ..geometry import frames
-from ..geometry.surroundings import Body
+from ..geometry.surroundings import enclosed
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
 from ..kinematics.machines.machine import Machine
@@ -33,7 +31,7 @@ def issues(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParam
     if all(np.isinf([one.payload.kg, one.payload.from_axis]).all() for one in cell.carriers):
         return []
     deposited = KG * process.density * np.nan_to_num(volumes(motion, process, toolpath))
-    bodies, centre = _bodies(toolpath.surroundings)
+    bodies, centre = enclosed(toolpath.surroundings)
     bodies *= KG * process.density
     mass, found = bodies + np.cumsum(deposited), []
     for machine in cell.carriers:
@@ -48,6 +46,12 @@ def issues(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParam
         from_axis = _from_axis(cell, cell.carriers[-1], motion.position, deposited, bodies, centre)
         found += _too_far(motion, cell.carriers[-1], mass, from_axis)
     return found
+
+
+def finished(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> float:
+    """kg that the finished part weighs, what it grows on included as far as that is closed."""
+    deposited = np.nan_to_num(volumes(motion, process, toolpath)).sum()
+    return float(KG * process.density * (deposited + enclosed(toolpath.surroundings)[0]))
 
 
 def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> list[Issue]:
@@ -76,21 +80,6 @@ def _from_axis(cell: Cell, machine: Machine, position: Array, deposited: Array, 
     arms = np.cross(cell.on_carrier(np.nan_to_num(middles)) - through, axis)
     own = np.cross(cell.on_carrier(centre[None]) - through, axis)
     return np.asarray(np.linalg.norm(bodies * own + np.cumsum(deposited[:, None] * arms, axis=0), axis=1))
-
-
-def _bodies(around: Sequence[Body]) -> tuple[float, Array]:
-    """The volume of all closed bodies, mm3, and where its middle (3,) is."""
-    volume, weighted = 0.0, np.zeros(3)
-    for body in around:
-        edges = np.concatenate([body.triangles[:, [0, 1]], body.triangles[:, [1, 2]], body.triangles[:, [2, 0]]])
-        count = len(body.vertices)
-        if not np.array_equal(np.sort(edges @ (count, 1)), np.sort(edges @ (1, count))):
-            continue
-        corners = body.corners()
-        parts = np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
-        volume += abs(float(parts.sum()))
-        weighted += np.sign(parts.sum()) * (parts[:, None] * corners.sum(axis=1) / 4.0).sum(axis=0)
-    return volume, weighted / volume if volume > 0.0 else weighted
 
 
 def _at(motion: Motion, row: int, message: str) -> Issue:

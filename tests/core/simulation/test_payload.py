@@ -11,9 +11,12 @@ import pytest
 from freecad_am.core.geometry import surroundings
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import offered
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.planning.external import remedies
+from freecad_am.core.preflight.payload import carried
 from freecad_am.core.simulation import deposit, payload
 from tests.core.planned_dome import planned_dome
 
@@ -174,3 +177,58 @@ def test_payloads_that_are_none(positioner, load):
     path = positioner(**load)
     with pytest.raises(InputError, match="payload"):
         machines.load(path)
+
+
+def promised(toolpath, cell, process):
+    motion = deposit.alone(toolpath)
+    return carried(motion, cell, toolpath, process, payload.issues(motion, cell, toolpath, process))
+
+
+def test_the_preflight_tells_what_it_weighs_and_what_carries_it(toolpath, positioner):
+    process = ProcessParameters()
+    whole = grown(toolpath, toolpath.bead_width or process.bead_width)[0].sum()
+    for share, kept in ((1.001, True), (0.6, False)):
+        (row,) = promised(toolpath, cell_with(positioner(kg=share * whole), toolpath), process)
+        assert row.ok is kept and row.worst == pytest.approx(whole, rel=1e-9) and row.bound == pytest.approx(share * whole)
+        assert (row.place is None) is kept and "Skew positioner" in row.how
+    (untold,) = promised(toolpath, cell_with(positioner(from_axis=5e3), toolpath), process)
+    assert untold.ok is None and untold.how.startswith("not checked: the file of Skew positioner tells no payload")
+    parameters = CellParameters(machine="kuka-kr10-r1100-2", limits="maker", branch="auto")
+    held = cells.resolve(parameters, toolpath.frame)
+    assert [row.ok for row in promised(toolpath, held, process)] == [True]
+    stands = cells.resolve(dataclasses.replace(parameters, setup="tool-on-robot"), toolpath.frame)
+    assert promised(toolpath, stands, process) == []
+
+
+def test_positioners_offered_carry_the_part_and_are_of_the_robots_maker(toolpath, positioner, tmp_path):
+    """Two of the user's beside the one built in, which is rated for 500 kg: by weight, by size, by maker."""
+    plain = json.loads(positioner(kg=900).read_text(encoding="utf-8"))
+    (tmp_path / "skew.json").unlink()
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    table = {"source": "made up", "turn": [{"cylinder": [1200, 40], "origin": [0, 0, 0], "rpy": [0, 0, 0]}]}
+    for name, title, kg, more in (
+        ("large", "ABB Large", 900, {"bodies": table}), ("small", "KUKA Small", 120, {}), ("robotless", "KUKA Wrong", 1, {}),
+    ):
+        told = {**plain, "id": name, "title": title, "payload": {"kg": kg, "source": "made up"}, **more}
+        (folder / f"{name}.json").write_text(json.dumps(told), encoding="utf-8")
+    (folder / "broken.json").write_text("{", encoding="utf-8")
+    abb, kuka = machines.load("abb-irb4600-40-255"), machines.load("kuka-kr10-r1100-2")
+
+    def ids(robot, mass, radius=100.0):
+        return [one.id for one in offered.positioners(robot, mass, radius, (str(folder),))]
+
+    assert ids(kuka, 50.0) == ["small", "motoman-motopos-d500", "large"]
+    assert ids(abb, 50.0) == ["large", "small", "motoman-motopos-d500"]
+    assert ids(kuka, 300.0) == ["motoman-motopos-d500", "large"] and ids(kuka, 700.0) == ["large"]
+    assert ids(kuka, 1000.0) == []
+    # wider than the table of the D500, 502 mm
+    assert ids(kuka, 300.0, 400.0) == ["large", "motoman-motopos-d500"]
+    assert [one.id for one in offered.tracks(kuka, (str(folder),))] == ["kuka-kl100-2"]
+
+
+def test_weights_that_positioners_are_chosen_by_are_those_of_the_payload(toolpath):
+    plate = surroundings.box((200.0, 100.0, 20.0), np.eye(4), "substrate")
+    whole = grown(toolpath, toolpath.bead_width or ProcessParameters().bead_width)[0].sum() + 0.4 * DENSITY
+    found = remedies.weight(dataclasses.replace(toolpath, surroundings=(plate,)), ProcessParameters())
+    assert found == pytest.approx(whole, rel=1e-9)

@@ -12,12 +12,14 @@ from typing import Any
 import numpy as np
 
 from ...geometry import frames
-from ...kinematics import external
+from ...geometry.surroundings import enclosed
+from ...kinematics import external, offered
 from ...kinematics.arrangement import of_setup
 from ...kinematics.machines import machine as machines
 from ...kinematics.machines.machine import Machine
 from ...parameters.cell import CellParameters
 from ...parameters.external import MORE, PART, ROBOT, WHERE, External, Pose, externals
+from ...parameters.process import ProcessParameters
 from ...toolpath import Toolpath
 from ...types import Array
 
@@ -25,7 +27,7 @@ Cells = Iterator[tuple[str, CellParameters]]
 
 # of the arm's reach, how far the face is ahead of the shoulder, and, mm, higher than it is
 AHEAD = ((0.75, 0.0), (0.6, 0.0), (0.9, 0.0), (0.75, 300.0), (0.6, -300.0))
-TRACK, POSITIONER = "kuka-kl100-2", "motoman-motopos-d500"  # of those built in
+TRIED = 2  # positioners, the likeliest
 LONG = 0.6  # of the reach; along a part as long as that a track may help
 NOT_LEVEL, AUTO = "NOT_LEVEL", " and `cell.branch: auto`"
 
@@ -49,31 +51,45 @@ def moved(settings: CellParameters, folders: Sequence[str]) -> Cells:
         yield told, dataclasses.replace(settings, external=_text(others))
 
 
-def added(settings: CellParameters, folders: Sequence[str], toolpath: Toolpath, codes: set[str]) -> Cells:
-    """A positioner under a part whose tool axes may not lean, a track along one that is long; nothing of a cell with
-    external axes, or a robot that holds the part."""
+def added(
+    settings: CellParameters, folders: Sequence[str], toolpath: Toolpath, codes: set[str], mass: float = 0.0
+) -> Cells:
+    """A positioner that carries so many kg under a part whose tool axes may not lean, a track along one that is long, of the
+    robot's maker where there is one; nothing of a cell with external axes, or a robot that holds the part."""
     robot = machines.load(settings.machine, tuple(folders))
     if externals(settings.external) or of_setup(settings.setup).carries_part or robot.arm is None:
         return
     platform = np.array(settings.deposition_point[:3])
-    if NOT_LEVEL in codes:
-        face = _face(external.load(POSITIONER), (0.0,) * 6)
-        for place in _before(robot, platform[:2], float(face[2]))[:3]:
-            x, y, _ = place - face
-            one = External(POSITIONER, (float(round(x)), float(round(y)), 0.0, 0.0, 0.0, 0.0), PART)
-            yield _told(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
-        return
     points = np.concatenate([bead.points for _, _, bead in toolpath])
+    if NOT_LEVEL in codes:
+        seen = frames.inverse(toolpath.frame)
+        radius = float(np.linalg.norm((points @ seen[:3, :3].T + seen[:3, 3])[:, :2], axis=1).max())
+        for suited in offered.positioners(robot, mass, radius, folders)[:TRIED]:
+            face = _face(suited, (0.0,) * 6)
+            for place in _before(robot, platform[:2], float(face[2]))[:3]:
+                x, y, _ = place - face
+                one = External(suited.id, (float(round(x)), float(round(y)), 0.0, 0.0, 0.0, 0.0), PART)
+                yield _told(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
+        return
     spans = np.ptp(points, axis=0)
     longest = int(spans.argmax())
     if spans[longest] < LONG * robot.arm.reach:
         return
     along = frames.bryant(settings.deposition_point)[:3, :3][:, longest]
     turn = math.atan2(along[1], along[0]) if math.hypot(along[0], along[1]) > 0.5 else 0.5 * math.pi
-    track = external.load(TRACK)
-    height = float(track.chain.forward(np.zeros(1))[2, 3])
-    one = External(TRACK, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
-    yield _told(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
+    for track in offered.tracks(robot, folders)[:1]:
+        height = float(track.chain.forward(np.zeros(1))[2, 3])
+        one = External(track.id, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
+        yield _told(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
+
+
+def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
+    """kg of the beads and of what they grow on, as far as that is closed."""
+    volume, usual = enclosed(toolpath.surroundings)[0], toolpath.bead_width or process.bead_width
+    for _, _, bead in toolpath:
+        width = usual if bead.width is None else float(np.mean(bead.width))
+        volume += width * toolpath.layer_height * float(np.linalg.norm(np.diff(bead.points, axis=0), axis=1).sum())
+    return 1e-6 * process.density * volume  # g/cm3 times mm3
 
 
 def _face(mechanism: Machine, pose: Pose) -> Array:

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The paper's sphere in 71 layers of 1 mm under a torch on a robot: with a positioner of two axes beside its six.
+
+Peers: the paper's cell, six axes that carry the same part; and the same search done pose by pose with
+PyKDL's fastest seeded solver, at the positioner's axes as the rule has them, seeded within 2 deg of the answer.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from statistics import median
+
+import numpy as np
+
+from freecad_am.brep.files import read
+from freecad_am.brep.revolution import wall as revolution
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.planning.external.level import levelled
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.points import gather
+from freecad_am.core.planning.rotation import search
+from freecad_am.core.planning.task import Task
+from freecad_am.core.strategies.revolution import plan as strategy
+from freecad_am.kdl import chain as kdl
+
+from rows import Row
+from whole import EXAMPLE
+
+ROUNDS = 3
+LEVEL = 10.0  # deg from the vertical at most
+SPEED = 4.0  # mm/s, as fast as the table can turn where the wall closes
+POSITIONER = CellParameters(
+    machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch=("back", "up", "flip"), platform=20.0,
+    nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0)),
+    external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part",
+)
+SIX = CellParameters(limits="paper", branch=("front", "up", "flip"))  # the paper's cell
+SAMPLED = 64  # the peer's candidates are taken one in so many, evenly, and the time multiplied
+
+
+def run() -> list[Row]:
+    """Both comparisons; a layer of 6+2 axes that is not feasible is an error."""
+    wall = revolution.find_wall(read.read_shape(str(EXAMPLE)))
+    toolpath = strategy.plan(
+        wall, RevolutionParameters(layer_height=1.0), BuildDirectionParameters(), ProcessParameters(travel_speed=SPEED),
+        SIX.nozzle, SIX.platform_diameter,
+    )
+    upright = dataclasses.replace(toolpath, max_from_vertical=math.radians(LEVEL))
+    six, eight = (cells.resolve(one, toolpath.frame) for one in (SIX, POSITIONER))
+    parameters = JointParameters()
+
+    def ours() -> None:
+        found = plan_joints(upright, eight, parameters)
+        if not found.feasible:
+            raise AssertionError("a layer of the sphere is not feasible with the positioner")
+
+    def alone() -> None:
+        if not plan_joints(toolpath, six, parameters).feasible:
+            raise AssertionError("a layer of the sphere is not feasible with six axes")
+
+    peers = {"six": alone, **({"PyKDL": _pose_by_pose(eight, upright, parameters)} if kdl.available() else {})}
+    ours()
+    alone()
+    times: dict[str, list[float]] = {"ours": [], **{name: [] for name in peers}}
+    for number in range(ROUNDS):
+        times["ours"].append(_took(ours))
+        for name, peer in peers.items():
+            if number == 0 or name != "PyKDL":
+                times[name].append(_took(peer) * (SAMPLED if name == "PyKDL" else 1))
+    middle = {name: median(values) for name, values in times.items()}
+    return [
+        Row(f"{len(toolpath.layers)} layers with 6+2 axes, all feasible; with six, in the paper's cell", middle["ours"],
+            middle["six"], "s", 0.2),
+        Row("the same; the same search pose by pose with PyKDL's NR", middle["ours"], middle.get("PyKDL"), "s", 20.0),
+    ]
+
+
+def _took(function) -> float:
+    start = time.perf_counter()
+    function()
+    return time.perf_counter() - start
+
+
+def _pose_by_pose(cell, toolpath, parameters):
+    """The poses of the search, one after the other: inverse kinematics, Jacobian, singular values, for the branch that the
+    plan ends with."""
+    found = plan_joints(toolpath, cell, parameters)
+    task = Task(cell, opw.branch_index(found.branch), parameters)
+    beads, _ = levelled(cell, toolpath)
+    points = gather(beads, cell, search.POINTS_PER_BEAD)
+    grid = [
+        (offset, slope)
+        for offset in np.arange(search.OFFSETS) * (2 * np.pi / search.OFFSETS) - np.pi for slope in search.SLOPES
+    ][::SAMPLED]
+    phi = np.array([offset + slope * points.parameter for offset, slope in grid])
+    flange = points.frames.at(phi).reshape(-1, 4, 4)
+    joints = task.arm.inverse_branch(flange, task.branch)
+    reached = np.isfinite(joints).all(axis=1)
+    flange, joints = flange[reached], joints[reached]
+    seeds = joints + np.random.default_rng(1).uniform(-1, 1, joints.shape) * np.radians(2.0)
+    arm = kdl.KdlArm(cell.robot)
+    solver = arm.solver("nr", 1e-5)
+    jacobians = arm.kdl.ChainJntToJacSolver(arm.chain)
+    lower, upper = cell.limits.lower[:6], cell.limits.upper[:6]
+
+    def call() -> None:
+        at, matrix = arm.kdl.JntArray(6), arm.kdl.Jacobian(6)
+        for seed, pose in zip(seeds, flange):
+            solver.CartToJnt(arm.angles(seed), arm.frame(pose), at)
+            q = np.array([at[k] for k in range(6)])
+            if (q < lower).any() or (q > upper).any():
+                continue
+            jacobians.JntToJac(at, matrix)
+            scaled = np.array([[matrix[row, column] for column in range(6)] for row in range(6)])
+            scaled[:3] /= parameters.characteristic_length
+            np.linalg.svd(scaled, compute_uv=False)
+
+    return call

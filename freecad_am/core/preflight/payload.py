@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What carries the part can carry it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from ..issues import Issue
+from ..kinematics.cell import Cell
+from ..motion import Motion
+from ..parameters.process import ProcessParameters
+from ..simulation.payload import CODE, finished
+from ..toolpath import Toolpath
+from .promise import Promise, issue_place, number, of_codes
+
+WHAT = "What carries the part carries its weight"
+
+
+def carried(
+    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, issues: Sequence[Issue]
+) -> list[Promise]:
+    """Of robot or positioner; nothing where the part stands still, or lies on a machine with rotary axes."""
+    if not cell.carriers or not cell.arrangement.redundant:
+        return []
+    mass, told = finished(motion, cell, toolpath, process), of_codes(issues, (CODE,))
+    least = min(cell.carriers, key=lambda one: one.payload.kg)
+    weighed = f"deposit and what it grows on, where that is closed, at {number(process.density)} g/cm3 (process.density)"
+    untold = [one.title for one in cell.carriers if math.isinf(one.payload.kg)]
+    if untold and not told:
+        return [Promise(WHAT, f"not checked: the file of {untold[0]} tells no payload; {weighed}", None, mass, "kg")]
+    how = f"{weighed}, against what {least.title} carries"
+    if not math.isinf(least.payload.from_axis):
+        how = f"{weighed}, against what {least.title} carries, and its moment about the last axis, as it grows"
+    return [Promise(WHAT, how, not told, mass, "kg", least.payload.kg, issue_place(told))]
