@@ -227,7 +227,7 @@ def test_where_the_part_sticks_out_is_told():
     assert issue.code == compare.CODE and 1 <= issue.layer <= 5 and "the part sticks out by 6" in issue.message
     assert shape.worst[1] > 36.0 and 25.9 < shape.worst[0] < 34.1
     area = both.faces.areas
-    assert abs(shape.outside - area[both.deviation < -0.1 * found.grid.edge].sum() / area.sum()) < 1e-12
+    assert abs(shape.outside - area[both.deviation < -compare.KNOWN * found.grid.edge].sum() / area.sum()) < 1e-12
 
 
 def test_of_an_open_face_the_side_with_less_counts():

@@ -168,14 +168,14 @@ class _Layer:
     def _fill(self, wanted: Array, high: Array) -> float:
         """Lay volumes (n,) mm3 up to `high` (n,) mm at most; mm3 that found a place."""
         grid, pieces = self.grid, self.pieces
-        low = self.base - np.where(pieces.first, 0.0, SAG * pieces.height + self.fall.max(axis=1) - self.rise)
+        low = self.base - np.where(pieces.first, 0.0, pieces.height)
         near = footprint(grid, pieces, low - grid.edge, high)
         fall = self._fall(near)
         surface = near.up + fall
-        # nothing below what beads lie on: the surface of the layer below, and a little of what it lacks
-        bottom = np.where(
-            pieces.first, 0.0, self.base - SAG * pieces.height + self.rise
-        )[near.piece] - np.where(pieces.first[near.piece], 0.0, fall)
+        # nothing below what beads lie on: the surface of the layer below, a little of what that lacks, never its underside
+        lowest = np.where(pieces.first, 0.0, self.base - pieces.height)
+        sagged = self.base - SAG * pieces.height + self.rise
+        bottom = np.where(pieces.first[near.piece], 0.0, np.maximum(sagged[near.piece] - fall, lowest[near.piece]))
         most = near.cover * np.clip((near.up - bottom) / grid.edge + 0.5, 0.0, 1.0)
         there = grid.filled[near.place]
 
