@@ -12,12 +12,15 @@ from freecad_am import api
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.proposed_cell import cell_of
+from freecad_am.core.kinematics.urdf.cell import texts_of
+from freecad_am.core.kinematics.urdf.reference import Reference
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation.placing import at_rest
 from freecad_am.gui.nodes.cell import resting_point
 from freecad_am.gui.panels import cell as cell_panel
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.work.progress import Cancelled
+from tests.core.kinematics import urdf_cells
 from tests.gui.previews import drawn_by_previews
 
 PANEL = "RoboticAM_Cell"
@@ -287,5 +290,35 @@ def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monke
         person.press("Ok")
         assert person.panel_error(panel) == "Cancelled: the document is as it was."
         assert document.getObject("Cell") is None
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, planned, tmp_path):
+    """Robot, track and positioner of one file: typed as one word, and its bodies are seen."""
+    cell, _ = planned
+    text = urdf_cells.whole_cell()
+    for link, size in (("positioner_base_link", "0.4 0.4 0.1"), ("positioner_link_2", "0.3 0.3 0.02"),
+                       ("track_base_link", "3 0.4 0.2")):
+        box = f'<collision><geometry><box size="{size}"/></geometry></collision>'
+        text = text.replace(f'<link name="{link}"/>', f'<link name="{link}">{box}</link>')
+    path = tmp_path / "bay.urdf"
+    path.write_text(text, encoding="utf-8")
+    person.double_click(cell)
+    panel = person.panel(PANEL)
+    told(person, panel, "with the nozzle upright: q")
+    hand.enter(panel, "Machine", str(path))
+    setup = person.field(panel, "Setup")
+    setup.setCurrentIndex(setup.findData("tool-on-robot"))
+    field = person.field(panel, "External")
+    person.until(field.isEnabled, "external axes to be asked for", 5)
+    field.setText("urdf")
+    wanted = texts_of(Reference(str(path)))
+    person.until(lambda: person.field(panel, "External").text() == wanted[1], "track and positioner to be entered", 10)
+    assert person.field(panel, "Machine").currentText() == wanted[0]
+    assert "track" in wanted[1] and "positioner" in wanted[1]
+    person.until(lambda: (drawn := previewed(person)) is not None and len(drawn) == 9 + 3, "their bodies to be seen", 20)
+    person.look()
+    person.screenshot("cell_whole_urdf")
     person.press("Cancel")
     person.panel_closed()

@@ -34,6 +34,7 @@ from ..views.preview import Aside, Draft
 from ..widgets import suggestions
 from . import at_rest
 from .preview import PreviewPanel
+from .whole_cell import whole_cell
 
 MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
 ARM, OBSTACLES, EXTERNAL = "cell_arm_clearance", "cell_obstacles", "cell_external"
@@ -86,6 +87,11 @@ class CellPanel(PreviewPanel):
 
     def _follow(self) -> None:
         """Fit the fields to the machine; those of an unknown one stay as they are."""
+        with contextlib.suppress(InputError):  # which the preview tells
+            found = whole_cell(self._holds(MACHINE), self._holds(EXTERNAL))
+            if found is not None:
+                self._widget(MACHINE).setEditText(found[0])
+                self._widget(EXTERNAL).setText(found[1])
         name = self.places[MACHINE][0].value
         try:
             machine = machines.load(name, user_machines.folders())
