@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import Part
@@ -10,6 +11,7 @@ import Part
 PLANE = "Part::GeomPlane"
 TOUCHING = 0.05  # mm
 ACROSS = (0.2, 0.5, 0.8)  # of a face, either way
+LOOKED = 8  # solids that are looked at, of many
 
 
 def lies_on_bend(part: Any, ground: Any) -> bool:
@@ -20,6 +22,16 @@ def lies_on_bend(part: Any, ground: Any) -> bool:
         for own in part.Faces if own.Surface.TypeId != PLANE
         for face in bent if face.BoundBox.intersect(own.BoundBox)
     )
+
+
+def carrier(solids: Sequence[Any]) -> str:
+    """The name of the largest of several solids, as `Solid1`, where most others, of LOOKED of them, lie on a face of it that
+    is not flat; else ''."""
+    sizes = [abs(solid.Volume) for solid in solids]
+    largest = sizes.index(max(sizes))
+    others = [solid for k, solid in enumerate(solids) if k != largest][:LOOKED]
+    carried = sum(lies_on_bend(one, solids[largest]) for one in others)
+    return f"Solid{largest + 1}" if carried > 0.5 * len(others) else ""
 
 
 def _within(face: Any) -> list[Any]:

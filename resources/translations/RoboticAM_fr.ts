@@ -1242,6 +1242,11 @@
         <translation>(vide : aucune)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/planned/on_bends.py"/>
+        <source>(others stand on the bend of {0}: as the substrate it gives them layers of its shape)</source>
+        <translation>(les autres reposent sur la courbure de {0} : comme substrat il leur donne des couches de sa forme)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>(planned)</source>
         <translation>(planifié)</translation>
@@ -12768,8 +12773,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} holds {1} solids</source>
-        <translation>{0} contient {1} solides</translation>
+        <source>{0} holds {1} solids{2}</source>
+        <translation>{0} contient {1} solides{2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>

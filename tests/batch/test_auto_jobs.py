@@ -83,6 +83,12 @@ def test_what_stands_on_something_bent_gets_layers_of_its_shape():
         assert (found.kind, found.layers) == ("solid", "geodesic") and "the bend of ground where it stands" in found.reason
         assert of(part, ground, width=4.0, tilts=False).layers == "planes"
     assert of(Part.makeCylinder(12, 20, Vector(0, 0, 60)), hub).layers == "planes"
+    blades = [blade.rotated(Vector(), UP, angle) for angle in (0, 120, 240)]
+    assert of(Part.makeCompound(blades), hub, width=4.0).layers == "geodesic"
+    together = of(Part.makeCompound([blades[0], hub, *blades[1:]]), width=4.0)
+    assert together.layers == "planes" and "others stand on the bend of Solid2: as the substrate" in together.reason
+    apart = of(Part.makeCompound([hub, *(one.translated(Vector(0, 0, 200)) for one in blades)]), width=4.0)
+    assert "others stand" not in apart.reason
     assert of(Part.makeBox(20, 20, 20, Vector(30, -10, 20)), hub).layers == "planes"
 
 

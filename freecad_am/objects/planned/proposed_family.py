@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -14,7 +13,6 @@ from freecad_am.core.types import Array, Mask
 
 from ...brep import hub as hubs
 from ...brep.kernel import limits as kernel
-from ...brep.lies_on import lies_on_bend
 from ...brep.revolution.wall import find_wall
 from ...brep.shapes import part_depths
 from ...brep.walls.standing import stand
@@ -34,6 +32,7 @@ from ...core.parameters.strategy import SurfaceParameters
 from ...core.process.deposit.balance import LITTLE, MM3, of_wall
 from ..developable_feature import found_in
 from ..shapes.bodies import Taken
+from .on_bends import carried, on_bend
 
 COARSE = 0.3  # mm; of triangles that a look at solids is content with
 TOUCHING = 0.05  # mm from the surface of a hub
@@ -101,7 +100,7 @@ def proposed(
         if _own_hub(part):
             why = f"most solids of {part.label} stand on a cylinder or cone of another of them"
             return Proposal("developable", "", why)
-        return _solid(part, f"{part.label} holds {len(shape.Solids)} solids", tilts, planes)
+        return _solid(part, f"{part.label} holds {len(shape.Solids)} solids{carried(shape)}", tilts, planes)
     left = ""
     wall = _turned(part, names) if substrate is None else None
     if wall is not None:
@@ -201,7 +200,7 @@ def _lying(corners: Array) -> float:
 
 def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
     """In planes, or in layers without support where the machine can tilt and much hangs over, or it stands on a bend."""
-    if tilts and planes.ground is not None and _on_bend(part, planes.ground):
+    if tilts and planes.ground is not None and on_bend(part, planes.ground):
         return Proposal("solid", GEODESIC, f"{reason}, and layers have the bend of {planes.ground.label} where it stands")
     bodies = [part.body()]
     least = best(bodies, SolidParameters(max_overhang=STEEP, layer_height=planes.apart))[0].way
@@ -221,12 +220,6 @@ def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
         return Proposal("solid", GEODESIC, f"{why}, which layers along the way through it carry{hint}")
     what = f"a machine that tilts could lay layers: {GEODESIC}, which need no support"
     return Proposal("solid", PLANES, f"{why}; {what}{hint}")
-
-
-def _on_bend(part: Taken, ground: Taken) -> bool:
-    with contextlib.suppress(*kernel.FAULTS):
-        return part.shape is not None and ground.shape is not None and lies_on_bend(part.shape, ground.shape)
-    return False
 
 
 def _overhang(body: Body, way: Array) -> float:
