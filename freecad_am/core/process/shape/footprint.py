@@ -36,14 +36,12 @@ class Footprint:
 
     def mixed(self, of_pieces: Array) -> Array:
         """(k,) at cubes, of values (n,) of pieces."""
-        found: Array = self.share * of_pieces[self.piece] + (1.0 - self.share) * of_pieces[self.other]
-        return found
+        return np.asarray(self.share * of_pieces[self.piece] + (1.0 - self.share) * of_pieces[self.other], dtype=np.float64)
 
     def summed(self, of_cubes: Array, count: int) -> Array:
         """(n,) over the cubes of each of so many pieces, of values (k,)."""
         own = np.bincount(self.piece, self.share * of_cubes, count)
-        found: Array = own + np.bincount(self.other, (1.0 - self.share) * of_cubes, count)
-        return found
+        return np.asarray(own + np.bincount(self.other, (1.0 - self.share) * of_cubes, count), dtype=np.float64)
 
 
 def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint:
