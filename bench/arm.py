@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.machines import machine
 from tests.kdl_links import KdlLinks
 

@@ -104,7 +104,7 @@ def _always(there: Scene) -> Obstacles:
     """The pieces of a scene's beads, there from the start."""
     known = there.deposit
     assert known is not None
-    return Obstacles(known.corners, None, known.radius, known.line, known.beside)
+    return Obstacles(known.corners, None, known.radius, known.line, known.foot)
 
 
 def _long_bead() -> list[Row]:

@@ -22,11 +22,11 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.angles import TURN, shortest
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.curves.sampling import sampled
-from freecad_am.core.geometry.surroundings import box
+from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.cell import Cell
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -57,7 +57,7 @@ def run() -> list[Row]:
     times: list[tuple[float, float]] = []
     for _ in range(ROUNDS):
         began = time.perf_counter()
-        path = plan_joints(dome, cell, task.parameters, rods=rods)
+        path = plan_joints(dome, cell, task.parameters, cylinders=rods)
         ours = time.perf_counter() - began
         assert not has_errors(path.issues), path.issues
         began = time.perf_counter()
@@ -140,14 +140,14 @@ class _Looks:
         self.fcl, self.cell = fcl, cell
         middle = (cell.machine.base @ frames.pose(np.eye(3), np.add(WALL_LOW, 0.5 * np.array(WALL)) + STATION))[:3, 3]
         self.wall = fcl.CollisionObject(fcl.Box(*np.add(WALL, CLEARANCE)), fcl.Transform(middle))
-        self.rods = [[_cylinder(fcl, rod) for rod in link] for link in rods]
+        self.cylinders = [[_cylinder(fcl, rod) for rod in link] for link in rods]
         self.pairs = ArmContact(cell, rods, (), None, CLEARANCE).own.pairs
         self.request, self.result = fcl.CollisionRequest(), fcl.CollisionResult
 
     def meet(self, q: np.ndarray) -> bool:
         """Whether anything is met with joints (axes,)."""
         poses = self.cell.links(q[None])[0]
-        for number, link in enumerate(self.rods):
+        for number, link in enumerate(self.cylinders):
             for one, turned, at in link:
                 pose = poses[number]
                 one.setTransform(self.fcl.Transform(pose[:3, :3] @ turned, pose[:3, :3] @ at + pose[:3, 3]))
@@ -155,7 +155,7 @@ class _Looks:
                     return True
         return any(
             self.fcl.collide(one, other, self.request, self.result())
-            for outer, inner in self.pairs for one, _, _ in self.rods[outer] for other, _, _ in self.rods[inner]
+            for outer, inner in self.pairs for one, _, _ in self.cylinders[outer] for other, _, _ in self.cylinders[inner]
         )
 
 

@@ -26,7 +26,7 @@ def run_of_points(layer_height: float, points: int, document: str):
     from freecad_am.core.parameters.strategy import RevolutionParameters
     from freecad_am.core.planning.motion import assemble
     from freecad_am.core.planning.plan import plan_joints
-    from freecad_am.core.simulation.pace import pace
+    from freecad_am.core.simulation.achievable_feed import achievable_feed
     from freecad_am.core.simulation.timeline import timeline
     from freecad_am.core.simulation.totals import totals
     from freecad_am.core.simulation.watch import watch
@@ -44,11 +44,11 @@ def run_of_points(layer_height: float, points: int, document: str):
     )
     cell = cells.resolve(looks, toolpath.frame)
     motion, _ = assemble(plan_joints(toolpath, cell, JointParameters(method="constant", rz=0.0)), cell, process)
-    times, kept = timeline(motion, process), pace(motion, cell.machine.max_speed, cell.machine.max_acceleration)
+    times, kept = timeline(motion, process), achievable_feed(motion, cell.machine.max_speed, cell.machine.max_acceleration)
     unknown = np.full(len(motion), np.nan)
     return Run(
         document=document, title="frames", objects=(), cell=cell, looks=looks, toolpath=toolpath, width=1.0, motion=motion,
-        times=times, pace=kept, watch=watch(motion, cell, kept, unknown, unknown),
+        times=times, feed=kept, watch=watch(motion, cell, kept, unknown, unknown),
         totals=totals(motion, times, process, toolpath),
     )
 

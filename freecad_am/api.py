@@ -197,8 +197,8 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
     known = ("source", "kind", "layers", "faces", "substrate", "further", "base_faces", "mend")
     wrong = [key for key in given_keys if key not in known]
     if wrong or "source" not in given_keys:
-        told = ", ".join(wrong) or "no source"
-        raise InputError("BAD_VALUE", "then", f"{told}: give source, and any of {', '.join(known[1:])}")
+        text = ", ".join(wrong) or "no source"
+        raise InputError("BAD_VALUE", "then", f"{text}: give source, and any of {', '.join(known[1:])}")
     links = {
         "Substrate": given_keys.get("substrate"), "Further": list(given_keys.get("further", ())),
         "BaseFaces": given_keys.get("base_faces", ()),

@@ -73,13 +73,13 @@ def _verify_joints(
 ) -> Verification:
     assert read.joints is not None
     shown = read.joints.copy()
-    endless = text_path.shorter_way(cell, program, read)
-    shown[:, endless] = np.unwrap(shown[:, endless], axis=0)
+    continuous = text_path.shorter_way(cell, program, read)
+    shown[:, continuous] = np.unwrap(shown[:, continuous], axis=0)
     half = text_path.digits(cell, read)
     path, flange = text_path.joint_path(cell, shown, half)
     second = points.second_opinion(cell, planned, shown, flange)
     del flange  # of all that is looked at the largest
-    issues += points.joint_issues(cell, planned, read, endless) + points.point_issues(planned, path)
+    issues += points.joint_issues(cell, planned, read, continuous) + points.point_issues(planned, path)
     strayed, off = between.beads_between(cell, planned, shown, path, chord_error)
     issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
     text = text_path.text_joints(cell, planned.joints, shown, half, path, None)
@@ -97,21 +97,21 @@ def _verify_poses(
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = text_path.joint_path(cell, joints, np.zeros(joints.shape[1]))
     issues += points.point_issues(planned, path)
-    told, asked, tools = text_path.text_path(cell, program, read)
+    poses, asked, tools = text_path.text_path(cell, program, read)
     if read.joints is not None:
         issues += points.joint_issues(cell, planned, read, text_path.shorter_way(cell, program, read))
-    issues += points.point_issues(planned, told)
+    issues += points.point_issues(planned, poses)
     # an angle of a shows as sqrt(2) a in the sum of squares of the nine entries
-    twisted = np.linalg.norm(asked[:, :3, :3] - flange[:, :3, :3], axis=(1, 2)) > np.sqrt(2.0) * told.tool_bound
+    twisted = np.linalg.norm(asked[:, :3, :3] - flange[:, :3, :3], axis=(1, 2)) > np.sqrt(2.0) * poses.tool_bound
     issues += planned.issue("VERIFY_ROTATION", twisted, "the tool is turned otherwise than planned")
     strayed = 0.0
     # a tool that stays the same goes straight from point to point, and so does one that stands seen from a part that is held
     if read.tool is not None and not read.held and len(planned.ends):
-        strayed, off = between.tools_between(cell, planned, asked, tools, told, chord_error)
+        strayed, off = between.tools_between(cell, planned, asked, tools, poses, chord_error)
         issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
-    text = text_path.text_joints(cell, planned.joints, read.joints, text_path.digits(cell, read), told, asked)
+    text = text_path.text_joints(cell, planned.joints, read.joints, text_path.digits(cell, read), poses, asked)
     second = points.second_opinion(cell, planned, joints, flange)
-    return _concluded(cell, planned, read, told, text, strayed, second, issues)
+    return _concluded(cell, planned, read, poses, text, strayed, second, issues)
 
 
 def _verify_tips(cell: Cell, planned: Planned, program: Program, read: ReadMoves, issues: list[Issue]) -> Verification:
@@ -119,14 +119,14 @@ def _verify_tips(cell: Cell, planned: Planned, program: Program, read: ReadMoves
     axis values against the same points. Such a controller takes the tip straight from point to point."""
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = text_path.joint_path(cell, joints, np.zeros(joints.shape[1]))
-    told = text_path.text_tips(cell, program, read)
+    tips = text_path.text_tips(cell, program, read)
     if read.joints is not None:
         issues += points.joint_issues(cell, planned, read, text_path.shorter_way(cell, program, read))
-    issues += points.point_issues(planned, path) + points.point_issues(planned, told)
+    issues += points.point_issues(planned, path) + points.point_issues(planned, tips)
     shown = _in_turns(cell, planned, program, read)
-    text = text_path.text_joints(cell, planned.joints, shown, text_path.digits(cell, read), told, None)
+    text = text_path.text_joints(cell, planned.joints, shown, text_path.digits(cell, read), tips, None)
     second = points.second_opinion(cell, planned, joints, flange)
-    return _concluded(cell, planned, read, told, text, 0.0, second, issues)
+    return _concluded(cell, planned, read, tips, text, 0.0, second, issues)
 
 
 def _in_turns(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Array | None:

@@ -45,7 +45,7 @@ WINDOWS = (
     ("test_robust.py", *(f"test_{name}.py" for name in (
         "robust_events", "selected_job", "wall_clicks", "path", "panels", "cell_preview", "program_preview",
     ))),
-    ("tutorials", *(f"test_{name}.py" for name in ("spin_map", "new_machine", "flow", "docks", "tree", "clicks"))),
+    ("tutorials", *(f"test_{name}.py" for name in ("redundancy_map", "new_machine", "flow", "docks", "tree", "clicks"))),
 )
 # of a core: what a window has beside two others, and what each of two BESIDE parts, far behind them, has of what they leave
 WAITING, LEFT = 0.4, 0.6

@@ -33,7 +33,7 @@ LONG_FUNCTIONS = {
     "core/strategies/solids/lean.py _spread": 46,
     "core/strategies/solids/plan.py plan": 64,
     "gui/panels/stage.py __init__": 41,
-    "gui/spin_map/controls.py __init__": 50,
+    "gui/redundancy_map/controls.py __init__": 50,
     "gui/tools/export_path.py __init__": 47,
     "objects/planned/proposed_family.py proposed": 66,
     "posts/staubli/moves.py moves_of": 47,

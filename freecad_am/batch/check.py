@@ -112,15 +112,15 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
         raise InputError("NO_FILE", where, "the folder holds no program; name its files, or the folder they are in")
     if len(found) > MOST_FILES:
         raise InputError("BAD_FILE", where, f"the folder holds more than {MOST_FILES} files; name those of the program")
-    read, room = {}, LARGEST_MB * MB
+    read, remaining = {}, LARGEST_MB * MB
     for name, path in sorted(found.items()):
         try:
             read[name] = content(path, LARGEST_MB, "BAD_FILE", name)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise InputError("NO_FILE", name, f"it cannot be read ({reason}); name the program's files") from None
-        room -= len(read[name])
-        if room < 0:
+        remaining -= len(read[name])
+        if remaining < 0:
             raise InputError("BAD_FILE", where, f"its files are larger than {LARGEST_MB} MB together; is that the program?")
     return read
 
@@ -197,7 +197,7 @@ def _report(
     name: str, post: str, motion: Motion, cell: Cell, promises: Sequence[Promise], issues: Sequence[Issue]
 ) -> dict[str, Any]:
     """The keys of a plan's report that a text alone can fill."""
-    laid, reached = motion.deposit & motion.moves, motion.reachable
+    deposited, reached = motion.deposit & motion.moves, motion.reachable
     way = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
     shown = motion.joints[reached] / cell.machine.unit_values
     starts = motion.deposit & (motion.point == 0)
@@ -209,7 +209,7 @@ def _report(
             "layers": len(np.unique(motion.layer[motion.deposit])), "beads": int(starts.sum()),
             "points": int(motion.deposit.sum()),
         },
-        "length_mm": float(way[laid].sum()), "duration_s": motion.total_time,
+        "length_mm": float(way[deposited].sum()), "duration_s": motion.total_time,
         "joints": {
             "min_deg": shown.min(axis=0).tolist() if len(shown) else None,
             "max_deg": shown.max(axis=0).tolist() if len(shown) else None,

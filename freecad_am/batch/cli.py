@@ -253,8 +253,8 @@ def _machines(options: Any, session: Any) -> int:
     from freecad_am.core.issues import InputError
 
     if options.form is None and options.machine is not None:
-        told = f"in what form is {options.machine!r} to be written? Use --urdf, --dh or --modified-dh"
-        raise InputError("USAGE", "freecad-am machines", told)
+        text = f"in what form is {options.machine!r} to be written? Use --urdf, --dh or --modified-dh"
+        raise InputError("USAGE", "freecad-am machines", text)
     if options.form is not None and options.machine is None:
         raise InputError("USAGE", "freecad-am machines", f"--{options.form} of what machine? Give its name")
     wanted = (options.maker, options.reach, options.payload, options.post)

@@ -42,7 +42,7 @@ class Cluster:
         """Raises InputError NO_DASK, or SCHEDULER where there is none, it or a worker is of another version of Dask, or a
         worker has no FreeCAD."""
         self._address, self._session = address, session
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._token = uuid.uuid4().hex
         self._kept: dict[str, Any] = {}
         self._client = _connected(address)
@@ -131,13 +131,13 @@ class Cluster:
 
     def _tell(self, worker: str, found: dict[str, str]) -> None:
         """The versions of a worker, the first time."""
-        if worker in self._told:
+        if worker in self._reported:
             return
-        self._told.add(worker)
-        own = versions.told()
+        self._reported.add(worker)
+        own = versions.found_versions()
         other = [name for name in sorted({*own, *found}) if own.get(name) != found.get(name)]
-        told = ", ".join(f"{name} {version}" for name, version in found.items())
-        self._session.say(f"note[WORKER] {worker}: {told}")
+        text = ", ".join(f"{name} {version}" for name, version in found.items())
+        self._session.say(f"note[WORKER] {worker}: {text}")
         if other:
             ours = ", ".join(f"{name} {own.get(name, 'missing')}" for name in other)
             self._session.say(f"warning[VERSIONS] {worker}: here is {ours}; last digits of its rows may differ from what is "
@@ -203,8 +203,8 @@ def _refuse_versions(address: str, client: Any) -> None:
     """Dask promises nothing between versions: results come late, not at all, or end in errors of its own."""
     found = client.get_versions()
     ours = found["client"]["packages"]["distributed"]
-    for where, told in (("scheduler", found["scheduler"]), *sorted(found["workers"].items())):
-        theirs = (told or {}).get("packages", {}).get("distributed")
+    for where, there in (("scheduler", found["scheduler"]), *sorted(found["workers"].items())):
+        theirs = (there or {}).get("packages", {}).get("distributed")
         if theirs != ours:
             raise InputError(CODE, WHERE, f"{address}: {where} has distributed {theirs}, this command {ours}; install the "
                              "same version everywhere")

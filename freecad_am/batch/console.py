@@ -14,7 +14,7 @@ from typing import Any
 
 from freecad_am.core.issues import ERROR, Issue
 
-SAME = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
+DEBOUNCE_S = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
 FIRST = ("REMEDY", "NO_REMEDY")  # codes of what would make a job feasible
 _MOST_ISSUES = 12  # told on stderr; the report has them all
 LONGEST = 4000  # signs of a line: a value that it tells may be as long as a file
@@ -110,7 +110,7 @@ class Session:
 
     def _interrupt(self, *_: Any) -> None:
         now = time.monotonic()
-        if self.interrupted and now - self._when < SAME:
+        if self.interrupted and now - self._when < DEBOUNCE_S:
             return
         self.interrupted, self._when = True, now
         raise KeyboardInterrupt

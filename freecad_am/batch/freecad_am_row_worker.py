@@ -142,11 +142,11 @@ def _batch(token: str, settings: dict[str, Any]) -> Batch:
         return known[token]
 
 
-def _exchanged(process: subprocess.Popen[str], told: dict[str, Any]) -> Any:
+def _exchanged(process: subprocess.Popen[str], request: dict[str, Any]) -> Any:
     """What a process answers to a line; None where it ends."""
     assert process.stdin is not None and process.stdout is not None
     try:
-        process.stdin.write(json.dumps(told) + "\n")
+        process.stdin.write(json.dumps(request) + "\n")
         process.stdin.flush()
         line = process.stdout.readline()
     except OSError:

@@ -22,8 +22,8 @@ LIBRARY_FOLDERS = (
 def library_folders() -> list[str]:
     """Folders that may hold FreeCAD.so, the user's own choice (FREECAD_LIB) first."""
     own = [os.environ[name] for name in ("FREECAD_LIB",) if os.environ.get(name)]
-    beside_python = [os.path.join(sys.prefix, "lib"), os.path.join(sys.prefix, "lib", "freecad", "lib")]
-    return own + list(LIBRARY_FOLDERS) + beside_python
+    python_folders = [os.path.join(sys.prefix, "lib"), os.path.join(sys.prefix, "lib", "freecad", "lib")]
+    return own + list(LIBRARY_FOLDERS) + python_folders
 
 
 def find_freecad() -> bool:

@@ -46,10 +46,10 @@ def _lines(known: list[tuple[str, str]]) -> str:
 
 
 def _figures(entry: Any) -> str:
-    told = [f"reach {entry.reach:g} mm"] if entry.reach is not None else []
-    told += [f"payload {entry.payload:g} kg"] if entry.payload is not None else []
-    told += [f"post {' '.join(entry.posts)}"] if entry.posts else []
-    return "".join(f", {figure}" for figure in told)
+    figures = [f"reach {entry.reach:g} mm"] if entry.reach is not None else []
+    figures += [f"payload {entry.payload:g} kg"] if entry.payload is not None else []
+    figures += [f"post {' '.join(entry.posts)}"] if entry.posts else []
+    return "".join(f", {figure}" for figure in figures)
 
 
 def _mass(text: str) -> float:

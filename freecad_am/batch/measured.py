@@ -110,8 +110,8 @@ def _of_document(path: str, name: str) -> tuple[Any, Any]:
     found = known if not name else [one for one in known if one.Name == name] or [one for one in known if one.Label == name]
     if len(found) != 1:
         FreeCAD.closeDocument(document.Name)
-        told = f"{len(found)} objects are called {name!r}" if name else f"it has {len(found)} features; choose with --object"
-        raise InputError("NO_OBJECT", label, f"{told}; name what was measured")
+        text = f"{len(found)} objects are called {name!r}" if name else f"it has {len(found)} features; choose with --object"
+        raise InputError("NO_OBJECT", label, f"{text}; name what was measured")
     return document, found[0]
 
 

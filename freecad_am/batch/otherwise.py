@@ -61,19 +61,19 @@ def _with_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None]
     something that does; the stages as they are, if not."""
     from freecad_am.core.planning.remedies import NO_REMEDY, REMEDY
 
-    told = next((issue for issue in stages.issues if issue.code == REMEDY), None)
-    if told is None or stages.joint_path is not None or job.cell is None:
+    text = next((issue for issue in stages.issues if issue.code == REMEDY), None)
+    if text is None or stages.joint_path is not None or job.cell is None:
         return stages
     features = tuple(
         dataclasses.replace(one, build_direction=dataclasses.replace(one.build_direction, mode=UPRIGHT))
         if leans(one, one.strategy) else one for one in stages.job.features
     )
-    keys = told.message.split("`")[1::2]
+    keys = text.message.split("`")[1::2]
     what = " and ".join(f"`{key}`" for key in keys)
     other = plan(dataclasses.replace(job, features=features), "")
     feasible = not has_errors(other.issues)
     close(other)
     note = Issue(NOTE, REMEDY, f"with {what} this job is feasible; it was planned so") if feasible else Issue(
         NOTE, NO_REMEDY, f"with {what} the nozzle is clear, but the job is not feasible, which was tried")
-    stages.issues = [note if issue is told else issue for issue in stages.issues]
+    stages.issues = [note if issue is text else issue for issue in stages.issues]
     return stages

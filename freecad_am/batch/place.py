@@ -74,12 +74,12 @@ def _written(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Res
     if found.best is None:
         most = max(one.share for one in found.judged)
         wrong = found.judged[max(range(count), key=lambda k: found.judged[k].share)]
-        told = (f"none of {count} poses serves, as far as {looked} tell: at most {100.0 * most:.3g} % of them are within "
+        text = (f"none of {count} poses serves, as far as {looked} tell: at most {100.0 * most:.3g} % of them are within "
                 f"reach and limits ({wrong.code}); give a larger box in place, or another cell.branch")
         if serve:
-            told = (f"none of the {len(found.proven)} best of {serve} poses is feasible with all points, though some points "
+            text = (f"none of the {len(found.proven)} best of {serve} poses is feasible with all points, though some points "
                     "of each are; raise place.points or place.proven")
-        return Result("", [*stages.issues, Issue(ERROR, "NO_PLACE", told)], 3)
+        return Result("", [*stages.issues, Issue(ERROR, "NO_PLACE", text)], 3)
     best = found.of_pose(found.best)
     note = Issue(NOTE, "PLACED", f"{serve} of {count} poses are feasible, as far as {looked} tell; the best one was planned "
                  f"with all points: margin {100.0 * best.margin:.3g} %, {best.time:.0f} s; {TABLE} and {PAGE} are in "

@@ -28,19 +28,19 @@ def main() -> None:
     planning.import_all()
     os.dup2(nowhere, 2)  # nobody reads it from now on
     settings = json.loads(lines.readline())
-    _settled(settings)
-    _answer(answers, versions.told())
+    _set_up(settings)
+    _answer(answers, versions.found_versions())
     for line in lines:
         asked = json.loads(line)
-        _answer(answers, versions.told() if "versions" in asked else _planned(asked))
+        _answer(answers, versions.found_versions() if "versions" in asked else _planned(asked))
 
 
-def _answer(stream: Any, told: dict[str, Any]) -> None:
-    stream.write(json.dumps(told) + "\n")
+def _answer(stream: Any, answer: dict[str, Any]) -> None:
+    stream.write(json.dumps(answer) + "\n")
     stream.flush()
 
 
-def _settled(settings: dict[str, Any]) -> None:
+def _set_up(settings: dict[str, Any]) -> None:
     """Files are copies from now on, and temporary ones go into the folder of the batch."""
     from freecad_am.core.geometry import located
     from freecad_am.objects import user_machines

@@ -83,7 +83,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
     paths.require_freecad()
     import FreeCAD
 
-    with told_by_keys(job):
+    with named_by_keys(job):
         cell = check(job)
         with one_thread(), outputs.Outputs(folder, session) as files:
             stages = otherwise.planned(
@@ -101,7 +101,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
 
 
 @contextlib.contextmanager
-def told_by_keys(job: Job) -> Iterator[None]:
+def named_by_keys(job: Job) -> Iterator[None]:
     """Errors about stages of a document as ones about keys of the job."""
     try:
         yield

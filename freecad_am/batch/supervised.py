@@ -50,16 +50,16 @@ def supervised(work: Callable[[], int], where: str, say: Callable[[str], None]) 
         for number in passed[:]:  # that came before there was a copy
             with contextlib.suppress(ProcessLookupError):
                 os.kill(child[0], number)
-        told = []
+        messages = []
         with open(ours, encoding="utf-8") as stream:
-            told = [json.loads(line) for line in stream if line.endswith("\n")]
+            messages = [json.loads(line) for line in stream if line.endswith("\n")]
         status = os.waitstatus_to_exitcode(os.waitpid(child[0], 0)[1])
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-    if DONE in told:
+    if DONE in messages:
         return status
-    for entry in told:
+    for entry in messages:
         _tidied(*entry)
     if passed:
         say("interrupted: nothing was written")

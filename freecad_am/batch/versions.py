@@ -19,7 +19,7 @@ _WINDOW = os.path.join(PACKAGE, "gui")
 _WHEN = (1980, 1, 1, 0, 0, 0)  # of every file in the archive: the same code is the same bytes
 
 
-def told() -> dict[str, str]:
+def found_versions() -> dict[str, str]:
     """Versions by the name of the program or library; of this process, in which FreeCAD is there."""
     import FreeCAD
     import numpy as np
@@ -38,14 +38,14 @@ def told() -> dict[str, str]:
 @functools.cache
 def package() -> bytes:
     """An archive of our code and data without the window, which runs headless commands where it is unpacked."""
-    told = io.BytesIO()
-    with zipfile.ZipFile(told, "w", zipfile.ZIP_DEFLATED) as archive:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for name in _files():
             entry = zipfile.ZipInfo(name.replace(os.sep, "/"), _WHEN)
             entry.compress_type = zipfile.ZIP_DEFLATED
             with open(os.path.join(ROOT, name), "rb") as stream:
                 archive.writestr(entry, stream.read())
-    return told.getvalue()
+    return buffer.getvalue()
 
 
 @functools.cache

@@ -13,20 +13,20 @@ from scipy.sparse.csgraph import connected_components
 
 from freecad_am.core.types import Array, Index, Mask
 
+from ..core.geometry.formatting import place
 from ..core.geometry.mesh.refined import Edges
-from ..core.geometry.told import place
 from ..core.geometry.walls.clad_faces import CladFaces
 from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.geometry.walls.surface import dot
 from ..core.issues import WARNING, InputError, Issue
-from .kernel.limits import told
+from .kernel.limits import reported
 from .walls.checks import CREASE, smallest_radii
 from .walls.patch_wall import sound
 from .walls.sheet import sheet
 from .walls.wall import faces_by_name
 
 OF_RADIUS, OF_SPACING, FINEST = 0.25, 0.5, 0.1  # edges: of the smallest radius, of the bead spacing, at least
-TOLD = 8  # faces named in a message
+MOST_NAMED = 8  # faces named in a message
 
 
 def clad_faces(
@@ -37,7 +37,7 @@ def clad_faces(
 
     InputError NO_FACES, UNKNOWN_FACE, SEVERAL_BODIES, BACK_OF_SOLID, BRANCHING_FACES, and those of `sheet`.
     """
-    with told(label):
+    with reported(label):
         known = faces_by_name(shape, names, label)
         if not names and shape.Solids:
             raise InputError(
@@ -99,7 +99,7 @@ def _smooth(wall: PatchWall, height: float, label: str) -> tuple[tuple[PatchWall
     links = coo_matrix((np.ones((~crease).sum()), pair[~crease].T), shape=(n, n))
     count, part = connected_components(links, directed=False)
     sheets = tuple(_part(wall, part == k) for k in range(count))
-    return sheets, _told(wall, edges.ends[two], pair, turn, inward, height) if height > 0.0 and crease.any() else ()
+    return sheets, _crease_issues(wall, edges.ends[two], pair, turn, inward, height) if height > 0.0 and crease.any() else ()
 
 
 def _turns(wall: PatchWall, ends: Index, pair: Index) -> tuple[Array, Mask]:
@@ -133,7 +133,7 @@ def _part(wall: PatchWall, chosen: Mask) -> PatchWall:
     )
 
 
-def _told(
+def _crease_issues(
     wall: PatchWall, ends: Index, pair: Index, turn: Array, inward: Mask, height: float
 ) -> tuple[Issue, ...]:
     found = []

@@ -13,7 +13,7 @@ import Part
 from freecad_am.core.types import Array
 
 from ..core.geometry.curves.bead_curves import BeadCurve
-from ..core.geometry.told import place
+from ..core.geometry.formatting import place
 from ..core.issues import InputError
 
 SHORTEST = 1e-4  # mm; shorter edges are none

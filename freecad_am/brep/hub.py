@@ -15,11 +15,11 @@ from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array
 
 from ..core.geometry.developable import Developable
-from ..core.geometry.mesh.manifold import holes, told_apart
-from ..core.geometry.mesh.repair import Repaired, crossing_told, mended_issues, repaired
+from ..core.geometry.mesh.manifold import holes, separated
+from ..core.geometry.mesh.repair import Repaired, crossing_messages, mended_issues, repaired
 from ..core.geometry.mesh.solid import SolidMesh
+from ..core.geometry.obstacles import Body
 from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
-from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from .kernel.limits import refuse_bare
 from .revolution.axis import from_normals
@@ -28,7 +28,7 @@ from .whole_mesh import whole
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
 CROSSED = 5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin
-SAME = 1e-6  # relative; surfaces of faces that differ less are one
+TOLERANCE = 1e-6  # relative; surfaces of faces that differ less are one
 FITTED = 1e-3  # mm that a spline may be off the cylinder or cone it is taken for
 ALONG_EDGE = 361  # points of an edge, that may go round
 NARROWEST = math.radians(3.0)  # a gap narrower than this, as a keyway or between such points, is none
@@ -69,7 +69,7 @@ def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching
         made.append((solid, found.solids))
         issues += found.issues
         if touching and not found.issues:
-            crossing += crossing_told(found.solids[0], CROSSED * chord_error)
+            crossing += crossing_messages(found.solids[0], CROSSED * chord_error)
     return Bodies(_named([mesh for _, meshes in made for mesh in meshes], label), (*issues, *mended_issues(label, crossing)))
 
 
@@ -90,7 +90,7 @@ def _meshed(solid: Any, source: Any, chord_error: float, label: str, mend: float
             found = repaired(vertices, mesh.triangles, label, mend, touching)
             return found._replace(issues=(*found.issues, *issues))
         except InputError:
-            widest = max((hole.size for hole in holes(told_apart(vertices, mesh.triangles))), default=0.0)
+            widest = max((hole.size for hole in holes(separated(vertices, mesh.triangles))), default=0.0)
         if widest <= mend:
             raise
         raise InputError(
@@ -163,7 +163,7 @@ def _seat(name: str, face: Any, chosen: bool) -> Seat | None:
     shape = Developable(-low * math.tan(taper), -low) if taper else Developable(radius)
     base = Base(name, shape, upright(origin + low * z, z))
     x, y = base.inside(points)[:, :2].T
-    start, span = sector(np.arctan2(y, x)[np.hypot(x, y) > SAME * shape.radius])
+    start, span = sector(np.arctan2(y, x)[np.hypot(x, y) > TOLERANCE * shape.radius])
     whole = span > TURN - NARROWEST
     return Seat(base, (Stretch(0.0, high - low) if whole else Stretch(0.0, high - low, start, span),), chosen)
 
@@ -238,8 +238,8 @@ def _shift(one: Base, other: Base) -> float | None:
     """How far the frame of another base is up the axis of this one, where they are the same surface."""
     away = one.inside(other.frame[:3, 3])
     size = one.surface.radius
-    alike = other.frame[:3, 2] @ one.frame[:3, 2] > 1.0 - SAME and math.hypot(away[0], away[1]) < SAME * size
-    if not alike or abs(one.surface.taper - other.surface.taper) > SAME:
+    alike = other.frame[:3, 2] @ one.frame[:3, 2] > 1.0 - TOLERANCE and math.hypot(away[0], away[1]) < TOLERANCE * size
+    if not alike or abs(one.surface.taper - other.surface.taper) > TOLERANCE:
         return None
     rest = other.surface.radius - (one.surface.radius - away[2] * math.tan(one.surface.taper))
-    return float(away[2]) if abs(rest) < SAME * size else None
+    return float(away[2]) if abs(rest) < TOLERANCE * size else None

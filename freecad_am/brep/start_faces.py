@@ -11,7 +11,7 @@ import Part
 from freecad_am.core.types import Array
 
 from .hub import SHARE
-from .kernel.process import beside
+from .kernel.process import in_kernel_process
 from .shapes.fine_mesh import fine
 from .walls.wall import faces_by_name
 
@@ -21,6 +21,6 @@ def triangles_of_faces(shape: Any, names: Sequence[str], label: str, chord_error
     NO_WALL, UNKNOWN_FACE."""
     known = faces_by_name(shape, names, label)
     chosen = Part.makeCompound([known[name].copy(False) for name in dict.fromkeys(names or known)])
-    made = beside(fine, chosen, SHARE * chord_error)
+    made = in_kernel_process(fine, chosen, SHARE * chord_error)
     corners: Array = made[0][made[1]]
     return corners

@@ -8,12 +8,12 @@ from typing import Any
 
 from ..core.geometry.mesh.solid import SolidMesh
 from ..core.issues import WARNING, Issue
-from .kernel.process import beside
+from .kernel.process import in_kernel_process
 from .shapes.fine_mesh import fine
 from .shapes.tessellate import Tessellation
 
 FINER = (1.0, 0.8, 1.2, 0.5)  # of the deflection asked for, in the order in which they are tried
-MOST = 1.5  # deflections between triangles and shape, on average over its area, that are not fault
+MAX_DEFLECTIONS = 1.5  # deflections between triangles and shape, on average over its area, that are not fault
 
 
 def whole(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Issue, ...]]:
@@ -22,9 +22,9 @@ def whole(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Iss
     exact, area = abs(float(solid.Volume)), float(solid.Area)
     found: list[tuple[float, Tessellation]] = []
     for share in FINER:
-        made = beside(fine, solid.copy(), share * chord)
+        made = in_kernel_process(fine, solid.copy(), share * chord)
         volume = abs(SolidMesh(made.vertices, made.triangles).volume)
-        if abs(volume - exact) <= MOST * max(share, 1.0) * chord * area:
+        if abs(volume - exact) <= MAX_DEFLECTIONS * max(share, 1.0) * chord * area:
             return made, ()
         found.append((volume, made))
     volume, made = min(found, key=lambda one: abs(one[0] - exact))

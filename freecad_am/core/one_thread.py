@@ -37,7 +37,7 @@ _OPENMP = ("omp_get_max_threads", "omp_set_num_threads")  # the number of the ca
 class _Number(NamedTuple):
     """How many threads a library uses: told and set."""
 
-    told: Callable[[], int]
+    get: Callable[[], int]
     set: Callable[[int], None]
 
 
@@ -61,7 +61,7 @@ def hold() -> None:
     global _holders, _before
     with _lock:
         if not _holders:
-            _before = [number.told() for number in _numbers()]
+            _before = [number.get() for number in _numbers()]
         _holders += 1
         here()
 
@@ -94,8 +94,8 @@ def _numbers() -> tuple[_Number, ...]:
         for names in (*_NUMBERS, _OPENMP):
             # the linker looks through what the file itself depends on, too
             if all(hasattr(library, name) for name in names):
-                told, set_to = (getattr(library, name) for name in names)
-                found[ctypes.cast(set_to, ctypes.c_void_p).value or 0] = _Number(told, set_to)
+                get, set_to = (getattr(library, name) for name in names)
+                found[ctypes.cast(set_to, ctypes.c_void_p).value or 0] = _Number(get, set_to)
     return tuple(found.values())
 
 
@@ -110,8 +110,8 @@ def _files() -> list[str]:
             if os.name == "nt":
                 files += glob.glob(os.path.join(glob.escape(f"{folder}.libs"), "*openblas*.dll"))
     if os.name == "nt":
-        for beside in {os.path.dirname(sys.executable), os.path.join(sys.prefix, "bin"),
+        for place in {os.path.dirname(sys.executable), os.path.join(sys.prefix, "bin"),
                        os.path.join(sys.prefix, "Library", "bin")}:
             for name in ("*openblas*.dll", "mkl_rt*.dll"):
-                files += glob.glob(os.path.join(glob.escape(beside), name))
+                files += glob.glob(os.path.join(glob.escape(place), name))
     return [file for file in files if os.path.exists(file)]

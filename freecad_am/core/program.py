@@ -196,7 +196,7 @@ class Program:
     name: str
     machine: str
     blocks: tuple[Block, ...]
-    endless: tuple[bool, ...]
+    continuous: tuple[bool, ...]
     motion: str = "joint"
     setup: str = "part-on-robot"
     max_points: int = 2000
@@ -222,7 +222,7 @@ class Program:
     @property
     def own_axes(self) -> int:
         """How many axes the machine has without those beside it."""
-        return len(self.endless) - len(self.external_kinds)
+        return len(self.continuous) - len(self.external_kinds)
 
     @property
     def on_track(self) -> bool:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from .geometry.columns import lengths
 from .geometry.curves.outline import Outline, estimated, outline
 from .geometry.fitted import Fitted, PredictedShape
-from .geometry.surroundings import Body
+from .geometry.obstacles import Body
 from .issues import Issue
 from .types import Array
 
@@ -236,7 +236,7 @@ class SpeedLaw:
     slowest: float
     acceleration: float
 
-    def laid(self, bead: Bead, speed: Array) -> Bead:
+    def applied(self, bead: Bead, speed: Array) -> Bead:
         """The bead at other speeds (n,) of its segments, as wide and as high as it gets there."""
         root = np.cbrt(1.0 / speed[1:]) - np.cbrt(1.0 / bead.speed[1:])
         more = 0.5 * (np.r_[root[:1], root] + np.r_[root, root[-1:]])
@@ -327,8 +327,8 @@ class Toolpath:
     @property
     def layer_heights(self) -> Array:
         """(layers,) mm, the height of each layer."""
-        told = [one.layer_height for one in self.features] or [self.layer_height]
-        return np.array([told[layer.feature if self.features else 0] for layer in self.layers])
+        heights = [one.layer_height for one in self.features] or [self.layer_height]
+        return np.array([heights[layer.feature if self.features else 0] for layer in self.layers])
 
     @property
     def filled(self) -> bool:

@@ -55,7 +55,7 @@ def _run(document: Any, function: str, first: str, arguments: dict[str, str]) ->
     Gui.doCommand(IMPORT)
     with busy():
         Gui.doCommand(f"am.{function}({', '.join(texts)})")
-    new = [told for told in _wrong(document) if told not in before]
+    new = [finding for finding in _wrong(document) if finding not in before]
     for name, status, message in new[:1]:  # those that follow say it again
         App.Console.PrintError(tr("{} is {}: {}").format(name, translated(status), translated(message)) + "\n")
 
@@ -63,4 +63,4 @@ def _run(document: Any, function: str, first: str, arguments: dict[str, str]) ->
 def _wrong(document: Any) -> list[tuple[str, str, str]]:
     """Label, status and message of the stages that something is wrong with, inputs first."""
     found = [(obj.Label, obj.Status, obj.Message) for obj in api.stages_of(document)]
-    return [told for told in found if told[1] in (FAILED, INFEASIBLE)]
+    return [finding for finding in found if finding[1] in (FAILED, INFEASIBLE)]

@@ -39,12 +39,12 @@ def text(cell: CellParameters, folder: str) -> str:
             if getattr(cell.nozzle, field.name) != getattr(usual.nozzle, field.name)
         ]
         lines.append(f"nozzle: {{{', '.join(entries)}}}")
-    beside = external.externals(cell.external)
-    if beside:
+    mechanisms = external.externals(cell.external)
+    if mechanisms:
         lines.append("external:")
         lines += [
             f"- {{machine: {_machine(one.machine, folder)}, pose: {_shown(one.pose, f.POSE)}, carries: {one.carries}}}"
-            for one in beside
+            for one in mechanisms
         ]
     around = obstacles.obstacles(cell.obstacles)
     lines += ["obstacles:"] if around else []

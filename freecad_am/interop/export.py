@@ -88,8 +88,8 @@ def _whole(path: str, write: Callable[[str], None]) -> str:
     if not os.path.isdir(folder):
         raise InputError("NO_FOLDER", path, f"there is no folder {folder}; make it, or choose another")
     try:
-        with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as beside:
-            unfinished = os.path.join(beside, f"file{os.path.splitext(path)[1].lower()}")
+        with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as temporary:
+            unfinished = os.path.join(temporary, f"file{os.path.splitext(path)[1].lower()}")
             write(unfinished)
             os.replace(unfinished, path)
     except OSError as error:

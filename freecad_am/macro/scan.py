@@ -28,9 +28,9 @@ def make_scan(
     body = taken(substrate).body()
     measured = point_file.read(file, unit)
     scan_checks.refuse_size(measured.points, measured.label, body)
-    asked = fit == BEST or (fit == AUTO and scan_checks.near(measured.points, body, within) < scan_checks.NEAR)
+    asked = fit == BEST or (fit == AUTO and scan_checks.near(measured.points, body, within) < scan_checks.LEAST_ON_PART)
     if asked and not pairs:
-        motion = scan_motion.laid(measured.points, body, measured.label)
+        motion = scan_motion.aligned(measured.points, body, measured.label)
         pairs = scan_motion.as_pairs(motion, scan_checks.extent(body.vertices))
     values = {"fit": NONE, "unit": unit, "pairs": pairs}
     with one_step(doc, f"Make {label}"):

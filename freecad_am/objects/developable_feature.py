@@ -12,8 +12,8 @@ from ..brep.hub import SHARE, Bodies, bodies_of, given, seats
 from ..core.geometry.beyond_hub import volume_beyond
 from ..core.geometry.developable import Developable
 from ..core.geometry.mesh.solid import SolidMesh
+from ..core.geometry.obstacles import Body
 from ..core.geometry.on_hub import OwnHub, Seat, SolidsOnHub
-from ..core.geometry.surroundings import Body
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import DevelopableParameters
@@ -198,6 +198,6 @@ def _named_faces(owner: Taken, names: Sequence[str], where: str) -> list[tuple[s
     short = [name.rsplit(".", maxsplit=1)[-1] for name in names if name]
     wrong = [name for name in short if name not in known]
     if wrong or not short:
-        told = ", ".join(wrong) or owner.label
-        raise InputError("BAD_FACES", where, f"{told} is not a face of {owner.label}; choose faces of the hub")
+        text = ", ".join(wrong) or owner.label
+        raise InputError("BAD_FACES", where, f"{text} is not a face of {owner.label}; choose faces of the hub")
     return [known[name] for name in short]

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.issues import NOTE, AmError, InputError, Issue
 from ..core.kinematics import cell as cells
-from ..core.kinematics.machines.machine import NOT_TOLD
+from ..core.kinematics.machines.machine import UNKNOWN_REMARK
 from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.joints import JointParameters
@@ -28,7 +28,7 @@ from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
 from . import user_machines
-from .checks.links_clear import arm_issues, rods_of
+from .checks.links_clear import arm_issues, cylinders_of
 from .shapes import cell_obstacles
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
@@ -125,20 +125,20 @@ class JointPath(Stage):
         def work() -> Outcome:
             toolpath, process = job.toolpath(), job.process
             cell = cell_obstacles.resolved(job.settings, toolpath, job.folders)
-            rods = () if cell.arm_clearance is None else rods_of(cell)
+            cylinders = () if cell.arm_clearance is None else cylinders_of(cell)
             joint_path = plan_joints(
-                toolpath, cell, job.parameters, lambda fraction, text: progress.report(JOINTS * fraction, text), rods
+                toolpath, cell, job.parameters, lambda fraction, text: progress.report(JOINTS * fraction, text), cylinders
             )
             progress.report(JOINTS, "joining the beads by rapid moves")
             motion, rapid_issues = assemble(
-                joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height, rods
+                joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height, cylinders
             )
-            near = () if not rods else arm_issues(motion, cell, toolpath, process, (*joint_path.issues, *rapid_issues))
+            near = () if not cylinders else arm_issues(motion, cell, toolpath, process, (*joint_path.issues, *rapid_issues))
             issues = (*joint_path.issues, *rapid_issues, *near, *_not_kept(cell), *_drawn_plain(cell), *_moved(cell))
             issues = (*issues, *_heights_as_run(joint_path, toolpath, process))
             asked = Tried(
                 lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,
-                rods=rods, obstacles=cell.obstacles, torch=cell.torch, beside=cell.beside,
+                cylinders=cylinders, obstacles=cell.obstacles, torch=cell.torch, external_links=cell.external_links,
             )
             _tell_remedies(cell, toolpath, issues)
             issues = (*remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)), *issues)
@@ -185,7 +185,7 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
 
 def _drawn_plain(cell: cells.Cell) -> list[Issue]:
     """A note on what the URDF of a robot tells that was left out, such as meshes that cannot be drawn."""
-    notes = cell.robot.remarks if cell.robot.controller_remark == NOT_TOLD else ()
+    notes = cell.robot.remarks if cell.robot.controller_remark == UNKNOWN_REMARK else ()
     return [Issue(NOTE, "URDF_LOOKS", f"{cell.robot.title}: {'; '.join(notes)}")] if notes else []
 
 
@@ -195,7 +195,7 @@ def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessPar
     if model is None or not any(issue.code == SLOWED for issue in path.issues):
         return []
     beads = [one.bead for one in path.beads]
-    return [predicted.heights_told(beads, toolpath.layer_height, process, model, as_run=True)]
+    return [predicted.with_heights(beads, toolpath.layer_height, process, model, as_run=True)]
 
 
 def _sums(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> tuple[tuple[str, float], ...]:

@@ -137,8 +137,8 @@ def posted(job: Job) -> Posted:
     straight = parameters.motion == "cartesian" and not post.CONTROLLER.straight_in_part
     if straight and cell.arrangement.holds_part:
         beads = [path.bead for path in planned.joint_path.beads]
-        motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
-    motion, _ = steps.told(motion, post.CONTROLLER, toolpath.chord_error, parameters.blend)
+        motion = moving_tool.refined_to_chord_error(motion, cell, toolpath.chord_error, beads)
+    motion, _ = steps.programmed(motion, post.CONTROLLER, toolpath.chord_error, parameters.blend)
     waits = [layer.wait for layer in toolpath.layers]
     returns = programs.returning(toolpath, planned.joint_path.beads)
     program = programs.build(motion, cell, job.process, parameters, post.CONTROLLER, job.name, waits, returns)

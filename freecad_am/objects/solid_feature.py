@@ -9,7 +9,7 @@ from typing import Any
 from ..brep.guide import edges_of
 from ..brep.hub import bodies_of
 from ..brep.start_faces import triangles_of_faces
-from ..core.geometry.surroundings import Body
+from ..core.geometry.obstacles import Body
 from ..core.issues import InputError, Issue
 from ..core.layers.along.guided import guided
 from ..core.layers.planes.stacking import stacked

@@ -86,8 +86,8 @@ def _start_edges(obj: Any) -> tuple[str, ...]:
     names = tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name)
     wrong = [name for name in names if not name.startswith("Edge")]
     if wrong or not names or owner != obj.Source[0]:
-        told = ", ".join(wrong) or owner.Label
+        text = ", ".join(wrong) or owner.Label
         raise InputError(
-            "BAD_EDGES", f"{obj.Label}.StartEdges", f"{told} is not an edge of {obj.Source[0].Label}; choose edges of it"
+            "BAD_EDGES", f"{obj.Label}.StartEdges", f"{text} is not an edge of {obj.Source[0].Label}; choose edges of it"
         )
     return names

@@ -92,10 +92,10 @@ class Toolpath(Stage):
         def work() -> Outcome:
             made = planned(given[0]) if fit is None else planned(given[0], fit)
             toolpath = looked_at(made, given[0], sources)
-            told = deposit_balance.issues(
+            more = deposit_balance.issues(
                 deposit_balance.of_toolpath(given[0].wall, toolpath, given[0].process.bead_width)
             )
-            return _outcome(with_remedy(look(dataclasses.replace(toolpath, issues=(*told, *toolpath.issues))), fixed))
+            return _outcome(with_remedy(look(dataclasses.replace(toolpath, issues=(*more, *toolpath.issues))), fixed))
 
         return work
 
@@ -118,7 +118,7 @@ class Toolpath(Stage):
         from .checks import predicted_shape  # jobs without an allowance need none of it
 
         targets = self.targets(obj)
-        return lambda made: predicted_shape.told(made, targets, allowance)
+        return lambda made: predicted_shape.with_shape_issues(made, targets, allowance)
 
     def _fit(self, obj: Any) -> Callable[[CoreToolpath], CoreToolpath] | None:
         """What fits the layers to a scan; None without one. InputError."""
@@ -169,8 +169,8 @@ class Toolpath(Stage):
             made = [_upright(one) if turn else one for one, turn in zip(made, turned, strict=True)]
             members = [member(one, given, features) for one, given in zip(features, made, strict=True)]
             names, order = [tuple(one.Name for one in _sources(feature)) for feature in features], obj.Sequence
-            told = " and ".join(f"`features[{k}].build_direction.mode: fixed`" for k, turn in enumerate(turned) if turn)
-            return Fixed(told, lambda: planned_in_sequence(members, order, names))
+            text = " and ".join(f"`features[{k}].build_direction.mode: fixed`" for k, turn in enumerate(turned) if turn)
+            return Fixed(text, lambda: planned_in_sequence(members, order, names))
         shape, feature = shapes[0], features[0]
         wall, strategy = shape.reader(feature), shape.parameters(feature, strategy_of(shape))
         build, fit = shape.parameters(feature, BuildDirectionParameters), self._fit(obj)

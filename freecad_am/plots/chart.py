@@ -15,7 +15,7 @@ from freecad_am.core.types import Array
 LINE, STEP, DOTS, MARKED, OUTLINE = "line", "step", "dots", "marked", "outline"
 INF = float("inf")
 # limits are in sight where values come as near as this share of them
-NEAR = 0.4
+SHOWN_FROM = 0.4
 PAD = 0.06
 
 
@@ -112,7 +112,7 @@ class Chart:
             return 0.0, 1.08 * float(self.bars.heights.max(initial=0.0)) or 1.0
         values = [curve.y for curve in self.curves]
         low, high = _ends(values, [value for value, _ in self.marks])
-        near = [end for end in self.limits if np.isfinite(end) and max(abs(low), abs(high)) >= NEAR * abs(end)]
+        near = [end for end in self.limits if np.isfinite(end) and max(abs(low), abs(high)) >= SHOWN_FROM * abs(end)]
         return _padded(*_ends(values, [*(value for value, _ in self.marks), *near]))
 
 

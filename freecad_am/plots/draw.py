@@ -22,9 +22,9 @@ DPI = 100.0
 LEFT, RIGHT, ABOVE, BELOW, BARE = 66.0, 14.0, 24.0, 37.0, 6.0
 NUMBERS = 12.0  # above a frame that has the numbers of layers
 KEYS = 12.0  # of a row of names of curves, where they have no room beside the title
-TEXT, TITLE, SMALL = 7.6, 8.6, 6.4  # points
+TEXT, TITLE, SMALL_TEXT = 7.6, 8.6, 6.4  # points
 CHARACTER = 6.0  # pixels, about, of a text
-TITLE_ROOM = 1.2  # of a title, which is larger
+TITLE_SCALE = 1.2  # of a title, which is larger
 MOST_BORDERS, FEW_WRONG = 80, 40
 APART = 26.0  # pixels between the numbers of layers, at least
 BORDER, FRAME, FORBIDDEN, WANTED, BEAD = 0.35, 0.5, 0.13, 0.14, 0.35  # opacities
@@ -113,12 +113,12 @@ def _titled(chart: Chart, look: Look) -> str:
 def _rows_of_keys(chart: Chart, look: Look, width: float) -> list[list[Curve]]:
     """The names of curves in rows between title and frame, none where they have room beside the title."""
     named = _named(chart)
-    room = [CHARACTER * (len(curve.name) + 3.0) for curve in named]
-    if len(named) < 2 or CHARACTER * TITLE_ROOM * len(_titled(chart, look)) + sum(room) <= width:
+    widths = [CHARACTER * (len(curve.name) + 3.0) for curve in named]
+    if len(named) < 2 or CHARACTER * TITLE_SCALE * len(_titled(chart, look)) + sum(widths) <= width:
         return []
     rows: list[list[Curve]] = []
     left = 0.0
-    for curve, needed in zip(named, room, strict=True):
+    for curve, needed in zip(named, widths, strict=True):
         if not rows or needed > left:
             rows.append([])
             left = width
@@ -165,7 +165,7 @@ class _Frame:
             numbers = ScalarFormatter(useOffset=False)
             numbers.set_powerlimits((-4, 6))
             axis.set_major_formatter(numbers)
-            axis.get_offset_text().set(color=self.look.soft, size=SMALL)
+            axis.get_offset_text().set(color=self.look.soft, size=SMALL_TEXT)
         axes.tick_params(length=0.0, pad=3.0, labelsize=TEXT, labelcolor=self.look.soft, labelbottom=self.numbered,
                          grid_color=self.look.grid, grid_linewidth=0.8)
         axes.grid(True)
@@ -210,7 +210,7 @@ class _Frame:
             share = (float(chart.borders[number]) - low) / (high - low)
             text = ("{}" if last >= 0.0 else self.look.words.layer).format(chart.layers[number])
             if share * self.place.width >= last + APART:
-                self._text(self.place.left + share * self.place.width, self.place.top - 4.0, text, size=SMALL)
+                self._text(self.place.left + share * self.place.width, self.place.top - 4.0, text, size=SMALL_TEXT)
                 last = share * self.place.width + CHARACTER * len(text)
 
     def _curve(self, axes: Any, curve: Curve) -> None:
@@ -244,7 +244,7 @@ class _Frame:
                 axes.add_line(Line2D([value, value], [0.0, 1.0], transform=axes.get_xaxis_transform(), color=self.look.ink,
                                      linewidth=1.0, linestyle="--"))
                 share = (value - start) / (end - start)
-                self._text(self.place.left + share * self.place.width + 4.0, self.place.top + 10.0, name, size=SMALL)
+                self._text(self.place.left + share * self.place.width + 4.0, self.place.top + 10.0, name, size=SMALL_TEXT)
 
     def _across(self, axes: Any, value: float, colour: str, name: str, left: bool = False) -> None:
         """A dashed line with its name at its right or left end, below it where there is no room above."""
@@ -254,7 +254,7 @@ class _Frame:
         down = self.place.top + (high - value) / (high - low) * self.place.height
         above = down - self.place.top > 11.0
         self._text(self.place.left + (4.0 if left else self.place.width - 4.0), down - 3.0 if above else down + 10.0, name,
-                   color=colour, ha="left" if left else "right", size=SMALL)
+                   color=colour, ha="left" if left else "right", size=SMALL_TEXT)
 
     def _title(self) -> None:
         words = self.look.words
@@ -268,10 +268,10 @@ class _Frame:
         if len(named) < 2:
             ends = [f"{end:.6g}" for end in (least, most) if np.isfinite(end)]
             if np.isfinite(most):
-                told = words.limits if len(ends) == 2 else words.limit
-                self._text(right, down, told.format(*ends, self.chart.y.unit), ha="right", size=SMALL)
+                word = words.limits if len(ends) == 2 else words.limit
+                self._text(right, down, word.format(*ends, self.chart.y.unit), ha="right", size=SMALL_TEXT)
             elif self.chart.unlimited:
-                self._text(right, down, self.chart.unlimited, ha="right", size=SMALL)
+                self._text(right, down, self.chart.unlimited, ha="right", size=SMALL_TEXT)
             return
         below = down - KEYS * len(rows)
         for number, row in enumerate(rows):

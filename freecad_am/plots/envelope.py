@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from freecad_am.core.types import Array
 
-FEW = 4  # points to a column that are drawn as they are
+POINTS_KEPT = 4  # points to a column that are drawn as they are
 
 
 def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> NDArray[np.intp]:
@@ -20,7 +20,7 @@ def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> NDArr
     first = max(int(np.searchsorted(x, low, side="left")) - 1, 0)
     end = min(int(np.searchsorted(x, high, side="right")) + 1, len(x))
     rows = np.arange(first, end)
-    if len(rows) <= FEW * columns:
+    if len(rows) <= POINTS_KEPT * columns:
         return rows
     column = np.clip(np.floor((x[first:end] - low) / (high - low) * columns), -1, columns).astype(np.intp)
     begins = np.concatenate([[0], np.flatnonzero(np.diff(column)) + 1])

@@ -12,7 +12,7 @@ from .chart import INF, LINE, STEP, Chart, Curve, Quantity
 from .rows import Rows
 from .source import Source
 
-ENDLESS = " (endless)"
+CONTINUOUS = " (endless)"
 # what is told where a machine file has no limit, and where none can have one
 NO_SPEED = "no limit known: the machine file has no max_speed"
 NO_ACCELERATION = "no limit known: the machine file has no max_acceleration"
@@ -26,7 +26,7 @@ def angles(source: Source, rows: Rows) -> tuple[Chart, ...]:
     limits, units, values = cell.limits, cell.machine.units, cell.machine.unit_values
     joints = rows.at(source.motion.joints)
     charts = [
-        _of_axis(rows, axis, limits.labels[axis] + ("" if np.isfinite(low) or np.isfinite(high) else ENDLESS),
+        _of_axis(rows, axis, limits.labels[axis] + ("" if np.isfinite(low) or np.isfinite(high) else CONTINUOUS),
                  Quantity("place" if units[axis] == "mm" else "angle", units[axis]), joints[:, axis] / values[axis],
                  (low, high), LINE)
         for axis, (low, high) in enumerate(zip((limits.lower / values).tolist(), (limits.upper / values).tolist()))
@@ -101,7 +101,7 @@ def _of_axis(
     rows: Rows, axis: int, title: str, y: Quantity, values: Array, limits: tuple[float, float], kind: str,
     unlimited: str = "",
 ) -> Chart:
-    curve = _curve(rows, title.removesuffix(ENDLESS), values, axis, kind)
+    curve = _curve(rows, title.removesuffix(CONTINUOUS), values, axis, kind)
     return Chart(
         title, rows.quantity, y, (curve,), limits=(float(limits[0]), float(limits[1])), borders=rows.borders,
         layers=rows.layers, unlimited=unlimited,

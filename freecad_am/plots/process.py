@@ -23,7 +23,7 @@ LEAST_PART = 1e-3  # of the largest layer; a share of less means nothing
 
 def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
     """The speed of the deposition point, as asked for and, where the machine cannot keep it, what it becomes."""
-    motion, kept = source.motion, source.pace
+    motion, kept = source.motion, source.feed
     speed = np.where(motion.point > 0, motion.speed, np.nan)
     rapid, deposit = (rows.along(np.where(some, values, np.nan)) for some, values in (
         (~motion.deposit, motion.speed), (motion.deposit, speed),
@@ -98,12 +98,12 @@ def heights(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     return height_charts(predicted.beads(source.toolpath), layers)
 
 
-def height_charts(told: dict[str, Any] | None, layers: tuple[int, int]) -> tuple[Chart, ...]:
+def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tuple[Chart, ...]:
     """The charts of what `predicted.beads` finds."""
-    rows = [] if told is None else [row for row in told["layers"] if layers[0] <= row["layer"] <= layers[1]]
-    if told is None or not rows:
+    rows = [] if figures is None else [row for row in figures["layers"] if layers[0] <= row["layer"] <= layers[1]]
+    if figures is None or not rows:
         return ()
-    x, asked = np.array([row["layer"] for row in rows], float), float(told["layer_height_mm"])
+    x, asked = np.array([row["layer"] for row in rows], float), float(figures["layer_height_mm"])
 
     def curve(name: str, values: list[float], colour: int) -> Curve:
         return Curve(name, x, np.array(values), colour, MARKED)
@@ -124,15 +124,15 @@ def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     if source.slabs is None:
         return ()
     end = layers[1] + 1 if layers[1] + 1 < len(source.toolpath.layers) else None  # with what is left out at the top
-    part, laid = (values[layers[0] : end] / MM3_PER_CM3 for values in source.slabs)
+    part, deposited = (values[layers[0] : end] / MM3_PER_CM3 for values in source.slabs)
     if not len(part):
         return ()
     x, layer = np.arange(layers[0], layers[0] + len(part), dtype=float), Quantity("layer")
-    share = np.divide(100.0 * laid, part, out=np.full(len(part), np.nan), where=part > LEAST_PART * part.max())
-    whole = 100.0 * laid.sum() / max(part.sum(), 1e-300)
+    share = np.divide(100.0 * deposited, part, out=np.full(len(part), np.nan), where=part > LEAST_PART * part.max())
+    whole = 100.0 * deposited.sum() / max(part.sum(), 1e-300)
     return (
         Chart("Volume by layer", layer, Quantity("volume", "cm³"),
-              (Curve("part", x, part, "soft", MARKED), Curve("deposited", x, laid, 0, MARKED))),
+              (Curve("part", x, part, "soft", MARKED), Curve("deposited", x, deposited, 0, MARKED))),
         Chart(f"Deposited of the part: {whole:.4g} %", layer, Quantity("share", "%"), (Curve("share", x, share, 0, MARKED),),
               marks=((100.0, ""),)),
     )
@@ -149,10 +149,10 @@ def section(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
         return ()
     beads = source.toolpath.layers[number].beads
     plane = float(np.median(base.inside(beads[0].points)[:, 2]))
-    counted = source.process.bead_width if source.toolpath.bead_width is None else source.toolpath.bead_width
+    nominal = source.process.bead_width if source.toolpath.bead_width is None else source.toolpath.bead_width
     curves = [
         Curve("" if k else "bead", *base.inside(bead.points)[:, :2].T, 0, OUTLINE,
-              width=counted if bead.width is None else float(np.mean(bead.width)))
+              width=nominal if bead.width is None else float(np.mean(bead.width)))
         for k, bead in enumerate(beads)
     ]
     loops = outline(source.group, plane + source.cut_at * height)

@@ -20,8 +20,8 @@ from ..core.process.deposit import spacing
 from ..core.process.model import bead_model, bead_table, predicted
 from ..core.process.model.bead_model import BeadModel
 from ..core.process.model.bead_table import Measured
+from ..core.simulation.achievable_feed import AchievableFeed, achievable_feed
 from ..core.simulation.deposit import volumes
-from ..core.simulation.pace import Pace, pace
 from ..core.simulation.rates import Rates, rates
 from ..core.simulation.timeline import Timeline, timeline
 from ..core.toolpath import Toolpath
@@ -74,11 +74,11 @@ class Source:
         return volumes(self.motion, self.process, self.toolpath)
 
     @cached_property
-    def pace(self) -> Pace | None:
+    def feed(self) -> AchievableFeed | None:
         """What the machine keeps of the speeds; None without one."""
         if self.cell is None:
             return None
-        return pace(self.motion, self.cell.machine.max_speed, self.cell.machine.max_acceleration)
+        return achievable_feed(self.motion, self.cell.machine.max_speed, self.cell.machine.max_acceleration)
 
     @cached_property
     def distances(self) -> tuple[Array, NDArray[np.int64]]:

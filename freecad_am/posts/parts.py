@@ -67,22 +67,22 @@ def packed(
     if points <= most_points and lines <= most_lines:
         return [everything]
     parts: list[list[Piece]] = []
-    room = (0, 0)
+    remaining = (0, 0)
     for group in groups:
         points, lines = size(group)
         fits = points <= most_points and lines <= most_lines
         chunks = [group] if fits else list(cut(group, most_points, most_lines))
         for chunk in chunks:
             points, lines = size(chunk)
-            if points > room[0] or lines > room[1] or len(chunks) > 1:
+            if points > remaining[0] or lines > remaining[1] or len(chunks) > 1:
                 parts.append([])
-                room = (most_points, most_lines)
+                remaining = (most_points, most_lines)
             parts[-1].extend(chunk)
-            room = (room[0] - points, room[1] - lines)
+            remaining = (remaining[0] - points, remaining[1] - lines)
     return parts
 
 
-def withdrawn(parts: list[list[Piece]]) -> list[list[Piece]]:
+def with_retracts(parts: list[list[Piece]]) -> list[list[Piece]]:
     """The parts with the first move of a retract in the part of the bead it leads away from: what is loaded after it is
     loaded away from the deposit."""
     for before, part in zip(parts, parts[1:]):
@@ -106,19 +106,19 @@ def continued(remark: Callable[[str], list[str]]) -> Callable[[list[Piece], int,
         events = sum(len(piece) for piece in group if isinstance(piece, list))
         most = min(most_points, most_lines - events - len(going_on) - len(resumed))
         chunk: list[Piece] = []
-        room = most
+        remaining = most
         for piece in group:
             if isinstance(piece, list):
                 chunk.append(piece)
                 continue
             start = piece.start
-            while piece.stop - start > room:
-                if room:
-                    chunk.append(Run(piece.moves, piece.words, start, start + room))
+            while piece.stop - start > remaining:
+                if remaining:
+                    chunk.append(Run(piece.moves, piece.words, start, start + remaining))
                 yield [*chunk, going_on]
-                start, chunk, room = start + room, [resumed], most
+                start, chunk, remaining = start + remaining, [resumed], most
             chunk.append(Run(piece.moves, piece.words, start, piece.stop))
-            room -= piece.stop - start
+            remaining -= piece.stop - start
         yield chunk
 
     return cut

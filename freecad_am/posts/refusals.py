@@ -54,14 +54,14 @@ def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 
             "beads change their schedule, and this controller sets outputs between moves ahead of the motion, so far as"
             " is known; give start and end other speeds alone, or use another controller",
         )
-    told = [block.number for block in program.blocks if isinstance(block, Schedule)]
-    if told and not 1 <= program.schedule_output <= last:
+    numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]
+    if numbers and not 1 <= program.schedule_output <= last:
         raise InputError(
             "SCHEDULE", "program.schedule.output",
             f"the number of a schedule is set on one of 1 to {last}, not {program.schedule_output}; use one of these",
         )
     named = [block.schedule for block in program.blocks if isinstance(block, DepositOn) and block.schedule is not None]
-    largest, most = (max(named), most_of_arc or most) if named else (max(told, default=0), most)
+    largest, most = (max(named), most_of_arc or most) if named else (max(numbers, default=0), most)
     if largest > most:
         raise InputError(
             "SCHEDULE", "process.schedule", f"the controller is told schedules up to {most}, not {largest}; use another "
@@ -79,7 +79,7 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
     moves = program.moves
     if not sum(len(run) for run in moves):
         raise InputError("NOTHING_TO_WRITE", "program", "the program holds no moves; check where it starts")
-    if any(run.joints.shape[1] != axes for run in moves) or len(program.endless) != axes:
+    if any(run.joints.shape[1] != axes for run in moves) or len(program.continuous) != axes:
         raise InputError("UNSUPPORTED_AXES", "program.post", f"the post {post} writes {axes} axes; use another post")
     if not all(np.isfinite(run.joints).all() for run in moves):
         raise InputError("UNREACHABLE", "program", "some points have no joint values; a program needs all of them")
@@ -110,10 +110,10 @@ def refuse_named_track(program: Program, what: str) -> None:
         )
 
 
-def refuse_endless(program: Program) -> None:
+def refuse_continuous(program: Program) -> None:
     """Raises InputError ENDLESS_AXIS where an axis has no limits, for controllers that count every turn of all axes."""
-    if any(program.endless):
-        axis = program.endless.index(True) + 1
+    if any(program.continuous):
+        axis = program.continuous.index(True) + 1
         raise InputError(
             "ENDLESS_AXIS", "cell.limits",
             f"axis {axis} has no limits, but joint values of this controller count every turn up to a limit; use limits that"

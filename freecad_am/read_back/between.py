@@ -95,5 +95,5 @@ def _straight(start: Array, end: Array) -> Array:
     sine = np.linalg.norm(axis, axis=1)
     angle = np.arctan2(sine, 0.5 * (np.trace(turn, axis1=1, axis2=2) - 1.0))
     axis = np.where(sine[:, None] > 1e-12, axis / np.maximum(sine, 1e-12)[:, None], [0.0, 0.0, 1.0])
-    spun = start[:, None, :3, :3] @ frames.rotation_about(axis[:, None], BETWEEN * angle[:, None])
-    return frames.pose(spun, start[:, None, :3, 3] + BETWEEN[:, None] * (end - start)[:, None, :3, 3])
+    rotated = start[:, None, :3, :3] @ frames.rotation_about(axis[:, None], BETWEEN * angle[:, None])
+    return frames.pose(rotated, start[:, None, :3, 3] + BETWEEN[:, None] * (end - start)[:, None, :3, 3])

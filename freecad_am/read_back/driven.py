@@ -56,17 +56,17 @@ def driven(cell: Cell, program: Program, read: ReadMoves) -> Motion:
 
 def beads(motion: Motion) -> list[DrivenBead]:
     """The beads of a motion, in order."""
-    laid = np.flatnonzero(motion.deposit)
-    parts = np.split(laid, np.flatnonzero(motion.point[laid] == 0)[1:]) if len(laid) else []
+    deposited = np.flatnonzero(motion.deposit)
+    parts = np.split(deposited, np.flatnonzero(motion.point[deposited] == 0)[1:]) if len(deposited) else []
     return [DrivenBead(motion.position[rows], motion.build[rows], motion.tool[rows]) for rows in parts]
 
 
 def _driven(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array]:
     """Where the text takes the tip, and the serial joints (n, axes) that do it."""
-    machine, endless = cell.machine, text_path.shorter_way(cell, program, read)
+    machine, continuous = cell.machine, text_path.shorter_way(cell, program, read)
     if read.position is None:
         assert read.joints is not None
-        shown = _in_turns(read.joints, endless)
+        shown = _in_turns(read.joints, continuous)
         return text_path.joint_path(cell, shown, text_path.digits(cell, read))[0], machine.from_controller(shown)
     if not cell.arrangement.redundant:
         path = text_path.text_tips(cell, program, read)
@@ -74,14 +74,14 @@ def _driven(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array]
     else:
         path, asked, _ = text_path.text_path(cell, program, read)
         serial = followed.by_robot(cell, read, asked)
-    return path, machine.from_controller(_in_turns(machine.to_controller(serial), endless))
+    return path, machine.from_controller(_in_turns(machine.to_controller(serial), continuous))
 
 
-def _in_turns(shown: Array, endless: Mask) -> Array:
+def _in_turns(shown: Array, continuous: Mask) -> Array:
     """Controller values (n, axes) with the axes that go the shorter way counted on from row to row."""
-    counted, known = np.array(shown), np.isfinite(shown).all(axis=1)
-    counted[np.ix_(known, endless)] = np.unwrap(counted[np.ix_(known, endless)], axis=0)
-    return counted
+    unwrapped, known = np.array(shown), np.isfinite(shown).all(axis=1)
+    unwrapped[np.ix_(known, continuous)] = np.unwrap(unwrapped[np.ix_(known, continuous)], axis=0)
+    return unwrapped
 
 
 def _durations(cell: Cell, read: ReadMoves, position: Array, serial: Array) -> Array:
@@ -113,10 +113,10 @@ def _starts(read: ReadMoves) -> Index:
 
 def _layers(events: tuple[Event, ...], starts: Index) -> NDArray[np.int64]:
     """(beads,) the layer of each bead that begins with the moves `starts`, as remarks tell it; 0 where none does."""
-    told = [(event.row, int(float(event.value[0]))) for event in events if event.kind == "layer"]
-    if not told:
+    layers = [(event.row, int(float(event.value[0]))) for event in events if event.kind == "layer"]
+    if not layers:
         return np.zeros(len(starts), dtype=np.int64)
-    rows, numbers = np.array(told, dtype=np.int64).T
+    rows, numbers = np.array(layers, dtype=np.int64).T
     return np.asarray(numbers[np.maximum(np.searchsorted(rows, starts, side="right") - 1, 0)], dtype=np.int64)
 
 

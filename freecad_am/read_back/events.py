@@ -39,8 +39,8 @@ def event_issues(planned: Planned, program: Program, read: ReadMoves) -> list[Is
     """The deposit in each move, the speed of its wire, and all events."""
     wanted = planned.deposit & (not program.dry_run)
     wire = np.where(wanted, planned.motion.wire[planned.rows] * (0.06 * program.nc.wire_gain), np.nan)
-    told = np.where(read.deposit, np.nan if read.wire is None else read.wire, np.nan)
-    wrong = (np.abs(told - wire) > read.wire_digits + COMPUTED_AXIS * wire) | (np.isnan(told) != np.isnan(wire))
+    feed = np.where(read.deposit, np.nan if read.wire is None else read.wire, np.nan)
+    wrong = (np.abs(feed - wire) > read.wire_digits + COMPUTED_AXIS * wire) | (np.isnan(feed) != np.isnan(wire))
     if read.wire_output not in (None, program.nc.wire_output):
         wrong |= wanted
     issues = planned.issue("VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned")

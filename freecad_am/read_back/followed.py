@@ -31,12 +31,12 @@ def by_robot(cell: Cell, read: ReadMoves, asked: Array) -> Array:
     serial = np.full_like(shown, np.nan)
     serial[~unknown] = machine.from_controller(shown[~unknown])
     if cell.external is not None:  # the axes beside the robot are told with every position
-        beside = machine.from_controller(np.where(np.isnan(shown), 0.0, shown))[:, own:]
-        asked, serial[:, own:] = frames.inverse(cell.external.base(beside)) @ asked, beside
+        external = machine.from_controller(np.where(np.isnan(shown), 0.0, shown))[:, own:]
+        asked, serial[:, own:] = frames.inverse(cell.external.base(external)) @ asked, external
     if read.near is not None:
-        told = unknown & np.isfinite(read.near).all(axis=1)
-        serial[told, :own] = _beside(cell, asked[told], machine.from_controller(read.near[told])[:, :own])
-        unknown &= ~told
+        known = unknown & np.isfinite(read.near).all(axis=1)
+        serial[known, :own] = _nearest_turns(cell, asked[known], machine.from_controller(read.near[known])[:, :own])
+        unknown &= ~known
     for start, end in _runs(unknown):
         before = serial[start - 1, :own] if start else np.full(own, np.nan)
         serial[start:end, :own] = _arm(cell, read, asked, slice(start, end), before)
@@ -74,10 +74,10 @@ def _arm(cell: Cell, read: ReadMoves, asked: Array, rows: slice, before: Array) 
     """(k, 6) joints of the arm at some rows of the text that follow each other after joints `before` (6,)."""
     arm = cell.robot.arm
     assert arm is not None
-    told = [arm.solutions(asked[rows][some]) for some in pieces(np.arange(rows.stop - rows.start))]
-    found = np.concatenate([np.moveaxis(joints, 0, 1) for joints, _ in told])
+    solutions = [arm.solutions(asked[rows][some]) for some in pieces(np.arange(rows.stop - rows.start))]
+    found = np.concatenate([np.moveaxis(joints, 0, 1) for joints, _ in solutions])
     if read.configuration is not None:
-        return _as_named(cell, read, found, np.concatenate([words.T for _, words in told]), rows)
+        return _as_named(cell, read, found, np.concatenate([words.T for _, words in solutions]), rows)
     if not np.isfinite(before).all():
         if cell.branch is None:
             raise InputError(
@@ -88,32 +88,32 @@ def _arm(cell: Cell, read: ReadMoves, asked: Array, rows: slice, before: Array) 
     return _nearest(found, np.zeros((len(found), found.shape[2]), dtype=bool), before)
 
 
-def _beside(cell: Cell, asked: Array, near: Array) -> Array:
+def _nearest_turns(cell: Cell, asked: Array, near: Array) -> Array:
     """(k, 6) the joints of flange poses (k, 4, 4) next to joints `near` (k, 6), in their turns."""
     arm = cell.robot.arm
     assert arm is not None
     found = np.moveaxis(arm.inverse(asked), 0, 1)
     chosen = found[np.arange(len(found)), _apart(near[:, None], found).argmin(axis=1)]
-    counted: Array = chosen + TURN * np.rint((near - chosen) / TURN)
-    return counted
+    unwrapped: Array = chosen + TURN * np.rint((near - chosen) / TURN)
+    return unwrapped
 
 
 def _as_named(cell: Cell, read: ReadMoves, found: Array, words: Index, rows: slice) -> Array:
     """Of solutions (k, configurations, 6) that bear `words` (k, configurations) those the text names, with its turns."""
-    told = read.configuration
-    assert told is not None
+    configuration = read.configuration
+    assert configuration is not None
     names = np.array([opw.branch_name(index) for index in range(8)])[words]
     # what controllers call flip is which way axis 5 is bent as they count it
     shown = cell.robot.to_controller(found)
-    named = (names[..., 0] == "front") == told.front[rows, None]
-    named &= (names[..., 1] == "up") == told.up[rows, None]
-    named &= ((shown[..., 4] > 0.0) == told.flip[rows, None]) & np.isfinite(found).all(axis=2) & (words >= 0)
-    if told.turns[rows, :-1].any():
+    named = (names[..., 0] == "front") == configuration.front[rows, None]
+    named &= (names[..., 1] == "up") == configuration.up[rows, None]
+    named &= ((shown[..., 4] > 0.0) == configuration.flip[rows, None]) & np.isfinite(found).all(axis=2) & (words >= 0)
+    if configuration.turns[rows, :-1].any():
         raise InputError("NOT_YET", "program", "it names turns of other axes than the last one, which cannot be followed; "
                          "tell these positions in joints")
     chosen = shown[np.arange(len(found)), named.argmax(axis=1)]
     chosen -= TURN * np.rint(chosen / TURN)
-    chosen[:, -1] += TURN * told.turns[rows, -1]
+    chosen[:, -1] += TURN * configuration.turns[rows, -1]
     joints: Array = np.where(named.any(axis=1)[:, None], cell.robot.from_controller(chosen), np.nan)
     return joints
 

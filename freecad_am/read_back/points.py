@@ -13,16 +13,16 @@ from ..core.kinematics.cell import Cell
 from ..core.read_moves import ReadMoves
 from ..kdl import chain as kdl_chain
 from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned, pieces
-from .text_path import Joints, Path, digits, told_by_position
+from .text_path import Joints, Path, digits, given_by_position
 
 
-def joint_issues(cell: Cell, planned: Planned, read: ReadMoves, endless: Mask) -> list[Issue]:
+def joint_issues(cell: Cell, planned: Planned, read: ReadMoves, continuous: Mask) -> list[Issue]:
     """Joint values against the planned ones: the tip does not show where the rotation about the tool is."""
     assert read.joints is not None
     apart = read.joints - cell.machine.to_controller(planned.joints)
-    apart[:, endless] -= 2.0 * np.pi * np.rint(apart[:, endless] / (2.0 * np.pi))
-    told = ~np.isnan(read.joints) | ~told_by_position(cell, read.joints)
-    apart[~told] = 0.0
+    apart[:, continuous] -= 2.0 * np.pi * np.rint(apart[:, continuous] / (2.0 * np.pi))
+    given = ~np.isnan(read.joints) | ~given_by_position(cell, read.joints)
+    apart[~given] = 0.0
     computed = np.where(cell.machine.chain.sliding, COMPUTED_MM, COMPUTED_AXIS)
     wrong = ~(np.abs(apart) <= digits(cell, read) + computed)
     found = []

@@ -40,7 +40,7 @@ class Joints:
     reach: Array
 
 
-def told_by_position(cell: Cell, joints: Array) -> Mask:
+def given_by_position(cell: Cell, joints: Array) -> Mask:
     """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: a robot's own
     ones, and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
     slides = cell.machine.chain.sliding & (not cell.arrangement.redundant)
@@ -52,8 +52,8 @@ def shorter_way(cell: Cell, program: Program, read: ReadMoves) -> Mask:
     """(axes,) the axes that the controller takes the shorter way: those of robots that turn without end. Rotary axes of
     machine tools count their turns, unless the text says otherwise."""
     if cell.arrangement.redundant:
-        return np.array(program.endless)
-    return np.array(program.endless) & (False if read.shorter_way is None else read.shorter_way)
+        return np.array(program.continuous)
+    return np.array(program.continuous) & (False if read.shorter_way is None else read.shorter_way)
 
 
 def digits(cell: Cell, read: ReadMoves) -> Array:
@@ -173,8 +173,8 @@ def text_tips(cell: Cell, program: Program, read: ReadMoves) -> Path:
         tool = (read.direction / np.maximum(length, 1e-300)[:, None]) @ in_part[:3, :3].T
         tool_bound = np.sqrt(3.0) * read.direction_digits / np.maximum(length, 1e-300) + COMPUTED_AXIS
     elif read.joints is not None:  # where the linear axes stand does not turn the tool
-        told, _ = joint_path(cell, np.where(cell.machine.chain.sliding, 0.0, read.joints), digits(cell, read))
-        tool, tool_bound = told.tool, told.tool_bound
+        given, _ = joint_path(cell, np.where(cell.machine.chain.sliding, 0.0, read.joints), digits(cell, read))
+        tool, tool_bound = given.tool, given.tool_bound
     if read.joints is not None:
         rows = np.isfinite(read.joints).all(axis=1)  # told in axes
         path, _ = joint_path(cell, read.joints[rows], digits(cell, read))

@@ -57,12 +57,12 @@ def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, read: Rea
     # the last corner of a bead is named, and not passed; a rounding of nothing is a stop
     table = bool(program.axis_names)
     rounding = np.full(len(read.stops), program.nc.tolerance) if table else _share_of_shortest(planned, program.blend)
-    told = np.where(np.isnan(read.rounding), 0.0, read.rounding)
+    rounded = np.where(np.isnan(read.rounding), 0.0, read.rounding)
     # a stop that names no rounding says all there is to say where a stop was planned
     rounding = np.where(planned.deposit & ~(planned.stops & read.stops & np.isnan(read.rounding)), rounding, 0.0)
     rounding = np.where(planned.halt, 0.0, rounding)
-    off = ~(np.abs(told - rounding) <= (1e-5 if table else THOUSANDTH))
-    return np.asarray((planned.stops & ~read.stops) | ~planned.stops & read.stops & (told > 0.0) | off)
+    off = ~(np.abs(rounded - rounding) <= (1e-5 if table else THOUSANDTH))
+    return np.asarray((planned.stops & ~read.stops) | ~planned.stops & read.stops & (rounded > 0.0) | off)
 
 
 def _blended_otherwise(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Mask:
@@ -94,8 +94,8 @@ def _share_of_shortest(planned: Planned, blend: float) -> Array:
 def _frame_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves, linear: Mask) -> list[Issue]:
     wrong = np.zeros(len(linear), dtype=bool)
     if read.user_frame is not None:
-        counted = linear if program.axis_names else np.ones(len(linear), dtype=bool)
-        wrong |= counted & (read.user_frame != program.user_frame)
+        checked = linear if program.axis_names else np.ones(len(linear), dtype=bool)
+        wrong |= checked & (read.user_frame != program.user_frame)
     if read.tool_frame is not None:
         wrong |= read.tool_frame != program.tool_frame
     message = f"the text selects another frame or tool than {program.user_frame} and {program.tool_frame}"
@@ -118,20 +118,20 @@ def _near_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
     return planned.issue("VERIFY_CONFIGURATION", wrong, "the text asks for joint values other than the planned ones")
 
 
-def _configuration_issues(cell: Cell, planned: Planned, program: Program, told: Configuration | None) -> list[Issue]:
+def _configuration_issues(cell: Cell, planned: Planned, program: Program, named: Configuration | None) -> list[Issue]:
     """The configuration of the arm and the turns of the last axis at each position; the other two turns must be none."""
-    if told is None:
+    if named is None:
         return []
     arm = cell.machine.arm
     if arm is None:
         return [Issue(ERROR, "VERIFY_CONFIGURATION", "the text names configurations of an arm, and the machine has none")]
     names = np.array([opw.branch_name(index) for index in range(8)])[arm.branch_of(planned.joints)]
     shown = cell.machine.to_controller(planned.joints)
-    last = np.where(np.array(program.endless)[-1], 0.0, shown[:, -1])
+    last = np.where(np.array(program.continuous)[-1], 0.0, shown[:, -1])
     near, far = (np.rint((np.abs(last) + side) / (2.0 * np.pi)) * np.sign(last) for side in (-HALF_TURN, HALF_TURN))
-    turned = (told.turns[:, -1] != near) & (told.turns[:, -1] != far) | (told.turns[:, :-1] != 0.0).any(axis=1)
+    turned = (named.turns[:, -1] != near) & (named.turns[:, -1] != far) | (named.turns[:, :-1] != 0.0).any(axis=1)
     bent = np.abs(shown[:, 4]) > COMPUTED_AXIS
-    other = bent & (told.flip != (shown[:, 4] > 0.0)) | (told.up != (names[:, 1] == "up"))
-    other |= told.front != (names[:, 0] == "front")
+    other = bent & (named.flip != (shown[:, 4] > 0.0)) | (named.up != (names[:, 1] == "up"))
+    other |= named.front != (names[:, 0] == "front")
     message = "the text asks for another configuration of the arm, or other turns"
     return planned.issue("VERIFY_CONFIGURATION", np.asarray(turned | other), message)

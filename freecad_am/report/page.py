@@ -175,8 +175,8 @@ def _spacings(of: OfFeature) -> str:
                 "constant distance from the layer below.</figcaption></figure>")
     cut = [row for row in rows if row["layers"] is not None]
     names = [row["method"] + (" (planned)" if row["planned"] else "") for row in cut]
-    told = [(word, key) for key, word in _SPACING if any(row[key] is not None for row in cut)]
-    table = table_of([("", names)] + [(word, [figure_text(row[key]) for row in cut]) for word, key in told])
+    columns = [(word, key) for key, word in _SPACING if any(row[key] is not None for row in cut)]
+    table = table_of([("", names)] + [(word, [figure_text(row[key]) for row in cut]) for word, key in columns])
     reasons = "".join(f'<p class="sub">{escape(row["method"] + ": " + row["reason"])}.</p>' for row in rows if row["reason"])
     name = f": {escape(of.name)}" if of.name else ""
     return (
@@ -223,8 +223,8 @@ def _criteria(report: dict[str, Any]) -> str:
     rows = [("", [entry["method"] for entry in methods])] + [
         (name, [figure_text(entry["criteria"][name]) for entry in methods]) for name in report["joints"]["criteria"]
     ]
-    told = f"Whichever was optimised; smaller is better.{_optimality(report)}"
-    return f"<h2>Criteria</h2><p class=\"sub\">{told}</p>{table_of(rows)}"
+    text = f"Whichever was optimised; smaller is better.{_optimality(report)}"
+    return f"<h2>Criteria</h2><p class=\"sub\">{text}</p>{table_of(rows)}"
 
 
 def _optimality(report: dict[str, Any]) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from freecad_am.core.geometry.fitted import PredictedShape
-from freecad_am.core.geometry.told import place
+from freecad_am.core.geometry.formatting import place
 
 from .tables import pairs_of
 

@@ -17,7 +17,7 @@ from .svg import Plot
 from .tables import grid_of
 
 TOLERANCE = 0.1  # mm, of the bands that both pictures are coloured by
-MOST = 4000  # dots of a picture
+MAX_DOTS = 4000  # dots of a picture
 DOT = 2.2
 
 
@@ -47,7 +47,7 @@ def section(fitted: Fitted, frame: Array) -> str:
 
 
 def _map(title: str, places: Array, off: Array, frame: Array) -> str:
-    some = np.unique(np.linspace(0, len(places) - 1, MOST).astype(np.intp))
+    some = np.unique(np.linspace(0, len(places) - 1, MAX_DOTS).astype(np.intp))
     x, y = ((places[some] - frame[:3, 3]) @ frame[:3, :2]).T
     plot = Plot(f"{title}: {off.min():.3f} to {off.max():.3f} mm", (0.0, 1.0), (0.0, 1.0), "mm", "mm", height=300)
     wide, high = plot.width - plot.left - plot.right, plot.height - plot.top - plot.bottom

@@ -75,11 +75,11 @@ def classes_of(rows: list[dict[str, Any]]) -> str:
     """What there is of each class of beads."""
     if not rows:
         return ""
-    told = [("", ["beads", "length, mm", "deposit", "travel speed, mm/s", "schedule"])]
+    lines = [("", ["beads", "length, mm", "deposit", "travel speed, mm/s", "schedule"])]
     for row in rows:
         low, high = (figure_text(row["travel_speed_mm_s"][end]) for end in ("min", "max"))
         speed = low if low == high else f"{low} to {high}"
         length = f"{row['length_mm']:,.0f}"
         numbers = [str(row["beads"]), length, clock(row["deposit_s"]), speed, figure_text(row["schedule"])]
-        told.append((row["class"].replace("_", " "), numbers))
-    return f"<h2>Classes of beads</h2>{table_of(told)}"
+        lines.append((row["class"].replace("_", " "), numbers))
+    return f"<h2>Classes of beads</h2>{table_of(lines)}"

@@ -116,9 +116,9 @@ def _seen(points: Array) -> Array:
 
 def _fit(seen: Array) -> tuple[float, Array]:
     low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
-    room = np.array([WIDTH - 2 * MARGIN - 70, HEIGHT - 2 * MARGIN], dtype=float)
-    scale = float((room / np.maximum(high - low, 1e-9)).min())
-    return scale, np.array([MARGIN, MARGIN]) + (room - scale * (high - low)) / 2 - scale * low
+    size = np.array([WIDTH - 2 * MARGIN - 70, HEIGHT - 2 * MARGIN], dtype=float)
+    scale = float((size / np.maximum(high - low, 1e-9)).min())
+    return scale, np.array([MARGIN, MARGIN]) + (size - scale * (high - low)) / 2 - scale * low
 
 
 def _disc(diameter: float | None) -> Array:

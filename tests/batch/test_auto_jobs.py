@@ -45,7 +45,7 @@ def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True, *
 ])
 def test_a_part_alone(shape, kind, layers, why):
     found = of(shape())
-    assert (found.kind, found.layers) == (kind, layers) and why in found.told(), found
+    assert (found.kind, found.layers) == (kind, layers) and why in found.text(), found
 
 
 def test_what_would_be_left_out_is_the_middle():
@@ -145,7 +145,7 @@ def test_what_stands_on_no_face_gets_planes():
     ball = Part.makeSphere(20)
     found = of(ball, direction=None)
     assert (found.kind, found.layers) == ("solid", "planes")
-    assert "a flat face that it stands on, which it has not" in found.told()
+    assert "a flat face that it stands on, which it has not" in found.text()
     cut = of(ball.cut(Part.makeBox(40, 40, 0.5, Vector(-20, -20, -20))))
     assert cut.layers == "geodesic", cut
 

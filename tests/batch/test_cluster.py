@@ -202,7 +202,7 @@ def test_a_cluster_without_workers_or_with_one_that_cannot_plan(workshop, cluste
     with pytest.raises(InputError, match="this worker cannot plan: no FreeCAD here; install FreeCAD there"):
         module.Cluster(cluster.address, session)
     monkeypatch.undo()
-    monkeypatch.setattr(versions, "told", lambda: {"FreeCAD": "9.9.9"})
+    monkeypatch.setattr(versions, "found_versions", lambda: {"FreeCAD": "9.9.9"})
     with module.Cluster(cluster.address, session):
         pass
     assert sum("note[WORKER]" in line for line in session.lines) == 2

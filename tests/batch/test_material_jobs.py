@@ -68,7 +68,7 @@ process:
     assert (process.density, process.gas, process.bead_model, process.schedule) == (8.0, None, "none", 7)
     assert (process.wire.diameter, process.wire.feed) == (1.6, pytest.approx(6500.0 / 60.0))
     assert [process.for_class(name).schedule for name in ("contour", "fill", "closing")] == [9, 4, 7]
-    assert process.of_class("fill").told()["lead"] == pytest.approx(math.radians(5.0))
+    assert process.of_class("fill").own_values()["lead"] == pytest.approx(math.radians(5.0))
 
 
 @pytest.mark.parametrize("name", ["er2319", "er2319.yaml", "stainless"])

@@ -11,7 +11,7 @@ import Part
 import pytest
 import yaml
 
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.machines import machine
 from tests.core.planning.test_arm_clearance import on_rods
 from tests.kdl_links import KdlLinks

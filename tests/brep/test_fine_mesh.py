@@ -75,7 +75,7 @@ def test_a_face_that_the_kernel_makes_no_triangles_of_gets_those_of_splines(monk
 def test_a_face_of_which_there_are_no_triangles_at_all_is_named(monkeypatch):
     """Also where its solid is not the first."""
     two = Part.makeCompound([Part.makeBox(5, 5, 5, Vector(20, 0, 0)), Part.makeBox(1, 2, 3)])
-    monkeypatch.setattr(whole_mesh, "beside", lambda made, *words: made(*words))
+    monkeypatch.setattr(whole_mesh, "in_kernel_process", lambda made, *words: made(*words))
 
     def bare(shape, chord):
         found = tessellated(shape, chord)

@@ -107,20 +107,20 @@ def fresh():
 @pytest.fixture
 def slow_part(monkeypatch):
     """A part that is always sent, however quickly it is divided."""
-    monkeypatch.setattr(kernel_process, "FEW", 0)
+    monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     return Part.makeBox(1, 2, 3)
 
 
 @pytest.mark.parametrize("name", PARTS)
 def test_both_come_to_the_same_numbers(name, monkeypatch):
-    monkeypatch.setattr(kernel_process, "FEW", 0)
+    monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     shape = part(name)
     for function, *rest in (
         (tessellate.tessellated, 0.05), (sheet.tessellated_for, 2.0), (tessellate.triangles_of, 0.1),
         (distance._by_face, 0.1),
     ):
         here = flat(function(shape.copy(), *rest))
-        elsewhere = flat(in_thread(kernel_process.beside, function, shape.copy(), *rest))
+        elsewhere = flat(in_thread(kernel_process.in_kernel_process, function, shape.copy(), *rest))
         assert len(here) == len(elsewhere)
         for one, other in zip(here, elsewhere, strict=True):
             assert np.array_equal(one, other) and np.asarray(one).dtype == np.asarray(other).dtype
@@ -128,26 +128,26 @@ def test_both_come_to_the_same_numbers(name, monkeypatch):
 
 
 def test_one_process_serves_one_call_after_the_other_and_none_the_main_thread(slow_part):
-    first = in_thread(kernel_process.beside, pid_of, slow_part)
-    assert first != os.getpid() and in_thread(kernel_process.beside, pid_of, slow_part) == first
-    assert kernel_process.beside(pid_of, slow_part) == os.getpid()
+    first = in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
+    assert first != os.getpid() and in_thread(kernel_process.in_kernel_process, pid_of, slow_part) == first
+    assert kernel_process.in_kernel_process(pid_of, slow_part) == os.getpid()
 
 
 def test_what_is_divided_quickly_is_not_sent():
-    assert in_thread(kernel_process.beside, pid_of, Part.makeBox(1, 1, 1)) == os.getpid()
-    assert in_thread(kernel_process.beside, pid_of, Part.makeSphere(1)) != os.getpid()
+    assert in_thread(kernel_process.in_kernel_process, pid_of, Part.makeBox(1, 1, 1)) == os.getpid()
+    assert in_thread(kernel_process.in_kernel_process, pid_of, Part.makeSphere(1)) != os.getpid()
 
 
 def test_a_crash_of_the_kernel_is_an_error_and_the_next_call_has_another_process(slow_part):
     with pytest.raises(RuntimeError, match="crashed"):
-        in_thread(kernel_process.beside, crash, slow_part)
-    assert in_thread(kernel_process.beside, pid_of, slow_part) != os.getpid()
+        in_thread(kernel_process.in_kernel_process, crash, slow_part)
+    assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) != os.getpid()
 
 
 def test_a_process_that_the_system_ends_had_too_little_memory(slow_part):
     with pytest.raises(MemoryError):
-        in_thread(kernel_process.beside, be_killed, slow_part)
-    assert in_thread(kernel_process.beside, pid_of, slow_part) != os.getpid()
+        in_thread(kernel_process.in_kernel_process, be_killed, slow_part)
+    assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) != os.getpid()
 
 
 def test_another_thread_may_take_the_process_that_was_free(slow_part, monkeypatch):
@@ -156,15 +156,15 @@ def test_another_thread_may_take_the_process_that_was_free(slow_part, monkeypatc
             return True
 
     monkeypatch.setattr(kernel_process, "_idle", Taken())
-    assert in_thread(kernel_process.beside, pid_of, slow_part) != os.getpid()
+    assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) != os.getpid()
 
 
 def test_a_process_that_has_left_is_replaced(slow_part):
-    first = in_thread(kernel_process.beside, pid_of, slow_part)
+    first = in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
     (process,) = kernel_process._idle
     process.popen.terminate()
     process.popen.wait(20)
-    assert in_thread(kernel_process.beside, pid_of, slow_part) not in (first, os.getpid())
+    assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) not in (first, os.getpid())
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="a signal of POSIX")
@@ -175,14 +175,14 @@ def test_a_process_that_has_left_does_not_take_freecad_along():
         "import FreeCAD, Part",
         "from freecad_am.brep.kernel import process as kernel_process",
         "from tests.brep.test_kernel_process import in_thread, pid_of",
-        "kernel_process.FEW = 0",
+        "kernel_process.MAX_FACES = 0",
         "signal.signal(signal.SIGPIPE, signal.SIG_DFL)",
         "box = Part.makeBox(1, 2, 3)",
-        "first = in_thread(kernel_process.beside, pid_of, box)",
+        "first = in_thread(kernel_process.in_kernel_process, pid_of, box)",
         "(process,) = kernel_process._idle",
         "process.popen.terminate()",
         "process.popen.wait(20)",
-        "second = in_thread(kernel_process.beside, pid_of, box)",
+        "second = in_thread(kernel_process.in_kernel_process, pid_of, box)",
         "(process,) = kernel_process._idle",
         "process.popen.terminate()",
         "process.popen.wait(20)",
@@ -198,15 +198,15 @@ def test_a_process_that_has_left_does_not_take_freecad_along():
 
 def test_errors_come_back(slow_part):
     with pytest.raises(ValueError, match="no good"):
-        in_thread(kernel_process.beside, fail, slow_part, "value")
+        in_thread(kernel_process.in_kernel_process, fail, slow_part, "value")
     with pytest.raises(RuntimeError, match="where: what"):  # one that cannot travel keeps its text
-        in_thread(kernel_process.beside, fail, slow_part, "input")
+        in_thread(kernel_process.in_kernel_process, fail, slow_part, "input")
 
 
 def test_without_another_python_the_call_is_made_here(slow_part, monkeypatch):
     monkeypatch.setattr(kernel_process, "_pythons", lambda: ["/nowhere/python3"])
     monkeypatch.setattr(kernel_process, "_unable", False)
-    assert in_thread(kernel_process.beside, pid_of, slow_part) == os.getpid()
+    assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) == os.getpid()
     assert kernel_process._unable
 
 
@@ -215,7 +215,7 @@ def test_a_thread_that_is_ended_takes_its_process_with_it(slow_part, tmp_path):
 
     def run():
         try:
-            kernel_process.beside(linger, slow_part, str(told))
+            kernel_process.in_kernel_process(linger, slow_part, str(told))
         except Ended:
             ended.append(True)
 
@@ -263,7 +263,7 @@ def test_a_thread_that_is_ended_while_a_process_starts_leaves_none(slow_part, mo
 
     def run():
         try:
-            kernel_process.beside(pid_of, slow_part)
+            kernel_process.in_kernel_process(pid_of, slow_part)
         except Ended:
             ended.append(True)
 
@@ -275,7 +275,7 @@ def test_a_thread_that_is_ended_while_a_process_starts_leaves_none(slow_part, mo
 
 
 def test_a_process_that_nobody_holds_any_more_is_ended(slow_part):
-    in_thread(kernel_process.beside, pid_of, slow_part)
+    in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
     pid = kernel_process._idle.pop().popen.pid
     assert is_gone(pid)
 

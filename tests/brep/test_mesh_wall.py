@@ -9,7 +9,7 @@ from FreeCAD import Vector
 
 from freecad_am.brep.walls.wall_on import wall_on
 from freecad_am.core.geometry.mesh.smooth import SmoothMesh
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters

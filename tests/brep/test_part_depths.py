@@ -12,7 +12,7 @@ from FreeCAD import Vector
 
 from freecad_am.brep.revolution.wall import find_wall
 from freecad_am.brep.shapes.part_depths import of_faces, of_revolved
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.process.deposit import balance as deposit_balance
 
@@ -70,7 +70,7 @@ def test_a_solid_laid_as_a_skin_is_told_with_what_of_it_is_missing(name):
     found = balance(shape)
     assert found.part == pytest.approx(shape.Volume, rel=1e-9)
     assert found.part - found.left_out == pytest.approx(within.Volume, rel=0.04)
-    assert codes(found) == ["NOT_DEPOSITED"] and found.beside == 0.0
+    assert codes(found) == ["NOT_DEPOSITED"] and found.outside == 0.0
 
 
 @pytest.mark.parametrize("wall, shape", [
@@ -81,7 +81,7 @@ def test_a_solid_laid_as_a_skin_is_told_with_what_of_it_is_missing(name):
 ])
 def test_a_wall_about_as_thick_as_a_bead_is_no_news(wall, shape):
     found = balance(shape(), wall)
-    assert codes(found) == [] and found.left_out == found.beside == 0.0 and found.faces == ()
+    assert codes(found) == [] and found.left_out == found.outside == 0.0 and found.faces == ()
 
 
 def test_a_sheet_has_no_volume_and_its_other_faces_are_named():
@@ -103,7 +103,7 @@ def test_a_bowl_has_its_floor_left_out_and_a_bead_thicker_than_its_wall():
     low = turned((28, 0), (34, 0), (40, 6), (40, 8), (28, 8))  # under the rounded edge it reaches farther in
     at_most, at_least = shape.common(ring.fuse(low)).Volume, shape.common(ring).Volume
     assert 0.98 * at_least < found.part - found.left_out < 1.02 * at_most
-    assert found.beside == pytest.approx(found.beads * (1 - 4.7 / WIDTH), rel=0.1)
+    assert found.outside == pytest.approx(found.beads * (1 - 4.7 / WIDTH), rel=0.1)
     texts = [issue.message for issue in deposit_balance.issues(found)]
     assert all(name in texts[0] for name in floor) and "4.7 mm thick" in texts[1]
 
@@ -156,5 +156,5 @@ def test_the_one_solid_of_revolution_that_is_most_of_a_part_is_taken_and_the_res
 def test_a_solid_left_aside_is_told_however_small():
     shape = Part.Compound([tube(30, 22), Part.makeBox(5, 5, 5, Vector(40, 0, 0))])
     found = balance(shape)
-    assert found.left_out < deposit_balance.LITTLE * found.part
+    assert found.left_out < deposit_balance.NEGLIGIBLE * found.part
     assert "1 solid(s) (Solid2)" in deposit_balance.issues(found)[0].message and codes(found) == ["NOT_DEPOSITED"]

@@ -30,7 +30,7 @@ def cut_short(faulty):
 
 def test_another_deflection_is_taken_where_one_lacks_a_part(monkeypatch):
     made, asked = cut_short(lambda chord: chord > 0.009)
-    monkeypatch.setattr(whole_mesh, "beside", made)
+    monkeypatch.setattr(whole_mesh, "in_kernel_process", made)
     found = hub.bodies_of(TORUS, "ring", 0.01 / hub.SHARE, 0.1)
     body = found.bodies[0]
     assert found.issues == () and len(asked) == 2
@@ -39,7 +39,7 @@ def test_another_deflection_is_taken_where_one_lacks_a_part(monkeypatch):
 
 def test_what_no_deflection_mends_is_told_with_both_volumes(monkeypatch):
     made, asked = cut_short(lambda chord: True)
-    monkeypatch.setattr(whole_mesh, "beside", made)
+    monkeypatch.setattr(whole_mesh, "in_kernel_process", made)
     found = hub.bodies_of(TORUS, "ring", 0.01 / hub.SHARE, 0.1)
     (issue,) = found.issues
     assert issue.code == "MESH_VOLUME" and issue.level == "warning" and len(asked) == len(whole_mesh.FINER)
@@ -52,5 +52,5 @@ def test_what_no_deflection_mends_is_told_with_both_volumes(monkeypatch):
 @pytest.mark.parametrize("chord", [0.5, 0.01])
 def test_sound_solids_are_meshed_once(monkeypatch, shape, chord):
     made, asked = cut_short(lambda chord: False)
-    monkeypatch.setattr(whole_mesh, "beside", made)
+    monkeypatch.setattr(whole_mesh, "in_kernel_process", made)
     assert whole_mesh.whole(shape, chord, "it")[1] == () and asked == [chord]

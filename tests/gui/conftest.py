@@ -314,7 +314,7 @@ def coarse(monkeypatch):
 @pytest.fixture
 def rough_map(monkeypatch):
     """Of the map of the free rotation one row of six is looked at for the arm, and no more, where others stand beside it."""
-    from freecad_am.gui.spin_map import cells
+    from freecad_am.gui.redundancy_map import cells
 
     monkeypatch.setattr(cells, "FINE", cells.ROUGH)
 
@@ -337,7 +337,7 @@ def _forget_places(window):
 
     for dock in docks._docks.values():
         window.removeDockWidget(dock)
-    docks._rooms.clear()
+    docks._areas.clear()
 
 
 @pytest.fixture

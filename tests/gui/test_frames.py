@@ -126,7 +126,7 @@ def test_all_that_a_simulation_tells_has_room_from_the_start(person, joint_path)
     tool.show(joint_path)
     simulation = simulations._open[0]
     person.idle(0.3)
-    labels, run = simulation.fields.told, simulation.run
+    labels, run = simulation.fields.labels, simulation.run
     sizes = {name: (label.width(), label.height()) for name, label in labels.items()}
     texts = {name: set() for name in labels}
     for row in range(0, len(run.motion), 3):

@@ -204,9 +204,9 @@ def test_a_predicted_deposit_is_shown_by_a_click_and_grows_as_high(person, hand,
     person.press("Ok")
     person.panel_closed()
     run = run_of(joints)
-    assert run.laid is not None and len(run.laid) == len(found.laid)
+    assert run.deposit is not None and len(run.deposit) == len(found.laid)
     beads = _beads(run)
     low = found.laid[found.laid[:, 3] == 0]
     assert float(beads[0].height.mean()) == pytest.approx(float(np.maximum(low[:, 4], 1e-3).mean()), rel=0.02)
     path.BeadWidth = 5  # another deposit, of which nothing is known
-    assert run_of(joints).laid is None
+    assert run_of(joints).deposit is None

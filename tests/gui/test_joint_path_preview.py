@@ -57,7 +57,7 @@ def threads_end(person):
 
 def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, monkeypatch):
     toolpath, cell = stages
-    monkeypatch.setattr(joint_path_panel, "MOST", 100_000)
+    monkeypatch.setattr(joint_path_panel, "MAX_POINTS", 100_000)
     document, steps = toolpath.Document, toolpath.Document.UndoCount
     person.select(toolpath)
     person.click("RoboticAM_JointPath")
@@ -85,7 +85,7 @@ def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, mo
 
 def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(person, hand, stages, monkeypatch):
     toolpath, cell = stages
-    monkeypatch.setattr(joint_path_panel, "MOST", 300)
+    monkeypatch.setattr(joint_path_panel, "MAX_POINTS", 300)
     document = toolpath.Document
     made = api.make_joint_path(document, toolpath, cell)
     person.idle()
@@ -196,7 +196,7 @@ def test_inputs_deleted_while_the_preview_is_computed_are_told_as_missing(person
 
 def test_apply_renews_the_preview_and_the_toolpath_stays_back(person, stages, monkeypatch):
     toolpath, cell = stages
-    monkeypatch.setattr(joint_path_panel, "MOST", 300)
+    monkeypatch.setattr(joint_path_panel, "MAX_POINTS", 300)
     made = api.make_joint_path(toolpath.Document, toolpath, cell)
     begun = []
     tried = joint_path_panel._tried

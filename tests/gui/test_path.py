@@ -67,7 +67,7 @@ def test_layers_and_points_by_sliders_and_numbers(person, hand, joint_path):
     row = low + (high - low) // 2
     assert f"point {point.value()} (0 to {high - low - 1})" in text  # the field and the text count alike
     assert person.field(panel, "point_spin").value() == point.value()
-    told = joint_path.ViewObject.Proxy.scale.told(row)
+    told = joint_path.ViewObject.Proxy.scale.text_at(row)
     assert told.startswith("joint margin ") and told.endswith(" %")
     assert text == f"{told} · {facts(rows, row)}" and "Layer 3 (0 to" in text and "mm/s" in text
     person.screenshot("path_dock")
@@ -342,7 +342,7 @@ def test_of_three_hundred_thousand_points_the_foremost_near_the_mouse_is_meant()
     for place in random.uniform([200, 150], [600, 450], (20, 2)):
         found = clicks.nearest(points, 0.0, 2.0, sight, place)
         away = np.linalg.norm(flat - place, axis=1)
-        near = away <= clicks.NEAR
+        near = away <= clicks.REACH_PX
         highest = world[near, 2].max()
         front = near & (world[:, 2] >= highest - clicks.DEEP * 2.0)
         assert front[found] and away[found] == away[front].min()

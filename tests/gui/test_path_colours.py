@@ -28,7 +28,7 @@ def test_joint_paths_are_coloured_by_what_the_machine_has_left(person, joint_pat
     assert (scale.title, scale.unit) == ("joint margin", "%")
     assert scale.least == pytest.approx(100 * share[motion.deposit].min())
     assert scale.most == pytest.approx(100 * share[motion.deposit].max())
-    assert scale.told(7) == f"joint margin {100 * share[motion.deposit][7]:.3g} %"
+    assert scale.text_at(7) == f"joint margin {100 * share[motion.deposit][7]:.3g} %"
     vobj.Colouring = "joint speed"
     ratio = speed_ratios(motion.joints, motion.duration, machine.max_speed).max(axis=1)
     assert vobj.Proxy.scale.most == pytest.approx(100 * ratio[motion.deposit].max())
@@ -45,7 +45,7 @@ def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
     values = np.array([np.nan, -0.1, 0.0, 0.5, 1.0, 1.4])
     colours, scale = colouring.by_machine(values, colouring.MARGIN)
     assert (colours[0] == colouring.UNREACHABLE).all() and (colours[1] == colouring.TOO_NEAR).all()
-    assert scale.told(0) == "joint margin unreachable" and scale.told(3) == "joint margin 50 %"
+    assert scale.text_at(0) == "joint margin unreachable" and scale.text_at(3) == "joint margin 50 %"
     assert scale.without == "unreachable" and scale.below == "beyond a limit" and not scale.above
     colours, scale = colouring.by_machine(values, colouring.RATIO)
     assert (colours[5] == colouring.TOO_FAR).all() and scale.above == "faster than it can" and not scale.below
@@ -53,10 +53,10 @@ def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
     # where nothing can be told, no number is: neither 0 nor a ramp
     scale = colouring.by_machine(np.full(3, np.nan), colouring.CONDITION)[1]
     assert scale.classes == (("unreachable", colouring.UNREACHABLE),) and scale.ticks == ()
-    assert scale.told(1) == "condition unreachable"
+    assert scale.text_at(1) == "condition unreachable"
     scale = colouring.by_machine(np.array([np.nan, -0.2]), colouring.MARGIN)[1]
     assert scale.classes == (("beyond a limit", colouring.TOO_NEAR), ("unreachable", colouring.UNREACHABLE))
-    assert scale.ticks == () and scale.told(1) == "joint margin -20 %"
+    assert scale.ticks == () and scale.text_at(1) == "joint margin -20 %"
 
 
 def test_unreachable_points_are_red(person, hemisphere, no_remedies):

@@ -107,7 +107,7 @@ def test_a_document_closed_under_open_docks(person, watched, coarse):
 
 def test_a_document_closed_while_a_preview_is_with_the_kernel(person, monkeypatch):
     """The preview's call of the kernel is in another process: it ends with the panel."""
-    monkeypatch.setattr(kernel_process, "FEW", 0)
+    monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     doc = App.newDocument("Preview")
     blades = api.open_part(doc, str(EXAMPLES / "thruster" / "blades.brep"))
     spindle = api.open_part(doc, str(EXAMPLES / "thruster" / "spindle.step"))
@@ -130,7 +130,7 @@ def test_a_document_closed_while_a_preview_is_with_the_kernel(person, monkeypatc
 
 def test_the_window_finds_a_python_for_the_kernel(person, monkeypatch):
     """FreeCAD's own program is none; without another one the window would wait for the kernel as before."""
-    monkeypatch.setattr(kernel_process, "FEW", 0)
+    monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     doc = App.newDocument("Kernel")
     pipe = api.open_part(doc, str(EXAMPLES / "pipe.step"))
     tube = api.open_part(doc, str(EXAMPLES / "tube-on-pipe.step"))
@@ -141,7 +141,7 @@ def test_the_window_finds_a_python_for_the_kernel(person, monkeypatch):
 
 def test_a_preview_after_the_kernel_process_has_left(person, monkeypatch):
     """It leaves after some minutes without work; the next preview has another one, and FreeCAD goes on."""
-    monkeypatch.setattr(kernel_process, "FEW", 0)
+    monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     doc = App.newDocument("Later")
     pipe = api.open_part(doc, str(EXAMPLES / "pipe.step"))
     tube = api.open_part(doc, str(EXAMPLES / "tube-on-pipe.step"))

@@ -12,7 +12,7 @@ from freecad_am import api
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import WARNING, Issue
 from freecad_am.core.planning.beads import moving_tool
-from freecad_am.core.simulation.pace import pace
+from freecad_am.core.simulation.achievable_feed import achievable_feed
 from freecad_am.core.simulation.watch import ISSUE, LIMIT, SINGULAR, SLOWED, TOUCHES
 from freecad_am.gui.simulation import dock as docks
 from freecad_am.gui.simulation import fields, tool
@@ -228,7 +228,7 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     simulation.player.go_to_row(int(fast))
     simulation.show()
     person.screenshot("simulation_too_fast")
-    kept = pace(simulation.run.motion, simulation.run.cell.machine.max_speed)
+    kept = achievable_feed(simulation.run.motion, simulation.run.cell.machine.max_speed)
     assert kept.slowed[fast] and kept.axis[fast] == 5
     assert person.field(panel, "speed").text() == f"{kept.achieved[fast]:.3g} mm/s instead of {kept.asked[fast]:.3g} mm/s"
     assert simulation.scene.machine.bad[6]
@@ -348,7 +348,7 @@ def test_a_program_of_linear_moves_plays_the_points_they_get(hemisphere):
     run = run_of(api.make_program(doc, path, "LINES", motion="cartesian", post="staubli"))
     planned, toolpath = api.result(path), api.result(path.Toolpath)
     beads = [one.bead for one in planned.joint_path.beads]
-    motion = moving_tool.kept_straight(planned.motion, run.cell, toolpath.chord_error, beads)
+    motion = moving_tool.refined_to_chord_error(planned.motion, run.cell, toolpath.chord_error, beads)
     assert len(run.motion) == len(motion) > len(planned.motion)
     assert np.array_equal(run.motion.joints, motion.joints) and np.array_equal(run.motion.point, motion.point)
     whole = run_of(path)

@@ -60,7 +60,7 @@ def test_a_box_is_measured_past_its_edges_too(doc, tmp_path):
     made = api.inspect(doc, box, str(path), fit="none")
     near = np.abs(truth) < 4.0
     assert near.sum() > 200 and np.abs(api.result(made).deviation - truth)[near].max() < 1e-6
-    assert api.result(made).counted.all()
+    assert api.result(made).within_edges.all()
 
 
 def test_it_is_stale_when_what_was_planned_changes_and_keeps_its_points_without_the_file(doc, feature, points, tmp_path):
@@ -127,7 +127,7 @@ def test_walls_on_parts_are_exact_and_outside_is_a_plus(doc, root, wall, ground)
     distance, found = of.exact(points)
     assert np.abs(distance - off).max() < 1e-9 and np.abs(found - normal).max() < 1e-9
     assert np.abs(of.nearest(points)[0] - off).max() < 1.1 * max(of.chord, 3e-3)
-    assert of.counted(points).all()
+    assert of.within_edges(points).all()
     for k in range(0, len(feet), 400):  # the nearest point of the part's own faces, by the kernel
         nearest = part.Shape.distToShape(Part.Vertex(*points[k]))[0]
         assert abs(off[k]) == pytest.approx(nearest, abs=1e-6)

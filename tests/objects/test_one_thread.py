@@ -49,7 +49,7 @@ def made(machine, scale, **joints):
     toolpath = am.make_toolpath(doc, am.make_feature(doc, part, layer_height=20 * scale, chord_error=0.1), cell)
     return doc, am.make_joint_path(doc, toolpath, cell, **joints)
 
-told = [number.told() for number in one_thread._numbers()]
+told = [number.get() for number in one_thread._numbers()]
 started = time.process_time()
 doc, path = made("kuka-kr16-2", 1.0)
 axes = tuple(f"q{{k}}" for k in range(1, 7))
@@ -59,7 +59,7 @@ doc, path = made("fanuc-arcmate120ic", 0.3, objective="condition")
 texts["path"] = "".join(waypoints.text(am.result(path).motion, axes))
 program = am.make_program(doc, path, name="vase", post="fanuc")
 texts.update({{name: content.decode("latin-1") for name, content in am.result(program).files.items()}})
-after = [number.told() for number in one_thread._numbers()]
+after = [number.get() for number in one_thread._numbers()]
 print(json.dumps({{"texts": texts, "told": told, "after": after, "seconds": seconds}}))
 sys.stdout.flush()
 os._exit(0)

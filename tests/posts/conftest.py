@@ -119,20 +119,20 @@ def assert_listings(tmp_path, root):
     return judge
 
 
-def _random_program(seed, motion="joint", endless=True, **options):
+def _random_program(seed, motion="joint", continuous=True, **options):
     rng = np.random.default_rng(seed)
-    endless = endless and motion == "joint"
+    continuous = continuous and motion == "joint"
     at = rng.uniform(-2.0, 2.0, 6)
     blocks = []
 
     def moves(kind, layer, bead, count):
         nonlocal at
         steps = rng.normal(0.0, 0.03, (count, 6))
-        if endless:
+        if continuous:
             steps[:, 5] = rng.uniform(-3.1, 3.1, count)
         joints = at + np.cumsum(steps, axis=0)
         joints[:, :5][rng.random((count, 5)) < 0.1] *= 1e-5  # small values, of both signs
-        if not endless:
+        if not continuous:
             joints = np.clip(joints, -3.1, 3.1)
         at = joints[-1]
         duration = rng.choice([0.0011, 0.05, 0.3, 4.0, 31.9994, 40.0, 3000.0], count) * rng.uniform(1.0, 1.05, count)
@@ -165,7 +165,7 @@ def _random_program(seed, motion="joint", endless=True, **options):
         "Random",
         "a machine",
         tuple(blocks),
-        (False,) * 5 + (endless,),
+        (False,) * 5 + (continuous,),
         motion=motion,
         setup=setup,
         user_frame=int(rng.integers(0, 10)),
@@ -187,7 +187,7 @@ def random_application(random_program):
     """A function that makes a program a VAL 3 controller can say, of a seed, a motion and a set-up."""
 
     def make(seed, motion="joint", setup="part-on-robot", **options):
-        whole = random_program(seed, motion, endless=False, **options)
+        whole = random_program(seed, motion, continuous=False, **options)
         blocks = []
         for block in whole.blocks:
             if isinstance(block, Moves):

@@ -44,8 +44,8 @@ class Drive:
             shown = None if read.joints is None else read.joints[row]
             if shown is not None and np.isfinite(shown).all():
                 found = machine.from_controller(shown)
-                endless = self.cell.limits.endless
-                found[endless] += 2.0 * np.pi * np.round((rows[-1] - found)[endless] / (2.0 * np.pi))
+                continuous = self.cell.limits.continuous
+                found[continuous] += 2.0 * np.pi * np.round((rows[-1] - found)[continuous] / (2.0 * np.pi))
             elif shown is not None and self.cell.external is not None and self.poses is not None:
                 found = self._beside(row, shown, rows[-1])
             elif self.poses is not None and read.configuration is not None:

@@ -17,8 +17,8 @@ def moves(kind, degrees, duration=0.1, layer=0, bead=0, **extra):
     return Moves(kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), 6.0), **extra)
 
 
-def program(*blocks, name="part", endless=(False,) * 6, **options):
-    return Program(name, "a machine", blocks, endless, **options)
+def program(*blocks, name="part", continuous=(False,) * 6, **options):
+    return Program(name, "a machine", blocks, continuous, **options)
 
 
 def beads(count, points, layers=1, **options):
@@ -54,7 +54,7 @@ GOLDEN_JOINT = program(
     Wait(700.0), WaitInput(3), Call("clean"),
     LayerStart(1),
     moves("rapid", [[0.0, -30.0, 30.0, 0.0, -60.0, 400.0]], 1.0, layer=1),
-    name="Joint", endless=(False,) * 5 + (True,), remarks=("pendant J3 = q3 - q2: a remark of more than one line",),
+    name="Joint", continuous=(False,) * 5 + (True,), remarks=("pendant J3 = q3 - q2: a remark of more than one line",),
 )  # fmt: skip
 
 ABOUT_X = np.diag([1.0, -1.0, -1.0])

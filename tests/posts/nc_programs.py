@@ -33,20 +33,20 @@ def moves(kind, axes, duration=0.5, layer=0, bead=0, speed=6.0, **extra):
 
 def program(*blocks, name="part", **options):
     defaults = {
-        "endless": (False,) * 5, "setup": "rotary-table", "axis_names": NAMES, "axis_kinds": KINDS, "carried": CARRIED,
+        "continuous": (False,) * 5, "setup": "rotary-table", "axis_names": NAMES, "axis_kinds": KINDS, "carried": CARRIED,
         "max_speed": (200.0,) * 3 + (1.5, 3.0),
     }  # fmt: skip
     return Program(name, "a machine", blocks, **{**defaults, **options})
 
 
-def random_program(seed, motion="joint", endless=False, names=NAMES, wire=False, **options):
+def random_program(seed, motion="joint", continuous=False, names=NAMES, wire=False, **options):
     """Of all kinds of blocks, steps of all sizes and moves that only turn or only slide. wire: beads tell its speed."""
     rng, speeds = np.random.default_rng(seed), np.random.default_rng([seed, 1])
     kinds = tuple("linear" if name in "XYZ" else "rotary" for name in names)
     linear = np.array([kind == "linear" for kind in kinds])
     at = np.where(linear, rng.uniform(-200.0, 200.0, len(names)), rng.uniform(-2.0, 2.0, len(names)))
     last = np.zeros(len(names), bool)
-    last[-1] = endless
+    last[-1] = continuous
     blocks = []
 
     def some(kind, layer, bead, count):
@@ -55,7 +55,7 @@ def random_program(seed, motion="joint", endless=False, names=NAMES, wire=False,
         steps[rng.random(count) < 0.2] *= np.where(linear, 0.0, 1.0)
         steps[rng.random(count) < 0.2] *= np.where(linear, 1.0, 0.0)
         steps[rng.random(count) < 0.1] *= 1e-4
-        if endless:
+        if continuous:
             steps[:, -1] = rng.uniform(-3.1, 3.1, count)
         joints = at + np.cumsum(steps, axis=0)
         joints[(rng.random(joints.shape) < 0.05) & ~last] *= 1e-5  # small values, of both signs
@@ -91,7 +91,7 @@ def random_program(seed, motion="joint", endless=False, names=NAMES, wire=False,
         "remarks": ('A remark; longer than a line of most controllers ought to be: Größe "1" (in brackets), msg, and more',),
     } | options  # fmt: skip
     return program(
-        *blocks, name="Random", motion=motion, endless=tuple(last.tolist()), axis_names=tuple(names), axis_kinds=kinds,
+        *blocks, name="Random", motion=motion, continuous=tuple(last.tolist()), axis_names=tuple(names), axis_kinds=kinds,
         **options,
     )
 

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from freecad_am.core.geometry.developable import Developable
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -242,7 +242,7 @@ def written(way, max_points=2000, lift=LIFT, retreat=0.0):
     post, kind, feed, name = way
     cell, beads, motion = planned(name, lift, retreat)
     if post == "staubli" and kind == "cartesian" and cell.setup == "part-on-robot":
-        motion = moving_tool.kept_straight(motion, cell, CHORD_ERROR, beads)
+        motion = moving_tool.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
     parameters = ProgramParameters(post=post, motion=kind, max_points=max_points, nc=NcParameters(feed=feed))
     program = build(motion, cell, PROCESS, parameters, "job")
     return cell, motion, program, catalogue.load(post).write(program)

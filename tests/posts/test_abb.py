@@ -28,7 +28,7 @@ def moves(kind, degrees, duration=0.5, layer=0, bead=0, speed=6.0, **extra):
 
 def program(*blocks, name="part", **options):
     defaults = {
-        "endless": (False,) * 6, "station": (300.0, 0.0, 310.5, 0.0, 0.0, math.pi / 2),
+        "continuous": (False,) * 6, "station": (300.0, 0.0, 310.5, 0.0, 0.0, math.pi / 2),
         "carried": (0.0, 0.0, 5.0, 0.0, 0.0, 0.0),
     }  # fmt: skip
     return Program(name, "a machine", blocks, **{**defaults, **options})
@@ -150,7 +150,7 @@ def beside(of, **more):
             count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
         blocks.append(block)
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "dome", "endless": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
+        "name": "dome", "continuous": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
         "unit": "STN1", "first_external": 2, "station": (0, 0, 20, 0, 0, 0), **more})
 
 
@@ -163,7 +163,7 @@ def along(of, **more):
             count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, slid]))
         blocks.append(block)
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "rail", "endless": (False,) * 7, "setup": "tool-on-robot", "external_kinds": ("linear",),
+        "name": "rail", "continuous": (False,) * 7, "setup": "tool-on-robot", "external_kinds": ("linear",),
         "unit": "", "first_external": 3, "station": (1200, 0, 20, 0, 0, 0), **more})
 
 
@@ -177,7 +177,7 @@ def both(of, **more):
             count, block = count + len(block), dataclasses.replace(block, joints=np.insert(block.joints, 7, slid, axis=1))
         blocks.append(block)
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "both", "endless": (False,) * 9, "external_kinds": ("rotary", "linear", "rotary"), **more})
+        "name": "both", "continuous": (False,) * 9, "external_kinds": ("rotary", "linear", "rotary"), **more})
 
 
 GOLDENS = {
@@ -373,8 +373,8 @@ def test_names_the_controller_refuses(name, why, proposal):
 def test_what_cannot_be_said_is_refused():
     still, where = program(moves("rapid", np.ones(6))), "process.between_layers.call"
     refusal(dataclasses.replace(still, setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup")
-    endless = dataclasses.replace(still, endless=(False,) * 5 + (True,))
-    assert "axis 6" in refusal(endless, code="ENDLESS_AXIS", where="cell.limits")
+    continuous = dataclasses.replace(still, continuous=(False,) * 5 + (True,))
+    assert "axis 6" in refusal(continuous, code="ENDLESS_AXIS", where="cell.limits")
     refusal(dataclasses.replace(HELD, station=None), code="NO_POSITIONS", where="program.motion")
     refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
     refusal(program(moves("rapid", [0, 0, 0, np.nan, 0, 0])), code="UNREACHABLE")

@@ -114,15 +114,16 @@ def test_a_retract_distance_of_nothing_leads_over_what_was_just_laid(way):
 def test_the_drive_finds_what_a_broken_check_lets_pass(broken, monkeypatch):
     """The same jobs planned by a check that misses something: the drive of the text finds it."""
     way = STACKED[0]
-    met, built = rapids.Surroundings.met, bead_ends.of_beads
+    met, built = rapids.RapidObstacles.met, bead_ends.of_beads
     with monkeypatch.context() as patch:
         if broken == "beads are lines":
             patch.setattr(bead_ends, "of_beads", lambda points, build, width, *rest, **more: built(
                 points, build, 0.0 * width, *rest, **more))
         elif broken == "nothing is laid yet":
-            patch.setattr(rapids.Surroundings, "met", lambda self, moves: met(self, moves._replace(laid=0 * moves.laid)))
+            patch.setattr(rapids.RapidObstacles, "met", lambda self, moves: met(
+                self, moves._replace(deposited=0 * moves.deposited)))
         else:
-            patch.setattr(rapids.Surroundings, "met", lambda self, moves: np.zeros(len(moves.laid), dtype=bool))
+            patch.setattr(rapids.RapidObstacles, "met", lambda self, moves: np.zeros(len(moves.deposited), dtype=bool))
         planned_jobs.planned.cache_clear(), planned_jobs.written.cache_clear()
         found, _ = contacts(way, written(way, lift=0.0)[3], 0.0)
     planned_jobs.planned.cache_clear(), planned_jobs.written.cache_clear()

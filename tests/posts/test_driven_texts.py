@@ -32,8 +32,8 @@ def test_the_plan_is_found_again_in_the_text(way):
     np.testing.assert_allclose(motion.tool, planned.tool, atol=TURNED)
     np.testing.assert_allclose(motion.duration[2:], planned.duration[2:], atol=LATE)  # the first move begins anywhere
     apart = motion.joints - planned.joints
-    endless = cell.limits.endless
-    apart[:, endless] -= 2.0 * np.pi * np.rint(apart[:, endless] / (2.0 * np.pi))
+    continuous = cell.limits.continuous
+    apart[:, continuous] -= 2.0 * np.pi * np.rint(apart[:, continuous] / (2.0 * np.pi))
     assert np.abs(apart).max() < APART  # mm of axes that slide, rad of others
     assert np.abs(apart[:, ~cell.machine.chain.sliding]).max() < TURNED
     drive, rows = Drive(cell, read, planned.joints[0]), np.flatnonzero(motion.moves)

@@ -39,7 +39,7 @@ def two_groups(of, **more):
             count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
         blocks.append(block)
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "groups", "endless": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
+        "name": "groups", "continuous": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
         "unit": "2", **more})
 
 
@@ -72,7 +72,7 @@ def along(of, at=0, **more):
     kinds = [*of.external_kinds]
     kinds.insert(at, "linear")
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "rail", "endless": (False,) * (7 + len(of.external_kinds)), "setup": "tool-on-robot",
+        "name": "rail", "continuous": (False,) * (7 + len(of.external_kinds)), "setup": "tool-on-robot",
         "external_kinds": tuple(kinds), **more})
 
 
@@ -211,7 +211,7 @@ def test_a_dry_run_moves_the_same_and_switches_nothing():
 
 def test_an_endless_axis_says_what_it_needs_and_a_limited_one_keeps_its_turns():
     turning = moves("rapid", np.outer(np.arange(9), [0, 0, 0, 0, 0, 100.0]))
-    text = fanuc.write(program(turning, endless=(False,) * 5 + (True,)))["PART.LS"].decode()
+    text = fanuc.write(program(turning, continuous=(False,) * 5 + (True,)))["PART.LS"].decode()
     assert "!axis 6 turns without end: set it" in text and "Continuous Turn" in text
     shown = [float(value) for value in re.findall(r"J6= *(\S+)", text)]
     assert shown == [0.0, 100.0, -160.0, -60.0, 40.0, 140.0, -120.0, -20.0, 80.0]
@@ -226,7 +226,7 @@ def test_an_endless_axis_says_what_it_needs_and_a_limited_one_keeps_its_turns():
     (-360.25, "-.250"),
 ])  # fmt: skip
 def test_angles_of_an_endless_axis_lie_within_half_a_turn(degrees, written):
-    text = fanuc.write(program(moves("rapid", [0, 0, 0, 0, 0, degrees]), endless=(False,) * 5 + (True,)))[
+    text = fanuc.write(program(moves("rapid", [0, 0, 0, 0, 0, degrees]), continuous=(False,) * 5 + (True,)))[
         "PART.LS"
     ].decode()
     assert re.search(r"J6=(.{10}) deg", text)[1] == written.rjust(10)
@@ -235,10 +235,10 @@ def test_angles_of_an_endless_axis_lie_within_half_a_turn(degrees, written):
 def test_a_move_of_half_a_turn_on_an_endless_axis_is_refused():
     values = [[0, 0, 0, 0, 0, 0.0], [0, 0, 0, 0, 0, 179.9], [0, 0, 0, 0, 0, 359.9]]
     of = program(
-        moves("rapid", values[:2]), moves("deposit", values[2:], layer=3, bead=1), endless=(False,) * 5 + (True,)
+        moves("rapid", values[:2]), moves("deposit", values[2:], layer=3, bead=1), continuous=(False,) * 5 + (True,)
     )
     assert "axis 6 turns 180.0 deg" in refusal(of, code="ENDLESS_STEP", where="layer 3 bead 1")
-    fanuc.write(dataclasses.replace(of, endless=(False,) * 6))
+    fanuc.write(dataclasses.replace(of, continuous=(False,) * 6))
 
 
 # parts

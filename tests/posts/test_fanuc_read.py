@@ -92,7 +92,7 @@ def test_a_listing_by_hand():
 @pytest.mark.parametrize("seed", range(25))
 @pytest.mark.parametrize("motion", ["joint", "cartesian"])
 def test_random_programs_come_back(random_program, seed, motion):
-    program = random_program(seed, motion, endless=bool(seed % 3))
+    program = random_program(seed, motion, continuous=bool(seed % 3))
     read = fanuc.read(fanuc.write(program))
     deposit, on = [], False
     for block in program.blocks:
@@ -115,7 +115,7 @@ def test_random_programs_come_back(random_program, seed, motion):
         assert abs((written - run.duration)[~long].sum()) <= 0.001 * (1 + long.sum()) and written.min() > 0.0009
     if motion == "joint":
         apart = np.degrees(read.joints - np.concatenate([run.joints for run in runs]))
-        apart[:, np.array(program.endless)] -= 360.0 * np.rint(apart[:, np.array(program.endless)] / 360.0)
+        apart[:, np.array(program.continuous)] -= 360.0 * np.rint(apart[:, np.array(program.continuous)] / 360.0)
         assert np.abs(apart).max() <= HALF_DIGIT + 1e-9 and np.degrees(read.digits) == pytest.approx(HALF_DIGIT)
     else:
         position, rotation = (np.concatenate([getattr(run, name) for run in runs]) for name in ("position", "rotation"))

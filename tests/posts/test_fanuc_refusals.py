@@ -72,7 +72,7 @@ def test_other_setups_and_axes_are_refused():
         code="UNSUPPORTED_SETUP",
         where="cell.setup",
     )
-    refusal(program(moves("rapid", np.zeros(5)), endless=(False,) * 5), code="UNSUPPORTED_AXES", where="program.post")
+    refusal(program(moves("rapid", np.zeros(5)), continuous=(False,) * 5), code="UNSUPPORTED_AXES", where="program.post")
     refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
     refusal(program(moves("rapid", [0, 0, 0, np.nan, 0, 0])), code="UNREACHABLE")
 

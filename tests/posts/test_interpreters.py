@@ -91,8 +91,8 @@ def test_linuxcnc_refuses_what_is_wrong(tmp_path, damage):
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
 def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
-    endless = seed % 2 == 1
-    of = random_program(seed, motion, endless, wire=seed % 2 == 0, deposit_output=4)
+    continuous = seed % 2 == 1
+    of = random_program(seed, motion, continuous, wire=seed % 2 == 0, deposit_output=4)
     of = with_options(of, path_feed=feed, wire_output=7, wire_gain=2.5)
     files = siemens.write(of)
     rows, places, names = {}, [], set()
@@ -119,7 +119,7 @@ def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
         else:
             assert np.all(np.abs([row[name] for name in "XYZ"] - axes[:3]) <= HALF + SINGLE * np.abs(axes[:3]))
             apart = np.array([row["A"], row["C"]]) - np.degrees(axes[3:])
-            apart[1] -= 360.0 * np.rint(apart[1] / 360.0) * endless
+            apart[1] -= 360.0 * np.rint(apart[1] / 360.0) * continuous
             assert np.abs(apart).max() <= HALF + 360.0 * SINGLE
         assert (row["gg01_motion"], row["gg07_tool_radius"], row["gg06_plane_select"]) == ("G1", "G40", "G17")
         assert row["gg08_work_offset"] == (siemens._offset(of.user_frame) if is_tip else "G500")

@@ -44,7 +44,7 @@ def laid(points, layer=0, bead=0, speed=6.0, duration=0.25):
 
 def program(*blocks, name="part", **options):
     defaults = {
-        "endless": (False,) * 6, "max_speed": NOMINAL, "station": (900.0, 0.0, 310.5, 0.0, 0.0, math.pi / 2),
+        "continuous": (False,) * 6, "max_speed": NOMINAL, "station": (900.0, 0.0, 310.5, 0.0, 0.0, math.pi / 2),
         "carried": (0.0, 0.0, 150.0, 0.0, math.pi / 4, 0.0), "motion": "cartesian", "setup": "tool-on-robot",
     }  # fmt: skip
     return Program(name, "a machine", blocks, **{**defaults, **options})
@@ -108,7 +108,7 @@ def beside(of, **more):
             count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
         blocks.append(block)
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "dome", "endless": (False,) * 8, "max_speed": NOMINAL + tuple(np.radians([80.0, 160.0])),
+        "name": "dome", "continuous": (False,) * 8, "max_speed": NOMINAL + tuple(np.radians([80.0, 160.0])),
         "external_kinds": ("rotary", "rotary"), "unit": "3", "first_external": 2, "station": (0, 0, 20, 0, 0, 0), **more})
 
 
@@ -121,7 +121,8 @@ def along(of, **more):
             count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, slid]))
         blocks.append(block)
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "rail", "endless": (False,) * 7, "max_speed": (*NOMINAL, 2500.0), "external_kinds": ("linear",), "unit": "",
+        "name": "rail", "continuous": (False,) * 7, "max_speed": (*NOMINAL, 2500.0), "external_kinds": ("linear",),
+        "unit": "",
         "first_external": 1, "station": (1200, 0, 20, 0, 0, 0), **more})
 
 
@@ -134,7 +135,7 @@ def both(of, **more):
             count, block = count + len(block), dataclasses.replace(block, joints=np.insert(block.joints, 6, slid, axis=1))
         blocks.append(block)
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "both", "endless": (False,) * 9, "max_speed": (*NOMINAL, 2500.0, *np.radians([80.0, 160.0])),
+        "name": "both", "continuous": (False,) * 9, "max_speed": (*NOMINAL, 2500.0, *np.radians([80.0, 160.0])),
         "external_kinds": ("linear", "rotary", "rotary"), **more})
 
 
@@ -268,7 +269,7 @@ def test_what_cannot_be_said_is_refused():
     assert "#TCP" in refusal(dataclasses.replace(JOB, setup="part-on-robot"), code="REMOTE_TCP", where="cell.setup")
     joint = dataclasses.replace(JOB, motion="joint")
     assert "whole percents" in refusal(joint, code="JOINT_DEPOSIT", where="program.motion")
-    refusal(dataclasses.replace(JOB, endless=(False,) * 5 + (True,)), code="ENDLESS_AXIS", where="cell.limits")
+    refusal(dataclasses.replace(JOB, continuous=(False,) * 5 + (True,)), code="ENDLESS_AXIS", where="cell.limits")
     refusal(dataclasses.replace(JOB, tool_frame=17), code="UNSUPPORTED_FRAME", where="program.tool_frame")
     refusal(dataclasses.replace(JOB, user_frame=33), code="UNSUPPORTED_FRAME", where="program.user_frame")
     for speeds in ((), (1.0,) * 5 + (math.inf,)):

@@ -68,7 +68,7 @@ def as_arrays(block):
 
 
 TIP = program(*map(as_arrays, [*tip_bead(0), *tip_bead(1)]), name="tip", motion="cartesian", max_points=5, user_frame=2,
-              endless=(False,) * 4 + (True,))  # fmt: skip
+              continuous=(False,) * 4 + (True,))  # fmt: skip
 GOLDENS = {"joint": JOINT, "path": with_options(JOINT, path_feed=True), "tip": TIP}
 
 
@@ -94,8 +94,8 @@ def test_random_programs_come_back(post, seed, motion, feed):
     assert (read.linear_digits, read.digits) == pytest.approx((5e-6, math.radians(5e-6)))
     apart = read.joints - joints
     if post is siemens:  # an endless axis tells no turns
-        assert read.shorter_way.tolist() == list(of.endless)
-        apart[:, 4] -= 2.0 * np.pi * np.rint(apart[:, 4] / (2.0 * np.pi)) * of.endless[4]
+        assert read.shorter_way.tolist() == list(of.continuous)
+        apart[:, 4] -= 2.0 * np.pi * np.rint(apart[:, 4] / (2.0 * np.pi)) * of.continuous[4]
     told = np.isfinite(apart)
     assert (told[~tip].all(), told[tip, :3].any(), told[tip, 3:].all()) == (True, False, post is linuxcnc or not tip.any())
     assert np.abs(apart[:, :3][told[:, :3]]).max() <= 5e-6 + 1e-9 and np.abs(apart[:, 3:][told[:, 3:]]).max() < 8.8e-8
@@ -290,9 +290,9 @@ def test_what_one_controller_alone_cannot_say():
     refusal(linuxcnc, fixed, code="NO_TIP_KINEMATICS", where="program.nc.switch_kinematics")
     assert "M42" not in text(linuxcnc.write(with_options(JOINT, switch_kinematics=False)))
     turns = [[0.0, 0.0, 0.0, 0.0, angle] for angle in (0.0, 179.0, 359.5)]
-    endless = program(moves("rapid", turns), endless=(False,) * 4 + (True,))
-    assert "C turns 180.5 deg" in refusal(siemens, endless, code="ENDLESS_STEP", where="layer 0 bead 0")
-    linuxcnc.write(endless)
+    continuous = program(moves("rapid", turns), continuous=(False,) * 4 + (True,))
+    assert "C turns 180.5 deg" in refusal(siemens, continuous, code="ENDLESS_STEP", where="layer 0 bead 0")
+    linuxcnc.write(continuous)
 
 
 @pytest.mark.parametrize(("user_frame", "word"), [(0, "G500"), (1, "G54"), (4, "G57"), (5, "G505"), (61, "G561")])

@@ -204,7 +204,7 @@ def test_every_move_comes_to_its_waypoint_within_limits_and_speeds(way):
     assert [move.stop for move in moves if move.on] == ends[laid].tolist()
     limits = machine["limits"]["maker"]["axes"]
     speeds = np.array([joint["max_speed"] for joint in machine["joints"]], float)
-    endless = np.array([bounds is None for bounds in limits])
+    continuous = np.array([bounds is None for bounds in limits])
     before = (None, None)
     runs = {}  # lengths and times of the moves of each bead
     for move, row in zip(moves, rows, strict=True):
@@ -217,13 +217,13 @@ def test_every_move_comes_to_its_waypoint_within_limits_and_speeds(way):
             planned = np.where(turning, np.degrees(motion.joints[row]), motion.joints[row])
             planned = np.array(machine["controller"]["matrix"]) @ planned + machine["controller"]["offset"]
             off = np.subtract(move.joints, planned)
-            off = np.where(endless, np.remainder(off + 180.0, 360.0) - 180.0, off)  # of DC
+            off = np.where(continuous, np.remainder(off + 180.0, 360.0) - 180.0, off)  # of DC
             assert np.nanmax(np.abs(off)) < AXIS
             for value, bounds in zip(move.joints, limits):
                 assert bounds is None or np.isnan(value) or bounds[0] <= value <= bounds[1]
         if move.joints and before[1] and not move.place:
             asked = np.abs(np.subtract(move.joints, before[1]))
-            asked = np.where(endless & (asked > 180.0), np.abs(asked - 360.0), asked)  # the shorter way of DC
+            asked = np.where(continuous & (asked > 180.0), np.abs(asked - 360.0), asked)  # the shorter way of DC
             share = float(np.nanmax(asked / speeds))
             time = move.time if np.isnan(move.rate) else share / move.rate
             assert np.isnan(time) or share <= time * 1.001

@@ -26,7 +26,7 @@ def moves(kind, degrees, duration=0.5, layer=0, bead=0, speed=6.0, **extra):
 
 def program(*blocks, name="part", **options):
     defaults = {
-        "endless": (False,) * 6, "max_speed": NOMINAL, "station": (300.0, 0.0, 310.5, 0.0, 0.0, math.pi / 2),
+        "continuous": (False,) * 6, "max_speed": NOMINAL, "station": (300.0, 0.0, 310.5, 0.0, 0.0, math.pi / 2),
         "carried": (0.0, 0.0, 5.0, 0.0, 0.0, 0.0),
     }  # fmt: skip
     return Program(name, "a machine", blocks, **{**defaults, **options})
@@ -269,7 +269,7 @@ def test_what_cannot_be_said_is_refused():
     still = program(moves("rapid", np.ones(6)))
     refusal(dataclasses.replace(still, setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup")
     assert "axis 6" in refusal(
-        dataclasses.replace(still, endless=(False,) * 5 + (True,)), code="ENDLESS_AXIS", where="cell.limits"
+        dataclasses.replace(still, continuous=(False,) * 5 + (True,)), code="ENDLESS_AXIS", where="cell.limits"
     )
     for speeds in ((), (1.0,) * 5 + (math.inf,)):
         refusal(dataclasses.replace(still, max_speed=speeds), code="NO_JOINT_SPEED", where="cell.machine")

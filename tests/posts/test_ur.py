@@ -26,7 +26,7 @@ from freecad_am.posts.ur import post as ur
 from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program
 
 LIMITED = dataclasses.replace(
-    GOLDEN_JOINT, endless=(False,) * 6, setup="tool-on-robot", carried=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0))
+    GOLDEN_JOINT, continuous=(False,) * 6, setup="tool-on-robot", carried=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0))
 TABLE = dataclasses.replace(
     GOLDEN_TABLE, station=(700.0, 10.5, -100.0, 0.1, -0.2, 3.0), carried=(0.0, 0.0, 150.0, np.pi, 0.0, 0.5))
 
@@ -151,7 +151,7 @@ def due(of):
 
 
 def random_script(random_program, seed, motion):
-    whole = random_program(seed, motion, endless=False)
+    whole = random_program(seed, motion, continuous=False)
     blocks = tuple(
         dataclasses.replace(block, duration=np.clip(block.duration, 0.05, 40.0), speed=np.clip(block.speed, 6.0, 200.0))
         if isinstance(block, Moves) else block for block in whole.blocks)

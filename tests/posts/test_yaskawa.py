@@ -24,7 +24,7 @@ FAST = tuple(np.radians([197.0, 190.0, 210.0, 410.0, 410.0, 610.0]).tolist())
 
 def known(of, **more):
     """A program whose machine file tells what is needed."""
-    return dataclasses.replace(of, endless=(False,) * 6, pulses_per_degree=PULSES, max_speed=FAST, **more)
+    return dataclasses.replace(of, continuous=(False,) * 6, pulses_per_degree=PULSES, max_speed=FAST, **more)
 
 
 def linear(of, unit="mm/s"):
@@ -44,7 +44,7 @@ def beside(of, **more):
             count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
         blocks.append(block)
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "station", "endless": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
+        "name": "station", "continuous": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
         "unit": "ST1", "pulses_per_degree": STATION, "max_speed": (*FAST, *np.radians([80.0, 160.0])), **more})
 
 
@@ -60,7 +60,7 @@ def along(of, at=0, **more):
     kinds = [*of.external_kinds]
     kinds.insert(at, "linear")
     return dataclasses.replace(of, blocks=tuple(blocks), **{
-        "name": "rail", "endless": (False,) * (7 + len(of.external_kinds)), "setup": "tool-on-robot",
+        "name": "rail", "continuous": (False,) * (7 + len(of.external_kinds)), "setup": "tool-on-robot",
         "external_kinds": tuple(kinds), **{
             name: (*getattr(of, name)[: 6 + at], value, *getattr(of, name)[6 + at :])
             for name, value in (("pulses_per_degree", 81.92), ("max_speed", 2500.0))}, **more})
@@ -176,7 +176,7 @@ def test_a_track_is_the_base_axis_of_the_group():
 
 
 def seeded(random_program, seed, cartesian):
-    of = random_program(seed, endless=False)
+    of = random_program(seed, continuous=False)
     blocks = tuple(
         dataclasses.replace(block, duration=np.clip(block.duration, 0.3, 0.9)) if isinstance(block, Moves) else block
         for block in of.blocks)
@@ -281,7 +281,7 @@ def test_what_no_job_says_is_refused():
     carrying = dataclasses.replace(GOLDENS["linear"], setup="part-on-robot")
     assert "external reference point" in refusal(carrying, code="REMOTE_TCP", where="program.motion")
     refusal(known(program(still), setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup")
-    refusal(dataclasses.replace(known(program(still)), endless=(False,) * 5 + (True,)), code="ENDLESS_AXIS")
+    refusal(dataclasses.replace(known(program(still)), continuous=(False,) * 5 + (True,)), code="ENDLESS_AXIS")
     refusal(dataclasses.replace(known(program(still)), pulses_per_degree=()), code="NO_PULSES", where="cell.machine")
     refusal(linear(program(still), ""), code="NO_SPEED_UNIT", where="cell.machine")
     refusal(dataclasses.replace(known(program(still)), max_speed=(1.0,) * 5 + (np.inf,)), code="NO_JOINT_SPEED")

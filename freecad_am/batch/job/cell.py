@@ -126,10 +126,10 @@ def _one_external(value: Any, key: str, path: str) -> external.External:
     section = fields.mapping(value, key)
     fields.known_keys(section, ("machine", "pose", "carries"), key)
     pose = _pose(section.get("pose"), f"{key}.pose")
-    told = section.get("machine")
-    if not isinstance(told, dict):
-        told = fields.text(told, f"{key}.machine").strip()
-    machine = _machine(told, path, f"{key}.machine")
+    wanted = section.get("machine")
+    if not isinstance(wanted, dict):
+        wanted = fields.text(wanted, f"{key}.machine").strip()
+    machine = _machine(wanted, path, f"{key}.machine")
     return external.External(machine, pose, section.get("carries") or external.PART)
 
 

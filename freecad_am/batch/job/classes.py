@@ -12,7 +12,7 @@ from freecad_am.core.parameters import bead_classes
 from . import fields, quantity
 
 
-def told(section: dict[str, Any]) -> dict[str, Any]:
+def as_text(section: dict[str, Any]) -> dict[str, Any]:
     """The section `process` with its classes as their text. InputError naming class and key."""
     given = section.get("classes")
     if given in (None, {}) or given == bead_classes.NONE:
@@ -28,7 +28,7 @@ def told(section: dict[str, Any]) -> dict[str, Any]:
         for name, own in given.items()
     }
     for name, one in found.items():
-        bead_classes.made(name, one.told())
+        bead_classes.made(name, one.own_values())
     return {**section, "classes": bead_classes.text_of(found)}
 
 

@@ -27,7 +27,7 @@ def kept_clear(kind: str) -> tuple[str, ...]:
 def process_of(section: Any, strategy: LayerParameters, path: str) -> ProcessParameters:
     """The process, what its material says filled in; where solids are filled a bead width that the job gives is meant,
     whatever it is."""
-    given = job_classes.told(material.filled_in(fields.mapping(section, "process"), path))
+    given = job_classes.as_text(material.filled_in(fields.mapping(section, "process"), path))
     if "bead_width" in given and family_of(strategy).filled:
         given = {"fill_width": "bead_width", **given}
     return fields.build(ProcessParameters, given, "process")

@@ -145,7 +145,7 @@ def _keys(family: Family) -> tuple[str, ...]:
 
 def process_of_all(section: Any, path: str) -> ProcessParameters:
     """The process of a program of several features, which may differ from it."""
-    given = job_classes.told(material.filled_in(fields.mapping(section, "process"), path))
+    given = job_classes.as_text(material.filled_in(fields.mapping(section, "process"), path))
     process = fields.build(ProcessParameters, given, "process")
     return with_path(process, path)
 

@@ -42,10 +42,10 @@ def filled_in(section: Any, path: str) -> Any:
     file = _file(section["material"].strip(), path)
     saved = tree.read(str(file), "a material", "source: and density:", "source: and density:")
     try:
-        told = _defaults(saved.values, file)
+        stated = _defaults(saved.values, file)
     except InputError as error:
         raise saved.placed(error) from None
-    return _over(told, section)
+    return _over(stated, section)
 
 
 def _file(name: str, path: str) -> Path:
@@ -71,19 +71,19 @@ def _defaults(values: dict[str, Any], file: Path) -> dict[str, Any]:
     source = " ".join(fields.text(values["source"], "source").split())
     slowest, fastest = _range(values.get("speed_range"))
     name = values.get("name")
-    told: dict[str, Any] = {
+    stated: dict[str, Any] = {
         "material": {
             "name": file.stem if name in (None, {}) else fields.text(name, "name"), "source": source,
             **({} if slowest is None else {"slowest": slowest, "fastest": fastest}),
         },
         **{key: values[key] for key in CARRIED if values.get(key) not in (None, {})},
     }
-    told |= _checked(told, values, slowest, fastest)
+    stated |= _checked(stated, values, slowest, fastest)
     if values.get("schedules") not in (None, {}):
-        told |= _schedules(values["schedules"])
+        stated |= _schedules(values["schedules"])
     if values.get("beads") not in (None, {}):
-        told["bead_model"] = _beads(values, file, slowest, fastest)
-    return told
+        stated["bead_model"] = _beads(values, file, slowest, fastest)
+    return stated
 
 
 def _range(value: Any) -> tuple[float | None, float | None]:
@@ -99,14 +99,14 @@ def _range(value: Any) -> tuple[float | None, float | None]:
     return low, high
 
 
-def _checked(told: dict[str, Any], values: dict[str, Any], slowest: float | None, fastest: float | None) -> dict[str, Any]:
+def _checked(stated: dict[str, Any], values: dict[str, Any], slowest: float | None, fastest: float | None) -> dict[str, Any]:
     """The wire; what numbers there are is looked at, so that it is told with the line of this file."""
     for key, kind in (("density", f.NUMBER), ("temperature", f.NUMBER), ("stand_off", f.LENGTH), ("travel_speed", f.SPEED)):
-        number = quantity.read(told[key], kind, key) if key in told else 1.0
+        number = quantity.read(stated[key], kind, key) if key in stated else 1.0
         if key in ("density", "travel_speed") and not 0.0 < number < 1e9:
-            raise InputError("BAD_VALUE", key, f"{quantity.shown(told[key])} is out of range; give more than 0")
-        if key == "travel_speed" and key in told and slowest is not None and not slowest <= number <= (fastest or 0.0):
-            raise InputError("BAD_VALUE", key, f"{quantity.shown(told[key])} is outside of speed_range; mend one of them")
+            raise InputError("BAD_VALUE", key, f"{quantity.shown(stated[key])} is out of range; give more than 0")
+        if key == "travel_speed" and key in stated and slowest is not None and not slowest <= number <= (fastest or 0.0):
+            raise InputError("BAD_VALUE", key, f"{quantity.shown(stated[key])} is outside of speed_range; mend one of them")
     if values.get("wire") in (None, {}):
         return {}
     wire = fields.mapping(values["wire"], "wire")
@@ -153,16 +153,16 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
     return name
 
 
-def _over(told: dict[str, Any], section: dict[str, Any]) -> dict[str, Any]:
+def _over(stated: dict[str, Any], section: dict[str, Any]) -> dict[str, Any]:
     """What a job says over what its material does, key by key; classes that the job has as a text are its own."""
-    found = {**told, **{key: value for key, value in section.items() if key != "material"}}
+    found = {**stated, **{key: value for key, value in section.items() if key != "material"}}
     for key in ("wire", "classes"):
         own = section.get(key)
-        if isinstance(own, dict) and key in told:
-            found[key] = {**told[key], **own}
+        if isinstance(own, dict) and key in stated:
+            found[key] = {**stated[key], **own}
             if key == "classes":
                 found[key] |= {
-                    name: {**told[key][name], **(one or {})} for name, one in own.items()
-                    if name in told[key] and (one is None or isinstance(one, dict))
+                    name: {**stated[key][name], **(one or {})} for name, one in own.items()
+                    if name in stated[key] and (one is None or isinstance(one, dict))
                 }
     return found

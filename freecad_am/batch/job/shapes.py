@@ -78,7 +78,7 @@ class Shapes:
             self.of = of
         except InputError as error:
             raise self.placed(error) from None
-        return Issue(NOTE, "PROPOSED", found.told())
+        return Issue(NOTE, "PROPOSED", found.text())
 
     def make_feature(self, earlier: Sequence[Any]) -> Any:
         """The feature, of the family of its strategy. earlier: parts that are deposited before; those that it touches are

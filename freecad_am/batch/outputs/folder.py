@@ -124,8 +124,8 @@ def earlier_outputs(folder: str) -> set[str]:
     report = _earlier_report(folder)
     if report is None:
         return names
-    told = {name for name in report["programs"] if staging.is_inside(name) and name.startswith(PROGRAMS + "/")}
-    whole = {name for name in told if not _is_behind_link(folder, name)}
+    listed = {name for name in report["programs"] if staging.is_inside(name) and name.startswith(PROGRAMS + "/")}
+    whole = {name for name in listed if not _is_behind_link(folder, name)}
     return names | whole | {WAYPOINTS, REPORT, PAGE, report["name"] + DOCUMENT_ENDING}
 
 

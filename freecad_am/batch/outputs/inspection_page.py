@@ -14,7 +14,7 @@ from freecad_am.core.types import Array
 from freecad_am.report.style import STYLE
 from freecad_am.report.svg import Plot
 
-_MOST = 6000  # points of a map
+_MAX_POINTS = 6000  # points of a map
 _TILT = np.radians(30.0)  # from above, as the map is looked at
 _DOT = 1.7
 
@@ -51,7 +51,7 @@ def _number(value: float, unit: str) -> str:
 
 def _map(one: Any) -> str:
     """The points as they are seen from the front, a little from above."""
-    chosen = np.unique(np.linspace(0, len(one.points) - 1, _MOST).astype(np.intp))
+    chosen = np.unique(np.linspace(0, len(one.points) - 1, _MAX_POINTS).astype(np.intp))
     chosen = chosen[one.counted[chosen]]
     x, y, z = one.points[chosen].T
     up = z * np.cos(_TILT) + y * np.sin(_TILT)

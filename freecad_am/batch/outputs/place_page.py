@@ -24,10 +24,10 @@ def render(name: str, found: Placed) -> str:
     title = f"{escape(name)}: where it can stand"
     serve = sum(one.feasible for one in found.judged)
     what = found.moves.replace("-", " ")
-    told = (f"{serve} of {len(found.poses)} poses of the {what} are feasible, as far as {found.points} of {found.of} points "
+    text = (f"{serve} of {len(found.poses)} poses of the {what} are feasible, as far as {found.points} of {found.of} points "
             "tell. Each square is the best of its rotations; its colour is the least share of a joint's "
             "range that is left to a limit, grey where the pose is not feasible; the number is the share of points served.")
-    parts = [f"<header><h1>{title}</h1></header><p class=\"sub\">{told}</p>", _table(found)]
+    parts = [f"<header><h1>{title}</h1></header><p class=\"sub\">{text}</p>", _table(found)]
     heights = np.unique(found.poses[:, 2])[:_MOST_MAPS]
     low, high = _range(found)
     parts.append(f"<p class=\"sub\">margin from {100.0 * low:.3g} % {_key()} to {100.0 * high:.3g} %</p>")
@@ -84,7 +84,7 @@ def _map(found: Placed, height: float, low: float, high: float) -> str:
         fill = _COLOURS[min(int(4.0 * max(share, 0.0)), 3)] if one.feasible else _BEYOND
         edge = ' stroke="#c0182b" stroke-width="3"' if number == found.best else ""
         plot.parts.append(f'<rect x="{left:.1f}" y="{top:.1f}" width="{right - left:.1f}" height="{bottom - top:.1f}" '
-                          f'fill="{fill}"{edge}><title>{escape(_told(found, number))}</title></rect>'
+                          f'fill="{fill}"{edge}><title>{escape(_pose_text(found, number))}</title></rect>'
                           f'<text class="tick" x="{0.5 * (left + right):.1f}" y="{0.5 * (top + bottom) + 4.0:.1f}" '
                           f'text-anchor="middle">{100.0 * one.share:.0f} %</text>')
     return plot.text()
@@ -95,7 +95,7 @@ def _worth(found: Placed, number: int) -> tuple[float, float, float]:
     return (float(one.feasible), one.share, float(np.nan_to_num(one.margin, nan=-1.0)))
 
 
-def _told(found: Placed, number: int) -> str:
+def _pose_text(found: Placed, number: int) -> str:
     one = found.of_pose(number)
     place = [float(f"{value:.6g}") for value in outer(found.pose(number))]
     return (f"{place}: {one.code or 'feasible'}; margin {_shown(100.0 * one.margin, '.3g')} %, {_shown(one.time, '.0f')} s, "

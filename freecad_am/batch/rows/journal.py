@@ -45,9 +45,9 @@ class Journal:
         """Write down what a row has come to, whose outputs are in place."""
         if result["exit"] not in KEPT:
             return
-        told = {name: value for name, value in result.items() if name != "lines"}
+        kept = {name: value for name, value in result.items() if name != "lines"}
         line = json.dumps({"digest": self._digest(row, dry), "folder": row.folder,
-                           "report": "" if result.get("status") == CHECKED else self._report(row), "result": told})
+                           "report": "" if result.get("status") == CHECKED else self._report(row), "result": kept})
         with contextlib.suppress(OSError):  # then the row is done again
             os.makedirs(self._folder, exist_ok=True)
             flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
@@ -70,8 +70,8 @@ class Journal:
 
     def _digest(self, row: Row, dry: bool) -> str:
         files = {name: self._file(name) for name in sorted(row.files)}
-        told = json.dumps([self._made_by, row.tree().values, os.path.abspath(row.path), files, dry], sort_keys=True)
-        return hashlib.sha256(told.encode()).hexdigest()
+        content = json.dumps([self._made_by, row.tree().values, os.path.abspath(row.path), files, dry], sort_keys=True)
+        return hashlib.sha256(content.encode()).hexdigest()
 
     def _file(self, name: str) -> str:
         """The digest of a file, looked at once in a batch; '' where there is none."""

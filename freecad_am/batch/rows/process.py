@@ -80,9 +80,9 @@ def _carry_out(order: Order, sender: Any) -> None:
     """The work of the process."""
     supervised.end_with_parent()
     quiet = _Quiet()
-    status, message, told = 1, "", {}
+    status, message, result = 1, "", {}
     try:
-        status, told = _planned(order, quiet)
+        status, result = _planned(order, quiet)
     except KeyboardInterrupt:
         status, message = 130, "interrupted"
     except AmError as error:
@@ -91,7 +91,7 @@ def _carry_out(order: Order, sender: Any) -> None:
     except Exception as error:
         message = f"{type(error).__name__}: {error}"
         quiet.say(f"error[INTERNAL] {' '.join(message.split())}; this is our fault, please report it")
-    sender.send({"exit": status, "message": message or quiet.first, "lines": quiet.lines, **told})
+    sender.send({"exit": status, "message": message or quiet.first, "lines": quiet.lines, **result})
     sender.close()
     os._exit(0)
 
@@ -100,7 +100,7 @@ def _planned(order: Order, quiet: Session) -> tuple[int, dict[str, Any]]:
     """The exit status and the figures."""
     asked = job.from_tree(tree.Tree(order.label, order.values), order.path)
     if order.dry:
-        with planning.told_by_keys(asked):
+        with planning.named_by_keys(asked):
             planning.check(asked)
         return 0, {"status": CHECKED}
     result = planning.run(asked, order.folder, quiet)

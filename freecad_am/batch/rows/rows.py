@@ -41,7 +41,7 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
     folder = output or os.path.join(
         os.path.dirname(os.path.abspath(job_path)), "out", os.path.splitext(os.path.basename(path))[0]
     )
-    journal = row_journal.Journal(folder, versions.code() + str(versions.told()), how.resume)
+    journal = row_journal.Journal(folder, versions.code() + str(versions.found_versions()), how.resume)
     results: dict[int, dict[str, Any]] = {}
     waiting = []
     for row in rows:
@@ -114,8 +114,8 @@ def _planned_here(
 def _progress(done: int, rows: int, now: int, seconds: float) -> str:
     """How far it is, and how long the rest will take at the pace so far."""
     left = (rows - done) * seconds / max(now, 1)
-    told = f"{left / 3600:.1f} h" if left > 5400 else f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
-    return f"{done} of {rows} rows done" + (f", about {told} left" if done < rows else "")
+    text = f"{left / 3600:.1f} h" if left > 5400 else f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
+    return f"{done} of {rows} rows done" + (f", about {text} left" if done < rows else "")
 
 
 def _summary(columns: list[str], rows: list[table.Row], results: dict[int, dict[str, Any]]) -> str:
@@ -126,8 +126,8 @@ def _summary(columns: list[str], rows: list[table.Row], results: dict[int, dict[
         result = results[row.number]
         status = result.get("status", "failed")
         figures = [_cell(result.get(figure)) for figure in FIGURES]
-        told = map(escaped, (*row.cells.values(), row.folder))
-        writer.writerow([row.number, *told, result["exit"], status, *figures, escaped(result["message"])])
+        texts = map(escaped, (*row.cells.values(), row.folder))
+        writer.writerow([row.number, *texts, result["exit"], status, *figures, escaped(result["message"])])
     return text.getvalue()
 
 

@@ -59,7 +59,9 @@ class _Unpickler(pickle.Unpickler):
         return mesh
 
 
-def tell(told: str, geometry: str, read: Callable[..., Any], path: str | os.PathLike[str], rest: tuple[Any, ...]) -> None:
+def tell(
+    answer_file: str, geometry: str, read: Callable[..., Any], path: str | os.PathLike[str], rest: tuple[Any, ...]
+) -> None:
     """In the other process: read, and write what was read or the InputError into the files."""
     try:
         answer: Any = (True, read(path, *rest))
@@ -70,13 +72,13 @@ def tell(told: str, geometry: str, read: Callable[..., Any], path: str | os.Path
         _Pickler(text, geometry).dump(answer)
     except _Inexact:
         text = io.BytesIO(pickle.dumps((True, AGAIN)))
-    with open(told, "wb") as stream:
+    with open(answer_file, "wb") as stream:
         stream.write(text.getbuffer())
 
 
-def hear(told: str, geometry: str) -> Any:
+def hear(answer_file: str, geometry: str) -> Any:
     """What the other process has told; raises its InputError."""
-    with open(told, "rb") as stream:
+    with open(answer_file, "rb") as stream:
         sound, answer = _Unpickler(stream, geometry).load()
     if sound:
         return answer

@@ -56,17 +56,17 @@ def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, pati
     if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
         return read(path, *rest)
     seconds, memory = patience * (SECONDS + SECONDS_A_MB * size), patience**0.5 * (MEMORY + MEMORY_A_MB * size)
-    with _beside_a_window() if FreeCAD.GuiUp else _in_memory() as (told, geometry):
+    with _with_window() if FreeCAD.GuiUp else _in_memory() as (answer_file, geometry):
         if FreeCAD.GuiUp:
-            question = (told, geometry, read.__module__, read.__qualname__, path, rest, seconds, memory)
+            question = (answer_file, geometry, read.__module__, read.__qualname__, path, rest, seconds, memory)
             how = kernel_process.limited(answer, question, LONGER * seconds)
             if how is None:  # there is no other process
                 return read(path, *rest)
         else:
-            how = _forked(lambda: answers.tell(told, geometry, read, path, rest), seconds, memory)
+            how = _forked(lambda: answers.tell(answer_file, geometry, read, path, rest), seconds, memory)
         ended, used = how
         if ended == 0:
-            found = answers.hear(told, geometry)
+            found = answers.hear(answer_file, geometry)
             return read(path, *rest) if isinstance(found, str) and found == answers.AGAIN else found
         raise _refused(where, ended, used, seconds, memory)
 
@@ -74,23 +74,24 @@ def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, pati
 @contextlib.contextmanager
 def _in_memory() -> Iterator[tuple[str, str]]:
     """The paths of two files that only this process and its copies have."""
-    told, geometry = os.memfd_create("told"), os.memfd_create("geometry")
+    answer_file, geometry = os.memfd_create("told"), os.memfd_create("geometry")
     try:
-        yield f"/proc/self/fd/{told}", f"/proc/self/fd/{geometry}"
+        yield f"/proc/self/fd/{answer_file}", f"/proc/self/fd/{geometry}"
     finally:
-        os.close(told)
+        os.close(answer_file)
         os.close(geometry)
 
 
 @contextlib.contextmanager
-def _beside_a_window() -> Iterator[tuple[str, str]]:
+def _with_window() -> Iterator[tuple[str, str]]:
     """The paths of two files in a folder of their own."""
     with tempfile.TemporaryDirectory(prefix="reading_") as folder:
         yield os.path.join(folder, "told"), os.path.join(folder, "geometry")
 
 
 def answer(
-    told: str, geometry: str, module: str, function: str, path: Any, rest: tuple[Any, ...], seconds: float, memory: float
+    answer_file: str, geometry: str, module: str, function: str, path: Any, rest: tuple[Any, ...], seconds: float,
+    memory: float,
 ) -> None:
     """In a process of `kernel_process`: read within limits, and tell."""
     global _is_apart
@@ -99,7 +100,7 @@ def answer(
     _is_apart = True
     read = getattr(importlib.import_module(module), function)
     if sys.platform == "win32":
-        answers.tell(told, geometry, read, path, rest)
+        answers.tell(answer_file, geometry, read, path, rest)
         return
     _take_no_signals()
     spent = resource.getrusage(resource.RUSAGE_SELF)
@@ -111,7 +112,7 @@ def answer(
             soft, hard = resource.getrlimit(kind)
             before.callback(resource.setrlimit, kind, (soft, hard))
             resource.setrlimit(kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard))
-        answers.tell(told, geometry, read, path, rest)
+        answers.tell(answer_file, geometry, read, path, rest)
 
 
 def _size(path: str | os.PathLike[str]) -> float:

@@ -31,7 +31,7 @@ KNOWN = (
 )
 NOT_DEPOSITED = ("support", "other")  # types of objects that are not part
 LARGEST = 1 << 29  # bytes of a file of the zip, unpacked
-MOST = 20_000_000  # triangles of all items together
+MAX_TRIANGLES = 20_000_000  # triangles of all items together
 MOST_PLACED, DEEPEST = 100_000, 100  # objects of all items together, and one inside the other
 CHUNK = 1 << 20
 LONGEST = 4 << 20  # bytes of one element
@@ -118,12 +118,12 @@ class _Package:
 
     def _parse(self, name: str, start: object, prefix: object = None) -> None:
         try:
-            told = self.archive.getinfo(name)
+            info = self.archive.getinfo(name)
         except KeyError:
             raise _bad(self.where, f"{name} is missing in it") from None
-        if told.flag_bits & 1:
+        if info.flag_bits & 1:
             raise InputError("UNSUPPORTED_FILE", self.where, "it is encrypted; export it without protection")
-        if told.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise _bad(self.where, "it is compressed in a way that 3MF does not allow")
         parser = expat.ParserCreate(namespace_separator=" ")
         parser.buffer_text = True
@@ -131,7 +131,7 @@ class _Package:
         parser.StartNamespaceDeclHandler = prefix  # type: ignore[assignment]
         parser.StartDoctypeDeclHandler = self._refuse_doctype
         size = 0
-        with self.archive.open(told) as stream:
+        with self.archive.open(info) as stream:
             while chunk := stream.read(CHUNK):
                 size += len(chunk)  # what the zip tells of itself need not be true
                 if size > LARGEST:
@@ -150,12 +150,12 @@ class _Package:
         """An object, moved (4, 3), behind the points and corners there are."""
         made = self.objects.get(key)
         if made is None or key in within:
-            told = "holds itself" if made else "is not in it"
-            raise _bad(self.where, f"object {key[1]} of {key[0]} {told}")
+            text = "holds itself" if made else "is not in it"
+            raise _bad(self.where, f"object {key[1]} of {key[0]} {text}")
         self.placed += 1
         if self.placed > MOST_PLACED or len(within) > DEEPEST:
-            told = f"{MOST_PLACED:,} objects, or objects nested {DEEPEST} times"
-            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {told}; simplify it")
+            text = f"{MOST_PLACED:,} objects, or objects nested {DEEPEST} times"
+            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {text}; simplify it")
         if made.kind in NOT_DEPOSITED:
             return
         for part, way in made.parts:
@@ -164,13 +164,14 @@ class _Package:
         if not made.triangles:
             return
         self.count += len(made.triangles)
-        if self.count > MOST:
-            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {MOST:,} triangles; simplify it")
+        if self.count > MAX_TRIANGLES:
+            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {MAX_TRIANGLES:,} triangles; simplify it")
         own, some = np.array(made.points).reshape(-1, 3), np.array(made.triangles, dtype=np.intp)
         if some.min() < 0 or some.max() >= len(own):
             raise _bad(self.where, f"object {key[1]} of {key[0]} has triangles with points that it has not")
-        if self.points + len(own) > 3 * MOST:
-            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {3 * MOST:,} points; simplify it")
+        if self.points + len(own) > 3 * MAX_TRIANGLES:
+            most = 3 * MAX_TRIANGLES
+            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {most:,} points; simplify it")
         turned = np.linalg.det(moved[:3])
         if abs(turned) <= 1e-12 * np.abs(moved[:3]).max() ** 3:
             raise _bad(self.where, f"object {key[1]} of {key[0]} is moved by a matrix that flattens it")
@@ -227,8 +228,8 @@ class _Model:
         for prefix in values.get("requiredextensions", "").split():
             space = self.prefixes.get(prefix, prefix)
             if space not in KNOWN:
-                told = "it is encrypted" if "securecontent" in space else f"it needs an extension that is not read ({space})"
-                raise InputError("UNSUPPORTED_FILE", self.where, f"{told}; export plain triangles")
+                text = "it is encrypted" if "securecontent" in space else f"it needs an extension that is not read ({space})"
+                raise InputError("UNSUPPORTED_FILE", self.where, f"{text}; export plain triangles")
 
 
 def _matrix(values: dict[str, str]) -> Array:

@@ -17,7 +17,7 @@ from typing import Any, BinaryIO
 IDLE = 300.0  # s
 
 
-def serve(asked: BinaryIO, told: BinaryIO) -> None:
+def serve(asked: BinaryIO, answers: BinaryIO) -> None:
     """Answer until nothing is asked any more."""
     for entry in _heard(asked):
         if entry not in sys.path:
@@ -25,7 +25,7 @@ def serve(asked: BinaryIO, told: BinaryIO) -> None:
     import FreeCAD
     import Part
 
-    _tell(told, tuple(FreeCAD.Version()[:3]))
+    _tell(answers, tuple(FreeCAD.Version()[:3]))
     while True:
         module, function, path, rest = _heard(asked)
         try:
@@ -36,7 +36,7 @@ def serve(asked: BinaryIO, told: BinaryIO) -> None:
             answer = True, getattr(importlib.import_module(module), function)(*given, *rest)
         except Exception as error:
             answer = False, _portable(error)
-        _tell(told, answer)
+        _tell(answers, answer)
 
 
 def _heard(asked: BinaryIO) -> Any:
@@ -49,9 +49,9 @@ def _heard(asked: BinaryIO) -> Any:
     return heard
 
 
-def _tell(told: BinaryIO, answer: Any) -> None:
-    pickle.dump(answer, told, protocol=pickle.HIGHEST_PROTOCOL)
-    told.flush()
+def _tell(answers: BinaryIO, answer: Any) -> None:
+    pickle.dump(answer, answers, protocol=pickle.HIGHEST_PROTOCOL)
+    answers.flush()
 
 
 def _portable(error: Exception) -> Exception:

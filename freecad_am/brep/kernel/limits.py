@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.types import Array, Index
 
-from ...core.geometry.told import place
+from ...core.geometry.formatting import place
 from ...core.geometry.walls.surface import dot
 from ...core.issues import InputError
 
@@ -26,7 +26,7 @@ CROSSED = 1e-3  # of a step between samples; stretches of an edge nearer to each
 
 
 @contextmanager
-def told(label: str) -> Iterator[None]:
+def reported(label: str) -> Iterator[None]:
     """Faults of the geometry kernel within, as an InputError FAULTY that names `label`."""
     try:
         yield

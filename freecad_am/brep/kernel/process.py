@@ -40,14 +40,14 @@ ENDED_BY_LIMIT = -24  # of SIGXCPU
 ENDED_BY_SYSTEM = -9  # what Popen tells of SIGKILL, which Linux gives where memory does not suffice
 START = 60.0  # s that a process may take to be there
 QUICK = ("Part::GeomPlane", "Part::GeomCylinder", "Part::GeomCone")
-FEW = 24  # faces, of such surfaces alone: sooner divided than sent
+MAX_FACES = 24  # faces, of such surfaces alone: sooner divided than sent
 
 _idle: list[_Process] = []
 _readers: list[_Process] = []  # those that have read files from outside
 _unable = False
 
 
-def beside(function: Callable[..., T], shape: Any, *rest: Any) -> T:
+def in_kernel_process(function: Callable[..., T], shape: Any, *rest: Any) -> T:
     """What `function(shape, *rest)` returns or raises; it must be a function of a module, and return no shapes.
 
     Raises RuntimeError where the kernel crashes on the shape, MemoryError where the system ends it for lack of memory.
@@ -123,7 +123,7 @@ def _free(idle: list[_Process]) -> _Process | None:
 
 def _is_quick(shape: Any) -> bool:
     faces = shape.Faces
-    return len(faces) <= FEW and all(face.Surface.TypeId in QUICK for face in faces)
+    return len(faces) <= MAX_FACES and all(face.Surface.TypeId in QUICK for face in faces)
 
 
 @contextlib.contextmanager
@@ -159,9 +159,9 @@ class _Process:
             env={**os.environ, **ENVIRONMENT}, creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )
         self.kill = weakref.finalize(self, _kill, self.popen)
-        self.told: queue.Queue[Any] = queue.Queue()
+        self.answers: queue.Queue[Any] = queue.Queue()
         self.most = 0.0  # MB that the last question took, as far as it was seen
-        threading.Thread(target=_listen, args=(self.popen.stdout, self.told), name="Kernel process", daemon=True).start()
+        threading.Thread(target=_listen, args=(self.popen.stdout, self.answers), name="Kernel process", daemon=True).start()
 
     def ask(self, question: Any) -> None:
         """Send a question. Raises _Left where nobody is there."""
@@ -179,13 +179,13 @@ class _Process:
         waited, before, self.most = 0.0, _memory_of(self.popen.pid), 0.0
         while waited < longest:
             try:
-                told = self.told.get(timeout=LOOK_EVERY)
+                answer = self.answers.get(timeout=LOOK_EVERY)
             except queue.Empty:
                 waited += LOOK_EVERY
                 self.most = max(self.most, _memory_of(self.popen.pid) - before)
                 continue
-            if told is not None:
-                return told[0]
+            if answer is not None:
+                return answer[0]
             code = self.popen.wait()
             if code == 0:
                 raise _Left
@@ -237,12 +237,12 @@ def _kill(popen: Any) -> None:
     popen.wait()
 
 
-def _listen(stream: Any, told: queue.Queue[Any]) -> None:
+def _listen(stream: Any, answers: queue.Queue[Any]) -> None:
     try:
         while True:
-            told.put((pickle.load(stream),))
+            answers.put((pickle.load(stream),))
     except Exception:  # it has ended, in the midst of an answer or between two
-        told.put(None)
+        answers.put(None)
 
 
 def _started() -> _Process | None:
@@ -280,5 +280,5 @@ def _pythons() -> list[str]:
 def _search_path() -> list[str]:
     """Where the modules that this FreeCAD has loaded, and ours, are found."""
     home = FreeCAD.getHomePath()
-    beside_part = os.path.dirname(os.path.abspath(Part.__file__))
-    return [*sys.path, str(HOST.parents[3]), beside_part, *(os.path.join(home, name) for name in ("lib", "bin"))]
+    part_folder = os.path.dirname(os.path.abspath(Part.__file__))
+    return [*sys.path, str(HOST.parents[3]), part_folder, *(os.path.join(home, name) for name in ("lib", "bin"))]

@@ -103,8 +103,8 @@ def smooth_pieces(evaluate: Curve, corners: Sequence[float], knots: Sequence[flo
     result = []
     for a, b in pairwise(corners):
         inside = [knot for knot in knots if a < knot < b]
-        beside = 1e-10 * (b - a)
-        low, high = a + beside * (a != corners[0]), b - beside * (b != corners[-1])
+        offset = 1e-10 * (b - a)
+        low, high = a + offset * (a != corners[0]), b - offset * (b != corners[-1])
 
         def one_sided(t: Array, low: float = low, high: float = high) -> tuple[Array, Array]:
             return evaluate(np.clip(t, low, high))

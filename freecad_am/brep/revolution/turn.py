@@ -11,7 +11,7 @@ import numpy as np
 from ...core.geometry.curves.contour import Chain, Piece
 from ...core.issues import InputError
 
-SAME = 1e-3  # mm between meridians that are one
+MERIDIAN_MM = 1e-3  # mm between meridians that are one
 SAME_AZIMUTH = 1e-4  # rad
 
 Turn = tuple[float, float]
@@ -28,7 +28,7 @@ def merged(pieces: Sequence[Piece], label: str) -> list[Piece]:
     for number, piece in enumerate(pieces):
         known = ends[firsts]
         apart = [np.abs(known - way).max(axis=(1, 2), initial=0.0) for way in (ends[number], ends[number, ::-1])]
-        for k in np.flatnonzero(np.minimum(*apart) <= SAME).tolist():
+        for k in np.flatnonzero(np.minimum(*apart) <= MERIDIAN_MM).tolist():
             if _same_meridian(groups[k][0], piece):
                 groups[k].append(piece)
                 break
@@ -43,7 +43,7 @@ def _same_meridian(one: Piece, other: Piece) -> bool:
     middle = other.points[len(other.points) // 2]
     start, steps = one.points[:-1], np.diff(one.points, axis=0)
     share = np.clip(((middle - start) * steps).sum(1) / np.maximum((steps * steps).sum(1), 1e-30), 0.0, 1.0)
-    return bool(np.linalg.norm(middle - start - share[:, None] * steps, axis=1).min() < SAME)
+    return bool(np.linalg.norm(middle - start - share[:, None] * steps, axis=1).min() < MERIDIAN_MM)
 
 
 def _union(turns: Sequence[Turn | None], group: Sequence[Piece], label: str) -> Turn | None:

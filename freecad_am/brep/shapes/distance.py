@@ -14,7 +14,7 @@ from freecad_am.core.types import Array
 
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.issues import InputError
-from ..kernel.process import beside
+from ..kernel.process import in_kernel_process
 
 FINEST, SHARE = 0.02, 2e-4  # mm, and of the extent: deflection of the triangles
 OFF = 4.0  # deflections between the two feet of a point on a bent face, beyond which it is past the edge of the face,
@@ -37,7 +37,7 @@ def skin(shape: Any, label: str) -> Skin:
     if not shape.Faces:
         raise InputError("NO_FACES", label, "it has no faces to compare points with; choose a solid or a surface")
     deflection = max(FINEST, SHARE * shape.BoundBox.DiagonalLength)
-    vertices, triangles, face = beside(_by_face, shape, deflection)
+    vertices, triangles, face = in_kernel_process(_by_face, shape, deflection)
     mesh = SolidMesh(vertices, triangles)
     search = mesh.searched(0.02 * float(np.ptp(vertices, axis=0).max()))
     closed = bool(shape.Solids)

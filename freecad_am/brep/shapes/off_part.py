@@ -19,9 +19,9 @@ from freecad_am.core.types import Array
 from ...core.collision.inside import inside_of
 from ...core.geometry.mesh.repair import repaired
 from ...core.geometry.mesh.solid import Search, SolidMesh
-from ...core.geometry.surroundings import Body
+from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
-from ..kernel.process import beside
+from ..kernel.process import in_kernel_process
 from .tessellate import triangles_of
 
 DEFLECTION, FINE = 0.05, 0.005  # mm
@@ -130,7 +130,7 @@ class _Triangles:
 
     def __init__(self, shape: Any, fine: bool = False) -> None:
         self.deflection = _deflection(shape) * (FINE / DEFLECTION if fine else 1.0)
-        vertices, triangles = beside(triangles_of, shape, self.deflection)
+        vertices, triangles = in_kernel_process(triangles_of, shape, self.deflection)
         self.search = _searched(vertices, triangles) if len(triangles) else None
         self.box = (vertices.min(axis=0), vertices.max(axis=0)) if len(triangles) else None
 

@@ -14,10 +14,10 @@ from freecad_am.core.types import Array
 from ...core.collision.depths import grain, measured
 from ...core.geometry.curves.profile import RevolvedWall
 from ...core.geometry.mesh.solid import spread
-from ...core.geometry.surroundings import Body
+from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.part_depths import PartDepths, Surface
 from ..kernel.limits import FAULTS
-from ..kernel.process import beside
+from ..kernel.process import in_kernel_process
 from .tessellate import tessellated
 
 CHORD = 1e-3  # of the part's size, between it and its triangles
@@ -63,7 +63,7 @@ def _of(
     size = shape.BoundBox.DiagonalLength
     chord = float(np.clip(CHORD * size, min(FINEST, 10.0 * CHORD * size), COARSEST))
     try:
-        made = beside(tessellated, shape.copy(), chord)
+        made = in_kernel_process(tessellated, shape.copy(), chord)
     except FAULTS:
         return None  # told by who needs the triangles
     names = [f"Face{number + 1}" for number in range(len(shape.Faces))]

@@ -11,9 +11,9 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.types import Array, Index
 
-from ...core.geometry.surroundings import Body
+from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
-from ..kernel.process import beside
+from ..kernel.process import in_kernel_process
 
 Corners = NDArray[np.intp]
 
@@ -25,7 +25,7 @@ ANGLE = 0.35  # rad; of a turn from triangle to triangle in the first, coarse me
 def body(source: Any, name: str) -> Body:
     """The triangles of a Part.Shape with faces, or of a Mesh.Mesh, in its coordinates; InputError 'NO_FACES'."""
     mesh = hasattr(source, "Topology")
-    vertices, triangles = _rows(*source.Topology) if mesh else beside(triangles_of, source, DEFLECTION)
+    vertices, triangles = _rows(*source.Topology) if mesh else in_kernel_process(triangles_of, source, DEFLECTION)
     if not len(triangles):
         raise InputError("NO_FACES", name, "it has no faces to keep the nozzle clear of; choose a solid or a mesh")
     return Body(name, vertices, triangles)

@@ -13,8 +13,8 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.types import Array, Index, Mask
 
+from ...core.geometry.formatting import place
 from ...core.geometry.mesh.refined import Edges, boundary
-from ...core.geometry.told import place
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.rims import parts
 from ...core.geometry.walls.surface import dot, normals

@@ -7,9 +7,9 @@ import numpy as np
 
 from freecad_am.core.types import Array, Index
 
+from ...core.geometry.formatting import place
 from ...core.geometry.mesh.near_pairs import near_pairs
 from ...core.geometry.mesh.triangles import closest
-from ...core.geometry.told import place
 from ...core.geometry.walls.patch import SPLINE
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface import dot

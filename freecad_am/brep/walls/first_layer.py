@@ -13,7 +13,7 @@ import Part
 
 from freecad_am.core.types import Array
 
-from ...core.geometry.told import deviation
+from ...core.geometry.formatting import deviation
 from ...core.geometry.walls.surface import dot
 from ...core.geometry.walls.surface_wall import TABLE, TORUS, Placed, SurfaceWall
 from ...core.issues import NOTE, InputError, Issue
@@ -173,9 +173,9 @@ def _on_both(points: Array, surface: Placed, face: Any) -> tuple[Array, float]:
     for _ in range(STEPS):
         at, along, _ = surface.derivatives(u, v)
         foot, normal = _feet(at, under)
-        gap, pace = dot(foot - at, normal), dot(along, normal)
-        steep = np.abs(pace) > 1e-3 * np.linalg.norm(along, axis=1)
-        u = u + np.where(steep, gap / np.where(steep, pace, 1.0), 0.0)
+        gap, rate = dot(foot - at, normal), dot(along, normal)
+        steep = np.abs(rate) > 1e-3 * np.linalg.norm(along, axis=1)
+        u = u + np.where(steep, gap / np.where(steep, rate, 1.0), 0.0)
         if np.abs(gap).max() < EXACT:
             break
     at = surface.point(u, v)
@@ -211,9 +211,9 @@ def _refuse_edges(tube: Tube, points: Array, named: list[tuple[str, Any]], label
             if edge.isSeam(face) or shared[edge.hashCode()] > 1 or edge.Degenerated:
                 continue
             u, v = surface.inverse(np.array([tuple(point) for point in edge.discretize(Number=9)]))
-            pace = np.linalg.norm(surface.derivatives(u, v)[1], axis=1)
-            from_end = np.abs(u - tube.end) * pace
-            above = (u - np.interp(v, first_v[order], first_u[order], period=tube.period)) * pace
+            rate = np.linalg.norm(surface.derivatives(u, v)[1], axis=1)
+            from_end = np.abs(u - tube.end) * rate
+            above = (u - np.interp(v, first_v[order], first_u[order], period=tube.period)) * rate
             if from_end.max() > ON_EDGE and above.max() > TOUCH:
                 raise InputError(
                     "WALL_EDGE", f"{label} {name}", "it has an edge that is neither straight across the tube at its end nor "

@@ -12,13 +12,13 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.types import Array, Mask
 
+from ...core.geometry.formatting import at_least, count, place
 from ...core.geometry.mesh.edge_runs import CORNER, runs
 from ...core.geometry.mesh.refined import boundary
-from ...core.geometry.surroundings import Body
-from ...core.geometry.told import at_least, count, place
+from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.contact import first_curves, levels, splined
 from ...core.geometry.walls.ground import PlaneGround
-from ...core.geometry.walls.mesh_wall import MOST, MeshWall, mesh_wall
+from ...core.geometry.walls.mesh_wall import MAX_TRIANGLES, MeshWall, mesh_wall
 from ...core.geometry.walls.patch_wall import FirstCurve
 from ...core.geometry.walls.rims import parts, rims_of, with_ends
 from ...core.geometry.walls.surface import dot
@@ -42,12 +42,12 @@ def find_mesh_wall(
     corner = body.corners()
     area = 0.5 * float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum())
     about = area / (EQUAL * height) / height
-    if about > MOST:
-        enough = at_least(float(np.sqrt(area / (EQUAL * MOST))))
+    if about > MAX_TRIANGLES:
+        enough = at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES))))
         raise InputError(
             "TOO_FINE", "strategy.layer_height", f"layers of {height:g} mm ask for a mesh of the wall of about "
-            f"{count(about)} triangles, and more than {MOST:,} cannot be worked with; give more than {enough:g} mm, or "
-            "deposit the wall in parts",
+            f"{count(about)} triangles, and more than {MAX_TRIANGLES:,} cannot be worked with; give more than {enough:g} "
+            "mm, or deposit the wall in parts",
         )
     wall = mesh_wall(body.vertices, body.triangles.astype(np.intp), height, label, mend)
     rims = rims_of(wall)
@@ -110,9 +110,9 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
     loops = _loops(wall)
     standing = [loop for loop in loops if loop[:, 2].max() < lowest + height]
     if standing:
-        told = f"the first layer is the edge of {label} at {place(standing[0].mean(axis=0))}, which stands on the platform"
+        text = f"the first layer is the edge of {label} at {place(standing[0].mean(axis=0))}, which stands on the platform"
         return _Start(
-            [_curve(loop) for loop in standing], np.zeros(len(wall.vertices), dtype=bool), [Issue(NOTE, "FIRST_LAYER", told)]
+            [_curve(loop) for loop in standing], np.zeros(len(wall.vertices), dtype=bool), [Issue(NOTE, "FIRST_LAYER", text)]
         )
     corner = wall.vertices[wall.triangles]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
@@ -121,19 +121,19 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
         ground = PlaneGround(lowest + ABOVE * height)
         value = levels(wall, ground)
         first, _ = first_curves(wall, ground, value, rims_of(wall))
-        told = f"the first layer runs {ABOVE * height:g} mm over the floor of {label}, which is not deposited"
+        text = f"the first layer runs {ABOVE * height:g} mm over the floor of {label}, which is not deposited"
         if first:
-            return _Start(first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", told)])
+            return _Start(first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", text)])
     if not loops:
         raise InputError(
             "NO_START", label, "it stands on a point and has no open end to start from; give a substrate that it grows on, "
             "or turn it so that an end lies on the platform",
         )
-    told = (
+    text = (
         f"the first layer is the lowest open end of {label}, Edge1 at {place(loops[0].mean(axis=0))}, which does not lie on "
         "the platform"
     )
-    return _Start([_curve(loops[0])], np.zeros(len(wall.vertices), dtype=bool), [Issue(NOTE, "FIRST_LAYER", told)])
+    return _Start([_curve(loops[0])], np.zeros(len(wall.vertices), dtype=bool), [Issue(NOTE, "FIRST_LAYER", text)])
 
 
 def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:

@@ -12,7 +12,7 @@ import Part
 
 from freecad_am.core.types import Mask
 
-from ...core.geometry.told import at_least, count, deviation, place
+from ...core.geometry.formatting import at_least, count, deviation, place
 from ...core.geometry.walls import contact
 from ...core.geometry.walls.ground import nearest
 from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
@@ -20,7 +20,7 @@ from ...core.geometry.walls.rims import outward_volume, parts, rims_of, with_end
 from ...core.issues import NOTE, InputError, Issue
 from .checks import refuse_creases, refuse_gaps, refuse_tight, smallest_radii
 from .cuts import refuse_crossing, refuse_folded
-from .sheet import MOST, sheet
+from .sheet import MAX_TRIANGLES, sheet
 from .standing import standing_edges
 from .start_edges import curves_along, curves_of
 from .substrate import Substrate
@@ -73,8 +73,8 @@ def _from_platform(wall: PatchWall, faces: Sequence[Any], label: str) -> tuple[l
             f"{lowest[2]:.4g} mm through its lowest place {place(lowest)}; choose a substrate, or the edges to start from",
         )
     first = curves_along(edges, wall)
-    told = f"the first layer is the edge of {label} at {place(first[0].points.mean(axis=0))}, which stands on the platform"
-    return first, [Issue(NOTE, "FIRST_LAYER", told)]
+    text = f"the first layer is the edge of {label} at {place(first[0].points.mean(axis=0))}, which stands on the platform"
+    return first, [Issue(NOTE, "FIRST_LAYER", text)]
 
 
 def several_loops(first: Sequence[FirstCurve], label: str) -> list[Issue]:
@@ -91,12 +91,12 @@ def several_loops(first: Sequence[FirstCurve], label: str) -> list[Issue]:
 def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
     """InputError TOO_FINE where even triangles with sides of a layer height are more than a mesh may have."""
     area = sum(face.Area for _, face in named)
-    about, enough = area / (EQUAL * height) / height, at_least(float(np.sqrt(area / (EQUAL * MOST))))
-    if about > MOST:
+    about, enough = area / (EQUAL * height) / height, at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES))))
+    if about > MAX_TRIANGLES:
         raise InputError(
             "TOO_FINE", "strategy.layer_height", f"layers of {height:g} mm ask for a mesh of the wall of about "
-            f"{count(about)} triangles, and more than {MOST:,} cannot be worked with; give more than {enough:g} mm, or "
-            "deposit the wall in parts",
+            f"{count(about)} triangles, and more than {MAX_TRIANGLES:,} cannot be worked with; give more than {enough:g} "
+            "mm, or deposit the wall in parts",
         )
 
 

@@ -20,17 +20,17 @@ from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface import dot
 from ...core.issues import InputError
 from ..kernel.limits import refuse_bare
-from ..kernel.process import beside
+from ..kernel.process import in_kernel_process
 from ..shapes.tessellate import ANGLE, Tessellation, tessellated
 from .sheet_places import Places
 from .surface_patch import patch_of
 
 SEWN = 0.01  # mm; edges of faces that lie closer than this are one
-MOST = 1_500_000  # triangles
-FEW = 15000  # triangles that are not worth a second try
+MAX_TRIANGLES = 1_500_000  # triangles
+SECOND_TRY = 15000  # triangles that are not worth a second try
 TRIED = (1.0, 0.84, 0.71, 0.59)  # first meshes of edges shorter by these shares
 ASKED = 200  # triangles of a face that tell its side
-SHORT = 0.55  # of the longest edge; shorter ones are drawn together
+COLLAPSE = 0.55  # of the longest edge; shorter ones are drawn together
 
 
 def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWall:
@@ -44,22 +44,22 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     names = [names[k] for k in order]
     faces = shape.Faces
     patches = [patch_of(face, f"{label} {name}") for name, face in zip(names, faces)]
-    (vertices, triangles, owner, nodes), about = beside(tessellated_for, shape, edge)
+    (vertices, triangles, owner, nodes), about = in_kernel_process(tessellated_for, shape, edge)
     refuse_bare(list(zip(names, faces)), owner, label)
     triangles = _turned(triangles, owner, names, label)
     places = Places(shape, patches, nodes, vertices, edge)
-    made = refined(vertices, triangles, owner, edge, places.middles, MOST) if about < 2 * MOST else None
-    if made is None and about < MOST:  # long needles, as on slanted tubes: edges turned reach across from side to side
+    made = refined(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES) if about < 2 * MAX_TRIANGLES else None
+    if made is None and about < MAX_TRIANGLES:  # long needles, as on slanted tubes: turned edges reach from side to side
         places = Places(shape, patches, nodes, vertices, edge)
-        made = refined(vertices, triangles, owner, edge, places.middles, MOST, turned=False)
+        made = refined(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES, turned=False)
     if made is None:
         raise InputError(
             "TOO_FINE", label, f"with edges of {edge:.3g} mm, by layer height and smallest radius, the mesh of the wall has "
-            f"more than {MOST} triangles, about {about:.2g}; use a larger layer height, round sharp bends more, or deposit "
-            "the wall in parts",
+            f"more than {MAX_TRIANGLES} triangles, about {about:.2g}; use a larger layer height, round sharp bends more, or "
+            "deposit the wall in parts",
         )
     vertices, triangles, owner = made
-    triangles, owner = collapsed(vertices, triangles, owner, SHORT * edge, edge)
+    triangles, owner = collapsed(vertices, triangles, owner, COLLAPSE * edge, edge)
     triangles = flipped(vertices, triangles, owner)
     uv = np.empty((len(triangles), 3, 2))
     turned = []
@@ -106,7 +106,7 @@ def tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
     for share in TRIED:
         one = tessellated(shape, max(0.1 * edge * share**2, 1e-3), ANGLE * share)
         made.append((count_halved(one[0][one[1]], edge), one))
-        if made[0][0] < FEW or made[0][0] > 4 * MOST:
+        if made[0][0] < SECOND_TRY or made[0][0] > 4 * MAX_TRIANGLES:
             break
     about, best = min(made, key=lambda one: one[0])
     return best, about

@@ -15,7 +15,7 @@ from ...core.geometry.walls.patch import SPLINE, Patch
 from ...core.geometry.walls.surface import dot
 
 STEPS = 8
-SAME = 1e-4  # mm between a vertex and the node of a tessellation that it came from
+NODE_MM = 1e-4  # mm between a vertex and the node of a tessellation that it came from
 ASTRAY = 0.7  # of half an edge; its middle is not moved farther than this on a smooth surface
 
 
@@ -35,23 +35,23 @@ class Places:
             self.uv[k] = np.full((len(vertices), 2), np.nan)
             if len(nodes[k]):
                 off, near = cKDTree(patch.at(nodes[k])[0]).query(vertices)
-                self.uv[k][off < SAME] = nodes[k][near[off < SAME]]
+                self.uv[k][off < NODE_MM] = nodes[k][near[off < NODE_MM]]
 
-    def middles(self, points: Array, beside: Index, ends: Index) -> Array:
+    def middles(self, points: Array, adjacent: Index, ends: Index) -> Array:
         """The middles (n, 3) of the edges between the vertices `ends` (n, 2), moved; they become the next vertices.
 
         beside: the faces (n, 2) on either side, -1 for none.
         """
-        inner = beside[:, 0] == beside[:, 1]
+        inner = adjacent[:, 0] == adjacent[:, 1]
         placed = points.copy()
         placed[~inner] = self.curves.nearest(points[~inner])
-        for k in np.unique(beside[inner, 0]):
-            mine = np.flatnonzero(inner & (beside[:, 0] == k))
+        for k in np.unique(adjacent[inner, 0]):
+            mine = np.flatnonzero(inner & (adjacent[:, 0] == k))
             if k not in self.uv:
                 placed[mine] = self.patches[k].at(self.patches[k].inverse(points[mine]))[0]
         for k, uv in self.uv.items():
             found = np.full((len(points), 2), np.nan)
-            mine = np.flatnonzero((beside == k).any(axis=1))
+            mine = np.flatnonzero((adjacent == k).any(axis=1))
             found[mine] = self._near(k, placed[mine], ends[mine], inner[mine])
             on_face = mine[inner[mine]]
             placed[on_face] = self.patches[k].at(found[on_face])[0]
@@ -123,8 +123,8 @@ class _Curves:
             spline, t, p = self.splines[k], self.at[near[mine]], points[mine]
             for _ in range(STEPS):
                 place, slope, bend = (spline(t, order) for order in range(3))
-                pace = dot(slope, slope)
-                t = t + dot(p - place, slope) / np.maximum(pace - dot(p - place, bend), 0.1 * pace)
+                rate = dot(slope, slope)
+                t = t + dot(p - place, slope) / np.maximum(rate - dot(p - place, bend), 0.1 * rate)
                 t = np.clip(t, spline.x[0], spline.x[-1])
             found[mine] = spline(t)
         return found

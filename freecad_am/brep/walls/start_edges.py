@@ -11,7 +11,7 @@ import Part
 
 from freecad_am.core.types import Array
 
-from ...core.geometry.told import place
+from ...core.geometry.formatting import place
 from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
 from ...core.issues import InputError
 

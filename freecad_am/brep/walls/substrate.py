@@ -8,20 +8,20 @@ from typing import Any
 
 import numpy as np
 
+from ...core.geometry.formatting import place
 from ...core.geometry.mesh.repair import repaired
 from ...core.geometry.mesh.solid import SolidMesh
-from ...core.geometry.surroundings import Body
-from ...core.geometry.told import place
+from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.ground import ExactGround, FacetGround, Ground
 from ...core.issues import InputError, Issue
 from ..kernel.limits import refuse_bare
-from ..kernel.process import beside
+from ..kernel.process import in_kernel_process
 from ..shapes.tessellate import body, tessellated, welded
 from .sheet import facing
 from .surface_patch import patch_of
 
 CHORD = 0.1  # mm between a solid and the triangles that stand for it
-SAME = 1e-5  # mm; vertices of a mesh that lie closer are one
+WELD_MM = 1e-5  # mm; vertices of a mesh that lie closer are one
 CROSSED = 0.01  # mm; a mesh that cuts itself by no more only touches itself
 
 
@@ -68,7 +68,7 @@ def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
                 f"{solid.Volume:.4g} mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)",
             )
     source = _as_one(source)
-    made = beside(tessellated, source.copy(), CHORD)
+    made = in_kernel_process(tessellated, source.copy(), CHORD)
     refuse_bare([(f"Face{number + 1}", face) for number, face in enumerate(source.Faces)], made.owner, label)
     return Substrate(label, source, SolidMesh(made.vertices, made.triangles), made.owner)
 

@@ -15,7 +15,7 @@ from freecad_am.core.types import Array
 from ...core.geometry.walls.surface_wall import CONE, TABLE, TORUS, Placed, own_surface
 from ...core.issues import InputError
 
-SAME = 1e-6  # mm; faces of one surface agree within this
+AGREEMENT_MM = 1e-6  # mm; faces of one surface agree within this
 TABLE_ERROR = 5e-5  # mm, between the places a table was taken from
 SMALLEST_TABLE, LARGEST_TABLE = (24, 48), (384, 768)
 SMOOTH = 1e-6  # rad of turn allowed where a closed surface meets itself
@@ -93,7 +93,7 @@ def _refuse_other(first: Any, face: Any, where: str, first_name: str) -> None:
     low_u, high_u, low_v, high_v = face.ParameterRange
     points = [face.valueAt(a, b) for a in np.linspace(low_u, high_u, 4) for b in np.linspace(low_v, high_v, 4)]
     off = max((surface.value(*surface.parameter(point)) - point).Length for point in points)
-    if surface.TypeId != face.Surface.TypeId or off > SAME:
+    if surface.TypeId != face.Surface.TypeId or off > AGREEMENT_MM:
         raise InputError(
             "NOT_ONE_SURFACE", where, f"it is not on the surface of {first_name} ({off:.3g} mm off); walls of several "
             "surfaces cannot be deposited yet: choose faces of one torus, cylinder or cone",

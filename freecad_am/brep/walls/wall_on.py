@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from ...core.geometry.surroundings import Body
+from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface_wall import SurfaceWall
 from ...core.issues import InputError
-from ..kernel.limits import FAULTS, told
+from ..kernel.limits import FAULTS, reported
 from .checks import CREASE, refuse_tight_tube
 from .first_layer import find_wall
 from .mesh_wall import find_mesh_wall
@@ -22,7 +22,7 @@ from .substrate import Substrate, substrate_of
 from .wall import faces_by_name, tubes
 
 FLAT = "Part::GeomPlane"
-TOLD = 8  # faces named in a message
+MOST_NAMED = 8  # faces named in a message
 BELOW = 9  # places up the tube at which it is told whether it stays in the substrate's box
 # what is not a closed tube of one surface that starts in one loop may still be a wall
 OTHER_KIND = frozenset({"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"})
@@ -40,9 +40,9 @@ def wall_on(
     straight across, and the first layer one loop; a PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and
     `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
     """
-    with told(substrate_label):
+    with reported(substrate_label):
         carrier = None if substrate is None else substrate_of(substrate, substrate_label, mend)
-    with told(label):
+    with reported(label):
         wall = _wall_on(shape, faces, carrier, height, label, start_edges, mend)
     return wall if carrier is None else replace(wall, issues=(*carrier.issues, *wall.issues))
 
@@ -100,9 +100,9 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
         return list(known.items())
     curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != FLAT]
     if not curved or not _one_piece([face for _, face in curved]):
-        told = ", ".join(name for name, _ in curved[:TOLD]) + (", ..." if len(curved) > TOLD else "") or "none"
+        listed = ", ".join(name for name, _ in curved[:MOST_NAMED]) + (", ..." if len(curved) > MOST_NAMED else "") or "none"
         raise InputError(
-            "NO_WALL", label, f"it is a solid whose faces that are not flat ({told}) are not one wall; name the faces "
+            "NO_WALL", label, f"it is a solid whose faces that are not flat ({listed}) are not one wall; name the faces "
             "of the wall: part.faces of a job, or select them"
         )
     flat = next((name for name, face in known.items() if face.Surface.TypeId == FLAT
@@ -157,8 +157,8 @@ def _as_tube(
     tube = both[int(np.argmin(lowest))]
     surface = tube.surface()
     u, at = surface.inverse(ends[0].points)
-    pace = np.linalg.norm(surface.derivatives(u, at)[1], axis=1)
-    if np.abs((u - tube.end) * pace).max() > 1e-3 or len([rim for rim in wall.rims if rim.closed]) != len(wall.rims) \
+    rate = np.linalg.norm(surface.derivatives(u, at)[1], axis=1)
+    if np.abs((u - tube.end) * rate).max() > 1e-3 or len([rim for rim in wall.rims if rim.closed]) != len(wall.rims) \
             or len(wall.rims) > 2:
         return None
     return SurfaceWall(

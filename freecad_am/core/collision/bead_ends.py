@@ -16,7 +16,7 @@ import numpy as np
 
 from ..types import Array, Index, Mask
 from .deposit import of_beads
-from .frustum import beside_tip
+from .frustum import side_height
 from .nozzle import Nozzle, exempt_height, travelling
 from .obstacles import Obstacles
 from .tolerances import ABOVE_FACES, CHORD
@@ -88,14 +88,14 @@ class _Ends(NamedTuple):
 
 
 class BeadEnds:
-    """The nozzle of a size on rapids between beads, whose deposit is `laid`."""
+    """The nozzle of a size on rapids between beads, whose deposit is `deposit`."""
 
-    def __init__(self, beads: Beads, laid: Obstacles, size: Size) -> None:
+    def __init__(self, beads: Beads, deposit: Obstacles, size: Size) -> None:
         self._size = size
         starts = np.flatnonzero(beads.first)
         ends = np.append(starts[1:], len(beads.points)) - 1
         rows, when = np.concatenate([ends, starts]), np.concatenate([ends + 1, starts])
-        heights = standing_heights(laid, size, beads.points[rows], beads.tool[rows], beads.height[rows], when)
+        heights = standing_heights(deposit, size, beads.points[rows], beads.tool[rows], beads.height[rows], when)
         found = []
         for some in np.split(np.arange(len(rows)), 2):
             point, height = np.full((len(beads.points) + 1, 3), np.nan), np.zeros(len(beads.points) + 1)
@@ -103,20 +103,20 @@ class BeadEnds:
             found.append(_Ends(point, height))
         self._ends = found
 
-    def nozzle(self, tip: Array, laid: Index) -> Nozzle:
+    def nozzle(self, tip: Array, deposited: Index) -> Nozzle:
         """The nozzle with tips (k, 3), where so many points (k,) are there: the last of these is left, the one after it come
         to. Against deposit it is without what stands in it there, against bodies without what is below the height at which
         its side is one diameter of the tip from the point."""
         radius, slope, _ = self._size
-        about = beside_tip(radius, slope) + ABOVE_FACES
+        about = side_height(radius, slope) + ABOVE_FACES
         bodies, deposit = np.zeros(len(tip)), np.zeros(len(tip))
         for end in self._ends:
-            away = np.linalg.norm(tip - end.point[laid], axis=1)
-            bodies, deposit = np.fmax(bodies, about - away), np.fmax(deposit, end.height[laid] - away)
+            away = np.linalg.norm(tip - end.point[deposited], axis=1)
+            bodies, deposit = np.fmax(bodies, about - away), np.fmax(deposit, end.height[deposited] - away)
         return Nozzle(travelling(*self._size, bodies).bodies, travelling(*self._size, deposit).deposit)
 
 
-def standing_heights(laid: Obstacles, size: Size, tip: Array, axis: Array, height: Array, moment: Index) -> Array:
+def standing_heights(deposit: Obstacles, size: Size, tip: Array, axis: Array, height: Array, moment: Index) -> Array:
     """(k,) mm over the tips (k, 3) on points of beads, below which nozzles along unit axes (k, 3) are not looked at there.
 
     The tip stands in the bead of the height (k,) mm whose end it is: up to that height deposit is about it rightly. Where
@@ -127,11 +127,11 @@ def standing_heights(laid: Obstacles, size: Size, tip: Array, axis: Array, heigh
     known, which = np.unique(height, return_inverse=True)
     least = np.array([exempt_height(size.radius, size.slope, float(each)) for each in known])
     found = np.minimum(least[which.ravel()], size.length)
-    rows = np.flatnonzero(laid.touched(travelling(*size, found).deposit, tip, axis, moment))
+    rows = np.flatnonzero(deposit.touched(travelling(*size, found).deposit, tip, axis, moment))
     low, high = found[rows], np.full(len(rows), size.length)
     for _ in range(HALVINGS if len(rows) else 0):
         middle = 0.5 * (low + high)
-        touched = laid.touched(travelling(*size, middle).deposit, tip[rows], axis[rows], moment[rows])
+        touched = deposit.touched(travelling(*size, middle).deposit, tip[rows], axis[rows], moment[rows])
         low, high = np.where(touched, middle, low), np.where(touched, high, middle)
     found[rows] = high
     standing: Array = np.minimum(found + CHORD, size.length)

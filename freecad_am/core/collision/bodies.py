@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..types import Array, Index, Mask
 from .frustum import Frustum
 from .inside import Inside, inside_of

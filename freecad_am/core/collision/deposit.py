@@ -24,7 +24,7 @@ PART = 25_000  # points of the parts of a deposit that is made again whenever it
 
 def of_beads(
     points: Array, build: Array, width: Array | float, height: Array | float, starts: Mask | Index,
-    moments: Index | None = None, grain: float = 0.0, beside: float = 0.0, short: bool = False,
+    moments: Index | None = None, grain: float = 0.0, foot: float = 0.0, short: bool = False,
     like: Obstacles | None = None,
 ) -> Obstacles:
     """The deposit of points (n, 3) in the order of deposition, on which beads stand along unit vectors build (n, 3).
@@ -83,7 +83,7 @@ def of_beads(
     return Obstacles(
         np.concatenate([hull, wedge]), np.concatenate([since, since[turned + 1]]),
         np.concatenate([round_, np.maximum(round_[turned], round_[turned + 1])]),
-        np.concatenate([line, line[turned + 1]]), np.maximum(np.concatenate([wide, wide[turned]]), beside), short,
+        np.concatenate([line, line[turned + 1]]), np.maximum(np.concatenate([wide, wide[turned]]), foot), short,
         None if like is None else like.order,
     )
 
@@ -119,11 +119,11 @@ class InParts:
             rows = rows[self._near(part, solid.rows(rows), tip[rows], axis[rows])]
             if not len(rows):
                 continue
-            laid = of_beads(
+            deposited = of_beads(
                 self.points[part], self.build[part], self.width[part], self.height[part], begins[part],
                 np.arange(part.start, part.stop), short=True, **self.what,
             )
-            found[rows] = laid.touched(
+            found[rows] = deposited.touched(
                 solid.rows(rows), tip[rows], axis[rows], None if moment is None else moment[rows],
                 None if own is None else own[rows],
             )

@@ -9,12 +9,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.mesh.solid import spread
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..geometry.walls.part_depths import Surface
 from ..types import Array, Index
 from .inside import Inside, inside_of
 
-MOST = 40_000  # parts that triangles are divided into, about
+MAX_PARTS = 40_000  # parts that triangles are divided into, about
 PLACES = 800  # within the part
 TRIES = 20_000  # at most, to find so many in the box about a thin part
 AT_ONCE = 2000
@@ -64,7 +64,7 @@ def grain(corners: Array, least: float) -> float:
     across = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     heights = across / np.maximum(sides, 1e-300)
     longest = max(least, 1e-9)
-    while ((1.0 + 2.0 * sides / longest) * (1.0 + 2.0 * heights / longest) - 1.0).sum() > MOST:
+    while ((1.0 + 2.0 * sides / longest) * (1.0 + 2.0 * heights / longest) - 1.0).sum() > MAX_PARTS:
         longest *= 1.5
     return longest
 

@@ -18,7 +18,7 @@ from ..types import Array, Index, Mask
 from .tolerances import ALONG, ROUNDING
 
 
-def beside_tip(radius: float, slope: float) -> float:
+def side_height(radius: float, slope: float) -> float:
     """Height (mm) over the tip plane at which the side of a nozzle is one diameter of its tip from the deposit point: below,
     it touches what it stands on and the bead being laid."""
     return float(radius * (np.sqrt(slope * slope + 3.0 * (1.0 + slope * slope)) - slope) / (1.0 + slope * slope))
@@ -120,9 +120,9 @@ class Frustum:
     def holds(self, offset: Array, axis: Array) -> Mask:
         """Whether points are inside."""
         x = dots(offset, axis)
-        room = self.radius + self.slope * x - ROUNDING
+        margin = self.radius + self.slope * x - ROUNDING
         square = dots(offset, offset) - x * x
-        inside: Mask = (x > self.low + ROUNDING) & (x < self.high - ROUNDING) & (room > 0.0) & (square < room * room)
+        inside: Mask = (x > self.low + ROUNDING) & (x < self.high - ROUNDING) & (margin > 0.0) & (square < margin * margin)
         return inside
 
     def meets_segments(self, start: Array, end: Array, axis: Array) -> Mask:
@@ -178,8 +178,8 @@ class Frustum:
         base_height = np.broadcast_to(np.asarray(self.low, dtype=float), size.shape)[:, None]
         lines = [(base_height * axis, (self.high - base_height) * axis)]
         for height in (base_height, self.high):
-            room = self.radius + self.slope * height
-            lines.append((height * axis - room * lean, 2.0 * room * lean))
+            margin = self.radius + self.slope * height
+            lines.append((height * axis - margin * lean, 2.0 * margin * lean))
         for start, step in lines:
             climb = dots(normal, step)
             crossing = climb != 0.0

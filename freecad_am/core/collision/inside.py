@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..types import Array, Mask
 from . import tree
 

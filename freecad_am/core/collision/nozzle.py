@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..types import Array, Index
-from .frustum import Frustum, beside_tip
+from .frustum import Frustum, side_height
 from .tolerances import ABOVE_FACES, CHORD, FACES, HALFWAY
 
 LEAST_UPRIGHT = 0.25  # mm that the lower side of a nozzle at least rises with a mm along its axis, where it leans
@@ -55,7 +55,7 @@ def exempt_height(radius: float, slope: float, bead_height: float, lean: float =
     height at which the nozzle's side is one of its diameters from the tip.
     """
     upright = max(float(np.cos(lean) - slope * np.sin(lean)), LEAST_UPRIGHT)
-    return max(beside_tip(radius, slope), (bead_height + radius * float(np.sin(lean))) / upright)
+    return max(side_height(radius, slope), (bead_height + radius * float(np.sin(lean))) / upright)
 
 
 def depositing(radius: float, slope: float, length: float, bead_height: float, lean: float = 0.0) -> Nozzle:
@@ -63,7 +63,7 @@ def depositing(radius: float, slope: float, length: float, bead_height: float, l
     the highest bead, and how far it leans by intention, rad. Bodies are left out only as far as the nozzle touches what it
     stands on."""
     return Nozzle(
-        Frustum(radius, slope, beside_tip(radius, slope) + ABOVE_FACES, length),
+        Frustum(radius, slope, side_height(radius, slope) + ABOVE_FACES, length),
         Frustum(radius, slope, exempt_height(radius, slope, bead_height, lean), length),
     )
 

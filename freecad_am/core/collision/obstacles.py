@@ -35,14 +35,14 @@ class Obstacles:
     of beads, the hulls of four points with a rounding of `radius` (m,) mm about them.
 
     since: (m,) the moment from which each is there; none, then always. line: (m, 2, 3) the segments along which the pieces
-    of beads are laid, which they count as where they are of the layer being laid, no farther from the tip than `beside`
+    of beads are laid, which they count as where they are of the layer being laid, no farther from the tip than `foot`
     (m,) mm. chained: they are short, and those that follow each other mostly touch. order: (m,) that of others which lay
     nearly where these do.
     """
 
     def __init__(
         self, corners: Array, since: Index | None = None, radius: Array | None = None, line: Array | None = None,
-        beside: Array | None = None, chained: bool = False, order: Index | None = None,
+        foot: Array | None = None, chained: bool = False, order: Index | None = None,
     ) -> None:
         if order is None:
             middles = separation.middles(corners)
@@ -52,7 +52,7 @@ class Obstacles:
         self.since = np.full(len(corners), ALWAYS, dtype=np.intp) if since is None else since[order]
         self.radius = None if radius is None else radius[order]
         self.line = None if line is None else line[order]
-        self.beside = None if beside is None else beside[order]
+        self.foot = None if foot is None else foot[order]
         self._sample = np.ascontiguousarray(self.corners[:, 0])
         self._sizes = tree.sizes(len(corners))
         each = [self.corners[:, k] for k in range(corners.shape[1])]
@@ -66,7 +66,7 @@ class Obstacles:
     def _boxes(self, low: Array, high: Array) -> list[_Level]:
         """The levels of the tree over obstacles with the boxes low and high (m, 3), each from the one below it."""
         rounding, since = np.zeros(len(low)) if self.radius is None else self.radius, self.since
-        lines = None if self.line is None or self.beside is None else own_layer.of_lines(self.line, self.beside)
+        lines = None if self.line is None or self.foot is None else own_layer.of_lines(self.line, self.foot)
         found = []
         for size in self._sizes:
             if size > 1:
@@ -171,14 +171,14 @@ class Obstacles:
             cut = np.flatnonzero(solid.crossed(normal, dots(normal, offset[:, 0]), axis))
             meets[cut] = solid.rows(cut).meets_triangles(offset[cut], axis[cut])
             return meets
-        assert self.radius is not None and self.line is not None and self.beside is not None
+        assert self.radius is not None and self.line is not None and self.foot is not None
         # most are below the solid's lower end, and so are the lines that they are laid along: a box about a piece that lies
         # across the axes tells it less well
         high = separation.largest(np.einsum("kcj,kj->kc", offset, axis)) + self.radius.take(node)
         rows = np.flatnonzero(high > solid.low)
         node = node.take(rows)
         line = self.line.take(node, axis=0) - tip.take(rows, axis=0)[:, None]
-        as_line = (self.since.take(node) >= own.take(rows)) & (_from_origin(line) < self.beside.take(node))
+        as_line = (self.since.take(node) >= own.take(rows)) & (_from_origin(line) < self.foot.take(node))
         lines, line = rows[as_line], line[as_line]
         meets[lines] = solid.rows(lines).meets_segments(line[:, 0], line[:, 1], axis[lines])
         rows, node = rows[~as_line], node[~as_line]

@@ -22,18 +22,18 @@ class Lines(NamedTuple):
 
     low: Array
     high: Array
-    beside: Array
+    foot: Array
 
     def joined(self, starts: Index) -> Lines:
         """Of the nodes from each start to the next."""
         low, high = np.minimum.reduceat(self.low, starts, axis=1), np.maximum.reduceat(self.high, starts, axis=1)
-        return Lines(low, high, np.minimum.reduceat(self.beside, starts))
+        return Lines(low, high, np.minimum.reduceat(self.foot, starts))
 
 
-def of_lines(line: Array, beside: Array) -> Lines:
-    """Lines (m, 2, 3) that count as such within `beside` (m,) mm of the tip, each for itself."""
+def of_lines(line: Array, foot: Array) -> Lines:
+    """Lines (m, 2, 3) that count as such within `foot` (m,) mm of the tip, each for itself."""
     begin, end = columns(line[:, 0]), columns(line[:, 1])
-    return Lines(np.minimum(begin, end), np.maximum(begin, end), beside)
+    return Lines(np.minimum(begin, end), np.maximum(begin, end), foot)
 
 
 def matter(
@@ -51,5 +51,5 @@ def matter(
     top = np.maximum(low * axis, high * axis).sum(axis=0)
     away = np.maximum(np.square(low), np.square(high)).sum(axis=0)  # squared, of the corner that is farthest from the tip
     left = np.ones(len(node), dtype=bool)
-    left[here] = (top > solid.rows(q).low) | (away >= np.square(lines.beside.take(n)))
+    left[here] = (top > solid.rows(q).low) | (away >= np.square(lines.foot.take(n)))
     return np.flatnonzero(left)

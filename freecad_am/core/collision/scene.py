@@ -5,7 +5,7 @@ A moment is a number that rises in the order of deposition: of a point, or of a 
 before the moment m where the number of its last point is less than m.
 
 How rapids are asked: the scene has `deposit.of_beads` of the deposit rows of the motion, with the numbers of these rows
-as `moments` and a `grain`, and the platform as a body (`geometry.surroundings.disc`). The looks along the moves are tips
+as `moments` and a `grain`, and the platform as a body (`geometry.obstacles.disc`). The looks along the moves are tips
 and axes in part coordinates, their moment is the row that the move goes to; the solid is `nozzle.travelling(...)`. On
 retract and approach, which are driven like travels, its `exempt` is (k,) `max(exempt_height(radius, slope, height) - d, 0)`,
 d being how far the tip of each look is from the deposit point that it leaves or goes to; on travels it is 0. `distance`
@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..types import Array, Index, Mask
 from .bodies import Bodies, of_bodies
 from .deposit import InParts

@@ -26,8 +26,8 @@ _CODE = np.array([1, 2, 4, 8])
 _KEPT = np.array([(*having, *having[:1] * 3, 0, 0, 0)[:3] for having in (
     tuple(k for k in range(4) if code >> k & 1) for code in range(16)
 )])
-FEW = 500  # pairs that are done as soon together as in two parts
-MOST = 64  # steps of a pair; what is not settled then is near to grazing and keeps its bounds
+BATCH = 500  # pairs that are done as soon together as in two parts
+MAX_STEPS = 64  # steps of a pair; what is not settled then is near to grazing and keeps its bounds
 
 
 class Hull(Protocol):
@@ -54,7 +54,7 @@ def bounds(
     place = place[rows]
     simplex: Array | None = None
     solid, axis, points = solid.rows(rows), axis[rows], points[rows]
-    for _ in range(MOST):
+    for _ in range(MAX_STEPS):
         if not len(rows):
             break
         newest = solid.farthest(-place, axis) - _farthest(points, place)
@@ -113,7 +113,7 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
     left = np.flatnonzero(~met[query] & (gap - nearer < np.maximum(deep, CONVERGED) + ROUNDING))
     left = left[np.lexsort(((gap - deep)[left], query[left]))]
     first = np.diff(query[left], prepend=-1) != 0
-    for some in (left[first], left[~first]) if len(left) > FEW else (left,):
+    for some in (left[first], left[~first]) if len(left) > BATCH else (left,):
         now = some[~met[query[some]]]
         found[now] = within(solid.rows(now), axis[now], points[now], radius[now], place[now])
         met[query[now[found[now]]]] = True

@@ -24,10 +24,10 @@ def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Bea
     if least == most:
         return beads, 1.0
     thickness = MORE * (1.0 + WIDTH) * region.width
-    beside = (thickness - width) / beads.spacing  # so many more than one
+    excess = (thickness - width) / beads.spacing  # so many more than one
     share = 1.0
-    if beside > 0.0:
-        count = np.arange(max(int(beside) - 1, 0), int(beside) + 3)
+    if excess > 0.0:
+        count = np.arange(max(int(excess) - 1, 0), int(excess) + 3)
         shares = thickness / (width + count * beads.spacing)
         share = float(shares[np.argmin(np.abs(np.log(shares)))])
     if not least <= share <= most * MORE * (1.0 + WIDTH):
@@ -45,7 +45,7 @@ def shared(
         return list(curves)
     others = [curve for curve in curves if curve.kind not in ("centre", "closing")]
     return [
-        _in_room(curve, others, region, beads, share, least, most) if curve.kind in ("centre", "closing")
+        _within_width(curve, others, region, beads, share, least, most) if curve.kind in ("centre", "closing")
         else _times(curve, share) for curve in curves
     ]
 
@@ -56,7 +56,7 @@ def _times(curve: PlaneCurve, share: float) -> PlaneCurve:
     return replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
 
 
-def _in_room(
+def _within_width(
     curve: PlaneCurve, others: Sequence[PlaneCurve], region: Region, beads: Beads, share: float, least: float, most: float
 ) -> PlaneCurve:
     """A bead with points as dense as its width may change, as wide as the room about it."""
@@ -67,8 +67,8 @@ def _in_room(
         points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)
         points = points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
     border = 2.0 * region.nearest(points)[1] / (2.0 * beads.inset)
-    beside: Array = np.full(len(points), np.inf)
+    gap: Array = np.full(len(points), np.inf)
     for other in others:
-        beside = np.minimum(beside, nearest(other.points, points, other.closed).distance)
-    room = np.minimum(border, 2.0 * beside / beads.spacing - 1.0)
-    return replace(curve, points=points, share=np.clip(share * room, least, most))
+        gap = np.minimum(gap, nearest(other.points, points, other.closed).distance)
+    free = np.minimum(border, 2.0 * gap / beads.spacing - 1.0)
+    return replace(curve, points=points, share=np.clip(share * free, least, most))

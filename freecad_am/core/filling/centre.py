@@ -121,8 +121,8 @@ def necks(region: Region, inner: Sequence[Region], beads: Beads) -> tuple[Region
     reached = [part for piece in inner for part in piece.grown(beads.inset, error)]
     found = []
     for piece in region.without(reached):
-        beside = [part for part in reached if part.distance(piece) < 2.0 * error]
-        if len(beside) > 1 or (beside and _is_rib(piece, beside[0], beads)):
+        adjacent = [part for part in reached if part.distance(piece) < 2.0 * error]
+        if len(adjacent) > 1 or (adjacent and _is_rib(piece, adjacent[0], beads)):
             found.append(piece)
     return tuple(found)
 

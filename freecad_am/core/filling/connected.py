@@ -19,7 +19,7 @@ from ..geometry.regions.region import Region, along
 from ..types import Array
 from .contours import levels, middles
 from .curve import Beads, PlaneCurve, begun, long_enough
-from .rings import Beside, Ring, crossed, side_by_side
+from .rings import AdjacentRings, Ring, crossed, side_by_side
 
 REACH = 1.7  # spacings; contours farther apart are not joined
 TRIES = 64  # places at which two contours may be joined
@@ -38,7 +38,7 @@ class Slant(NamedTuple):
     straight: float
     ahead: float
     uneven: float = 0.35
-    room: float = 0.4
+    clearance: float = 0.4
     opening: float = 1.0
     near: float = 0.2
 
@@ -119,22 +119,22 @@ def _loop(curve: PlaneCurve, half: float, beads: Beads) -> PlaneCurve:
 def _joined(rings: list[Ring], links: list[list[Link]], beads: Beads) -> set[int]:
     """Joins rings to the first one, and to those joined to it, as long as there are places; the numbers of all."""
     joined, entered = {0}, {0: 1}
-    near: dict[int, list[Beside]] = {}
+    near: dict[int, list[AdjacentRings]] = {}
     for pair in side_by_side(rings, REACH * beads.spacing):
         near.setdefault(pair.other, []).append(pair)
-    laid: list[Array] = []
+    placed: list[Array] = []
     for slant in SLANTS:
         waiting = [number for number in range(len(rings)) if number not in joined]
         while waiting:
             done = []
             for number in waiting:
                 pairs = [pair for pair in near.get(number, ()) if pair.one in joined]
-                found = [made for pair in pairs if (made := _place(rings, pair, beads, slant, entered[pair.one], laid))]
+                found = [made for pair in pairs if (made := _place(rings, pair, beads, slant, entered[pair.one], placed))]
                 if not found:
                     continue
                 one, link = min(found, key=lambda item: item.rank)[1:]
                 links[one].append(link)
-                laid += _lines(rings[one], rings[number], link)
+                placed += _lines(rings[one], rings[number], link)
                 _take(rings[one], rings[number], link)
                 joined.add(number)
                 entered[number] = link.sense
@@ -146,12 +146,12 @@ def _joined(rings: list[Ring], links: list[list[Link]], beads: Beads) -> set[int
 
 
 def _place(
-    rings: list[Ring], pair: Beside, beads: Beads, slant: Slant, sense: int, laid: list[Array]
+    rings: list[Ring], pair: AdjacentRings, beads: Beads, slant: Slant, sense: int, placed: list[Array]
 ) -> _Found | None:
     """Where the first ring of a pair, run with `sense`, is joined to the second: the nearest to the spacing and the first on
     its way; None where there is no place. laid: the links there are, (2, 2) each."""
     one, other = rings[pair.one], rings[pair.other]
-    spacing, room = beads.spacing, slant.room * beads.spacing
+    spacing, gap = beads.spacing, slant.clearance * beads.spacing
     wide = min(
         OPEN * 2.0 * math.sqrt(spacing * beads.gap), math.sqrt(2.0) * spacing, SHARE * one.length, SHARE * other.length,
     ) * slant.opening
@@ -177,12 +177,12 @@ def _place(
             continue
         low = min(arcs[k], arcs[k] + sense * wide)
         start = enters[k] if turn[k] > 0 else enters[k] - float(span[k])
-        if not one.is_free(low - room, low + wide + room) or not other.is_free(start - room, start + float(span[k]) + room):
+        if not one.is_free(low - gap, low + wide + gap) or not other.is_free(start - gap, start + float(span[k]) + gap):
             continue
         link = Link(
             float(arcs[k]), float(arcs[k] + sense * wide), pair.other, float(enters[k]), float(parts[k]), -int(turn[k]),
         )
-        if _is_clear(rings, pair, link, sense, laid, slant.near * spacing):
+        if _is_clear(rings, pair, link, sense, placed, slant.near * spacing):
             return _Found((float(np.round(abs(away[k] - spacing) / spacing, 1)), float(arcs[k])), pair.one, link)
     return None
 
@@ -194,7 +194,7 @@ def _lines(one: Ring, other: Ring, link: Link) -> list[Array]:
     return [np.stack([own[0], ends[0]]), np.stack([ends[1], own[1]])]
 
 
-def _is_clear(rings: list[Ring], pair: Beside, link: Link, sense: int, laid: list[Array], near: float) -> bool:
+def _is_clear(rings: list[Ring], pair: AdjacentRings, link: Link, sense: int, placed: list[Array], near: float) -> bool:
     """Whether nothing comes between the lines of a link: no other ring, no other link, and neither of the rings it joins
     but where they are opened."""
     one, other = rings[pair.one], rings[pair.other]
@@ -202,7 +202,7 @@ def _is_clear(rings: list[Ring], pair: Beside, link: Link, sense: int, laid: lis
     share = np.linspace(0.0, 1.0, 7)[:, None]
     places = np.vstack([line[0] + share * (line[1] - line[0]) for line in lines])
     low, high = places.min(axis=0) - near, places.max(axis=0) + near
-    rests = [one.piece(link.returns, link.leaves, sense), other.piece(link.enters, link.parts, link.sense), *laid]
+    rests = [one.piece(link.returns, link.leaves, sense), other.piece(link.enters, link.parts, link.sense), *placed]
     for line in lines:
         inner = line + INSIDE * np.array([[1.0], [-1.0]]) * (line[1] - line[0])
         if any(crossed(inner, rest) for rest in rests) or crossed(inner, lines[0] if line is lines[1] else lines[1]):

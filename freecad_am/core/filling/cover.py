@@ -15,7 +15,7 @@ from ..geometry.regions.strip import Strip
 from ..types import Array
 from .centre import thinned
 from .curve import Beads, PlaneCurve
-from .strip_closing import beside_windows
+from .strip_closing import near_windows
 
 COARSE = 0.01  # of half a bead; beads round a hub are looked at no finer
 SHARES = 0.02  # of a bead's usual width; shares that differ by less are one
@@ -29,7 +29,7 @@ class Cover(NamedTuple):
 
     whole: float = 0.0
     left: float = 0.0
-    beside: float = 0.0
+    outside: float = 0.0
     once: float = 0.0
 
 
@@ -54,11 +54,11 @@ def _of_parts(
     of the usual width of each."""
     pieces = [piece for some, _ in lines for piece in some]
     half = beads.inset * np.array([share for _, shares in lines for share in shares])
-    laid = along(pieces, half, beads.chord_error) if pieces else ()
-    laid = tuple(piece for part in laid for piece in part.common(pane)) if pane else laid
+    covered = along(pieces, half, beads.chord_error) if pieces else ()
+    covered = tuple(piece for part in covered for piece in part.common(pane)) if pane else covered
     whole = math.fsum(part.area for part in parts)
-    inside = math.fsum(piece.area for part in parts for piece in part.common(laid)) if laid else 0.0
-    once = math.fsum(piece.area for piece in laid)
+    inside = math.fsum(piece.area for part in parts for piece in part.common(covered)) if covered else 0.0
+    once = math.fsum(piece.area for piece in covered)
     return Cover(whole, whole - inside, once - inside, once)
 
 
@@ -66,13 +66,13 @@ def _of_strip(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Cover
     """Window by window; beads of regions round a hub are as wide as usual."""
     period, found = strip.period, []
     beads = replace(beads, chord_error=max(beads.chord_error, COARSE * beads.inset))
-    for window, near in beside_windows(strip, curves, 2.0 * beads.inset):
+    for window, near in near_windows(strip, curves, 2.0 * beads.inset):
         lines = [(thinned(points, closed, beads.chord_error), closed) for points, closed in near]
         parts = [
             part for cover in strip.between(window.low, window.high)
-            for part in regions([period.laid(ring, window.about) for ring in cover.rings()])
+            for part in regions([period.unroll(ring, window.about) for ring in cover.rings()])
         ]
-        pane = regions([period.laid(strip.pane(window), window.about)])
+        pane = regions([period.unroll(strip.pane(window), window.about)])
         found.append(_of_parts(parts, [(lines, [1.0] * len(lines))], beads, pane))
     return total(found)
 

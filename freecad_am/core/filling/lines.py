@@ -23,7 +23,7 @@ class Frame(NamedTuple):
     that they run through, which reach onto the contour; thin: the region, or necks of it, narrower than a bead."""
 
     curves: list[PlaneCurve]
-    room: tuple[Region, ...]
+    regions: tuple[Region, ...]
     ends: tuple[Region, ...]
     thin: tuple[Region, ...]
 
@@ -48,10 +48,10 @@ def frame(region: Region, beads: Beads, walls: int) -> Frame:
         curves += [begun(PlaneCurve(line, True, "contour", k), beads) for part in inner for line in part.rings()]
         if not inner:
             break
-    room, ends = (
+    regions, ends = (
         tuple(piece for part in inner for piece in part.grown(-way, error)) for way in (2.0 * half, half)
     )
-    return Frame(curves, room, ends, thin)
+    return Frame(curves, regions, ends, thin)
 
 
 def lines(region: Region, beads: Beads, angle: float = 0.0, walls: int = 0) -> list[PlaneCurve]:
@@ -74,10 +74,10 @@ def lines(region: Region, beads: Beads, angle: float = 0.0, walls: int = 0) -> l
 
 def rows(place: Frame, beads: Beads, angle: float) -> list[list[Array]]:
     """Level by level the pieces (2, 2) of lines, all in the direction of the angle (rad)."""
-    if not place.room or not place.ends:  # too narrow for lines; what they would fill gets beads along its middle
+    if not place.regions or not place.ends:  # too narrow for lines; what they would fill gets beads along its middle
         return []
     rings = [turned(ring, -angle) for part in place.ends for ring in part.rings()]
-    height = np.concatenate([turned(part.rings()[0], -angle)[:, 1] for part in place.room])
+    height = np.concatenate([turned(part.rings()[0], -angle)[:, 1] for part in place.regions])
     found = []
     for level in levels_between(float(height.min()), float(height.max()), beads):
         x = crossings(rings, level)

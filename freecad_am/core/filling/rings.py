@@ -16,7 +16,7 @@ from ..types import Array
 MARK = 0.25  # of the reach, mm between the places of a ring that tell which others are near
 
 
-class Beside(NamedTuple):
+class AdjacentRings(NamedTuple):
     """Two rings by their numbers, and arcs (n,) mm of the first that are near to the second."""
 
     one: int
@@ -71,7 +71,7 @@ class Ring:
         self._taken.append((start, end))
 
 
-def side_by_side(rings: Sequence[Ring], reach: float) -> list[Beside]:
+def side_by_side(rings: Sequence[Ring], reach: float) -> list[AdjacentRings]:
     """All pairs of rings that come nearer to each other than `reach` mm, both ways round."""
     arcs = [np.arange(0.0, ring.length, MARK * reach) for ring in rings]
     places = np.vstack([ring.at(at) for ring, at in zip(rings, arcs)])
@@ -82,7 +82,7 @@ def side_by_side(rings: Sequence[Ring], reach: float) -> list[Beside]:
     key = np.unique(np.stack([number[pairs[:, 0]], number[pairs[:, 1]], pairs[:, 0]], axis=1), axis=0)
     whole = np.concatenate(arcs)
     cuts = np.flatnonzero((np.diff(key[:, :2], axis=0) != 0).any(axis=1)) + 1
-    return [Beside(int(lot[0, 0]), int(lot[0, 1]), whole[lot[:, 2]]) for lot in np.split(key, cuts) if len(lot)]
+    return [AdjacentRings(int(lot[0, 0]), int(lot[0, 1]), whole[lot[:, 2]]) for lot in np.split(key, cuts) if len(lot)]
 
 
 def crossed(line: Array, other: Array) -> bool:

@@ -16,7 +16,7 @@ from .lines import Frame, frame, rows
 from .zigzag import LINK, linked
 
 SPARSE = ("contours", "lines", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
-LEAST_ROOM = 2.0  # spacings; where less is between tops and bottoms beads cover the whole
+LEAST_HEIGHT = 2.0  # spacings; where less is between tops and bottoms beads cover the whole
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def _divided(
     near = [piece for part in ends for piece in part.without(covered)]
     near = [piece for part in near for piece in part.grown(beads.spacing, beads.chord_error)]
     loose = [piece for part in ends for piece in (part.without(near) if near else (part,))]
-    loose = [part for part in loose if part.grown(-0.5 * LEAST_ROOM * beads.spacing, beads.chord_error)]
+    loose = [part for part in loose if part.grown(-0.5 * LEAST_HEIGHT * beads.spacing, beads.chord_error)]
     return loose, [piece for part in ends for piece in (part.without(loose) if loose else (part,))]
 
 
@@ -78,14 +78,14 @@ def _whole(
     part: Region, beads: Beads, pattern: str, angle: float, ring: int, longest_link: float
 ) -> list[PlaneCurve]:
     """Lines, or zigzags, over all of a region that lines end on the border of, and beads in what they leave open."""
-    room = part.grown(-0.5 * beads.spacing, beads.chord_error)
-    cuts = rows(Frame([], room, (part,), ()), beads, angle)
+    area = part.grown(-0.5 * beads.spacing, beads.chord_error)
+    cuts = rows(Frame([], area, (part,), ()), beads, angle)
     if pattern == "zigzag":
         found = linked(cuts, (part,), beads, ring, longest_link or LINK * beads.spacing)
     else:
         found = _alternating(cuts, beads, ring)
-    left = left_open([(curve.points, curve.closed) for curve in found], room, beads) if room and found else []
-    return found + centre_beads(left, beads, ring, room, "closing")
+    left = left_open([(curve.points, curve.closed) for curve in found], area, beads) if area and found else []
+    return found + centre_beads(left, beads, ring, area, "closing")
 
 
 def _pattern(

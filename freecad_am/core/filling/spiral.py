@@ -16,8 +16,8 @@ from .contours import levels, middles
 from .curve import Beads, PlaneCurve, long_enough
 
 PROBES = 64  # places of a ring that tell which ring it follows
-BESIDE = 0.02  # relative to the spacing; a ring follows another that it is that close to parallel to
-SHORT = 4.0  # spacings; contours shorter than that are not linked
+PARALLEL_GAP = 0.02  # relative to the spacing; a ring follows another that it is that close to parallel to
+LEAST_LENGTH = 4.0  # spacings; contours shorter than that are not linked
 LINK = 3.0  # spacings; longest link
 
 
@@ -45,14 +45,14 @@ def spiral(region: Region, beads: Beads) -> list[PlaneCurve]:
 
 def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) -> dict[int, int]:
     """Which ring of the next level follows each of this one, where no other does and it follows no other."""
-    beside = np.zeros((len(here), len(there)), dtype=bool)
+    adjacent = np.zeros((len(here), len(there)), dtype=bool)
     for j, ring in enumerate(there):
         probes = ring[np.unique(np.linspace(0, len(ring) - 1, PROBES).astype(int))]
         probes = np.vstack([probes, 0.5 * (probes + np.roll(ring, -1, axis=0)[nearest(ring, probes, True).edge])])
         away = np.stack([nearest(outer, probes, True).distance for outer in here])
-        close = np.abs(away - spacing) < BESIDE * spacing
-        beside[:, j] = close.mean(axis=1) > 0.05
-    single = beside & (beside.sum(axis=1) == 1)[:, None] & (beside.sum(axis=0) == 1)
+        close = np.abs(away - spacing) < PARALLEL_GAP * spacing
+        adjacent[:, j] = close.mean(axis=1) > 0.05
+    single = adjacent & (adjacent.sum(axis=1) == 1)[:, None] & (adjacent.sum(axis=0) == 1)
     return {int(i): int(j) for i, j in zip(*np.nonzero(single))}
 
 
@@ -63,7 +63,7 @@ def _linked(chain: Sequence[Array], regions: Sequence[Sequence[Region]], beads: 
     pieces: list[Array] = []
     for following, inside in zip(chain[1:], regions):
         way = length(ring, True)
-        if way < SHORT * beads.spacing:
+        if way < LEAST_LENGTH * beads.spacing:
             break
         whole = np.vstack([ring, ring[:1]])
         cut = up_to(whole, way - beads.spacing) if pieces else whole

@@ -23,14 +23,14 @@ def strip_closing(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring
     for window, left, inner in _open(strip, curves, beads):
         for curve in centre_beads(left, beads, ring, inner, kind):
             cover = strip.period.unrolled(curve.points) + np.array([window.about, 0.0])
-            found.append(replace(curve, points=strip.period.laid(cover), sheet=float(cover[:, 0].mean())))
+            found.append(replace(curve, points=strip.period.unroll(cover), sheet=float(cover[:, 0].mean())))
     return long_enough(found, beads.shortest)
 
 
 def strip_left_open(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads) -> list[tuple[Array, float]]:
     """Places (2,) on the plane that curves leave open, wider than the gap allowed, and how wide (mm) each is."""
     return [
-        (strip.period.laid(strip.period.unrolled(part.inside()[None]) + np.array([window.about, 0.0]))[0], part.width)
+        (strip.period.unroll(strip.period.unrolled(part.inside()[None]) + np.array([window.about, 0.0]))[0], part.width)
         for window, left, _ in _open(strip, curves, beads) for part in left
     ]
 
@@ -40,20 +40,20 @@ def _open(
 ) -> list[tuple[Window, list[Region], tuple[Region, ...]]]:
     """Window by window, laid flat about its middle, what is open and where beads may lie."""
     period, found = strip.period, []
-    for window, near in beside_windows(strip, curves, REACH * beads.spacing):
+    for window, near in near_windows(strip, curves, REACH * beads.spacing):
         here = [
-            part for cover in strip.between(window.low - window.room, window.high + window.room)
-            for part in regions([period.laid(line, window.about) for line in cover.rings()])
+            part for cover in strip.between(window.low - window.margin, window.high + window.margin)
+            for part in regions([period.unroll(line, window.about) for line in cover.rings()])
         ]
         inner = tuple(piece for part in here for piece in part.grown(-beads.inset, beads.chord_error))
         if inner:
-            pane = regions([period.laid(strip.pane(window), window.about)])
+            pane = regions([period.unroll(strip.pane(window), window.about)])
             left = [piece for part in left_open(near, inner, beads) for piece in part.common(pane)]
             found.append((window, left, inner))
     return found
 
 
-def beside_windows(
+def near_windows(
     strip: Strip, curves: Sequence[PlaneCurve], reach: float
 ) -> Iterator[tuple[Window, list[tuple[Array, bool]]]]:
     """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle: points
@@ -62,7 +62,7 @@ def beside_windows(
     covers = [(_unrolled(strip, curve), curve.closed and not curve.turns) for curve in curves]
     for window in strip.windows(reach):
         yield window, [
-            (period.laid(line, window.about), closed) for cover, whole in covers
+            (period.unroll(line, window.about), closed) for cover, whole in covers
             for line, closed in _near(cover, whole, window, period.around)
         ]
 
@@ -75,7 +75,7 @@ def _unrolled(strip: Strip, curve: PlaneCurve) -> Array:
 
 def _near(cover: Array, whole: bool, window: Window, turn: float) -> list[tuple[Array, bool]]:
     """What of a curve lies in a window or beside it, in all turns; `whole`: it is closed on the plane."""
-    low, high = window.low - window.room, window.high + window.room
+    low, high = window.low - window.margin, window.high + window.margin
     found = []
     first, last = np.ceil((low - cover[:, 0].max()) / turn), np.floor((high - cover[:, 0].min()) / turn)
     for k in range(int(first), int(last) + 1):

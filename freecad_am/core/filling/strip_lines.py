@@ -36,10 +36,10 @@ def _frame(strip: Strip, beads: Beads, walls: int) -> _Frame:
     inner = strip.grown(-beads.inset, error)
     if not walls or not inner:
         return _Frame([], inner, beads.inset)
-    curves, laid = borders(inner, beads, 0), 1
-    while laid < walls and (further := grown(inner, -2.0 * half, error)):
-        curves, inner, laid = curves + borders(further, beads, laid), further, laid + 1
-    return _Frame(curves, grown(inner, -half, error), beads.inset + 2.0 * half * laid)
+    curves, done = borders(inner, beads, 0), 1
+    while done < walls and (further := grown(inner, -2.0 * half, error)):
+        curves, inner, done = curves + borders(further, beads, done), further, done + 1
+    return _Frame(curves, grown(inner, -half, error), beads.inset + 2.0 * half * done)
 
 
 def lines_round(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0) -> list[PlaneCurve]:
@@ -49,15 +49,15 @@ def lines_round(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0
     if not place.ends and not place.curves:
         return single(strip, beads)
     low, high = strip.levels
-    turn, room = strip.period.around, _Room(strip, place.ends)
+    turn, within = strip.period.around, _Inside(strip, place.ends)
     curves = list(place.curves)
     for row, level in enumerate(_levels(low + place.inset, high - place.inset, beads, density)):
         count = round_count(strip, level, beads)
         u = -0.5 * turn + turn / count * np.arange(count + 1)
-        inside = room.contains(np.stack([u, np.full(len(u), level)], axis=1))
+        inside = within.contains(np.stack([u, np.full(len(u), level)], axis=1))
         for a, b in _runs(inside[:-1]):
             cover = np.stack([u[0] + turn / count * np.arange(a, b), np.full(b - a, level)], axis=1)
-            points, whole = strip.period.laid(cover), b - a == count
+            points, whole = strip.period.unroll(cover), b - a == count
             back = (row % 2 == 1) if not whole else beads.clockwise
             sense = 0 if not whole else (-1 if back else 1)
             sheet = float(cover[:, 0].mean())
@@ -72,22 +72,22 @@ def lines_along(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0
     place = _frame(strip, beads, walls)
     if not place.ends and not place.curves:
         return single(strip, beads)
-    turn, room = strip.period.around, _Room(strip, place.ends)
+    turn, interior = strip.period.around, _Inside(strip, place.ends)
     apart = beads.spacing / density
     count = max(1, math.ceil(turn * _stretch(strip) / apart - 0.01 * turn / apart))
     low, high = strip.levels
     v: Array = np.linspace(low, high, max(2, math.ceil((high - low) / (PROBE * beads.spacing))))
     u: Array = np.asarray(-0.5 * turn + turn / count * (np.arange(count) + 0.5), dtype=np.float64)
-    inside = room.contains(np.stack(np.broadcast_arrays(u[:, None], v), axis=-1).reshape(-1, 2)).reshape(count, -1)
+    inside = interior.contains(np.stack(np.broadcast_arrays(u[:, None], v), axis=-1).reshape(-1, 2)).reshape(count, -1)
     runs = [(number, a, b) for number in range(count) for a, b in _runs(inside[number], closed=False)]
     line, first, past = np.array(runs, dtype=np.intp).reshape(-1, 3).T
     bottom, top = (
-        room.border(u[line], v[within], v[np.clip(beyond, 0, len(v) - 1)])
+        interior.border(u[line], v[within], v[np.clip(beyond, 0, len(v) - 1)])
         for within, beyond in ((first, first - 1), (past - 1, past))
     )
     curves = list(place.curves)
     for number, *levels in zip(line.tolist(), bottom, top):
-        ends = strip.period.laid(np.stack([np.full(2, u[number]), levels], axis=1))
+        ends = strip.period.unroll(np.stack([np.full(2, u[number]), levels], axis=1))
         curves.append(PlaneCurve(ends[::-1] if number % 2 else ends, False, "line", walls))
     curves = long_enough(curves, beads.shortest)
     return curves + (strip_closing(strip, curves, beads, walls, "closing") if density == 1.0 else [])
@@ -101,7 +101,7 @@ def _levels(low: float, high: float, beads: Beads, density: float) -> Array:
     return np.asarray(apart * np.arange(math.ceil(low / apart), math.floor(high / apart) + 1))
 
 
-class _Room:
+class _Inside:
     """Parts of a strip that are asked often what lies in them."""
 
     def __init__(self, strip: Strip, parts: Sequence[Strip | Region]) -> None:

@@ -67,16 +67,16 @@ def _middle(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     """A bead round the hub in the middle of a thin strip."""
     turn = strip.period.around
     width = strip.levels[1] - strip.levels[0]
-    room = min(2.0 * width + beads.spacing, 0.5 * turn)
-    parts = strip.between(-0.5 * turn - room, 0.5 * turn + room)
+    margin = min(2.0 * width + beads.spacing, 0.5 * turn)
+    parts = strip.between(-0.5 * turn - margin, 0.5 * turn + margin)
     largest = max(parts, key=lambda part: part.area)
     points, _ = spine(largest, 0.25 * beads.gap, FINE * beads.spacing)
     if len(points) and points[0, 0] > points[-1, 0]:
         points = points[::-1]
     if not len(points) or points[0, 0] > -0.5 * turn or points[-1, 0] < 0.5 * turn:  # somewhere too narrow for a bead
         halves = [part for k in (-0.5, 0.0) for part in strip.between(k * turn, (k + 0.5) * turn)]
-        laid = [piece for half in halves for piece in regions([strip.period.laid(ring) for ring in half.rings()])]
-        return centre_beads(laid, beads, ring, ())
+        unrolled = [piece for half in halves for piece in regions([strip.period.unroll(ring) for ring in half.rings()])]
+        return centre_beads(unrolled, beads, ring, ())
     points = simplified(points, 0.2 * beads.chord_error)
     v = np.interp(-0.5 * turn, points[:, 0], points[:, 1])
     within = points[(points[:, 0] > -0.5 * turn) & (points[:, 0] < 0.5 * turn)]
@@ -84,7 +84,7 @@ def _middle(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
         count = round_count(strip, 0.5 * sum(strip.levels), beads)
         u = np.union1d(within[:, 0], -0.5 * turn + turn / count * np.arange(1, count))
         within = np.stack([u, np.interp(u, points[:, 0], points[:, 1])], axis=1)
-    flat = strip.period.laid(np.vstack([[[-0.5 * turn, v]], within]))
+    flat = strip.period.unroll(np.vstack([[[-0.5 * turn, v]], within]))
     sense = -1 if beads.clockwise else 1
     return [PlaneCurve(flat[::-1] if beads.clockwise else flat, True, "centre", ring, sense)]
 

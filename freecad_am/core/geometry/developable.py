@@ -120,7 +120,7 @@ class Developable:
         lower = ((2.0 * self.slant - y) * y - x * x) / (self.slant + s)  # s0 - s without cancellation
         return np.arctan2(x, rest) / math.sin(a), lower * math.cos(a)
 
-    def rolled(self, flat: Array, middle: float = 0.0) -> Array:
+    def wrap(self, flat: Array, middle: float = 0.0) -> Array:
         """Points (..., 3) of the surface that lie at (..., 2) when laid flat: the inverse of `flat`."""
         theta, z = self.unrolled(flat)
         rho = self.radius if self.is_cylinder else (self.height - z) * math.tan(self.taper)

@@ -33,10 +33,10 @@ def _pieces(path: str | Path, largest: int, code: str, where: str) -> Iterator[b
     waits_not = getattr(os, "O_NONBLOCK", 0)  # as for a pipe
     descriptor = os.open(located(path), os.O_RDONLY | waits_not | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as stream:
-        told = os.fstat(descriptor)
-        if not stat.S_ISREG(told.st_mode):
+        status = os.fstat(descriptor)
+        if not stat.S_ISREG(status.st_mode):
             raise InputError(code, where, "this is not a file but a device, a pipe or a folder; name a file")
-        size = told.st_size  # of files of the kernel 0, whatever is in them
+        size = status.st_size  # of files of the kernel 0, whatever is in them
         while size <= largest * MB and (piece := stream.read(MB)):
             yield piece
             size = max(size, stream.tell())

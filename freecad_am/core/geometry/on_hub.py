@@ -15,8 +15,8 @@ from .angles import TURN
 from .columns import columns
 from .curves.guide import Guide
 from .developable import Developable
+from .obstacles import Body
 from .plane import Plane
-from .surroundings import Body
 
 
 @dataclass(frozen=True)
@@ -52,15 +52,15 @@ class Stretch(NamedTuple):
     start: float = 0.0
     span: float = TURN
 
-    def near(self, points: Array, room: float, all_round: bool = False) -> NDArray[np.bool_]:
-        """Which of points (n, 3) of the base's frame are on the face, or within `room` mm past its ends; all_round: whatever
-        their azimuths."""
+    def near(self, points: Array, margin: float, all_round: bool = False) -> NDArray[np.bool_]:
+        """Which of points (n, 3) of the base's frame are on the face, or within `margin` mm past its ends; all_round:
+        whatever their azimuths."""
         x, y, z = columns(points)
-        along = (z > self.low - room) & (z < self.high + room)
+        along = (z > self.low - margin) & (z < self.high + margin)
         if all_round or self.span >= TURN:
             return np.asarray(along)
-        beside = room / np.maximum(np.hypot(x, y), room)
-        return np.asarray(along & (np.remainder(np.arctan2(y, x) - self.start + beside, TURN) < self.span + 2.0 * beside))
+        angular = margin / np.maximum(np.hypot(x, y), margin)
+        return np.asarray(along & (np.remainder(np.arctan2(y, x) - self.start + angular, TURN) < self.span + 2.0 * angular))
 
 
 class Seat(NamedTuple):

@@ -6,10 +6,10 @@ import numpy as np
 from ..types import Array
 
 
-def below(ceiling: Array, room: Array) -> Array:
-    """The largest values (n,) below a ceiling (n,) that change from one place to the next by no more than `room` (n,) grows
-    there: of squares of speeds, with twice the acceleration times the length along the path as room."""
-    rising = np.minimum.accumulate(ceiling - room) + room
-    falling = np.minimum.accumulate((ceiling + room)[::-1])[::-1] - room
+def below(ceiling: Array, growth: Array) -> Array:
+    """The largest values (n,) below a ceiling (n,) that change from one place to the next by no more than `growth` (n,) does
+    there: of squares of speeds, with twice the acceleration times the length along the path."""
+    rising = np.minimum.accumulate(ceiling - growth) + growth
+    falling = np.minimum.accumulate((ceiling + growth)[::-1])[::-1] - growth
     lower: Array = np.minimum(rising, falling)
     return lower

@@ -80,11 +80,11 @@ def mesh(points: Array, across: Frames, width: Array, height: Array, ends: NDArr
     """
     section = np.array(SECTIONS[sides])
     half_width, half_height = 0.5 * width * across.mitre, 0.5 * height
-    beside = section[None, :, :1] * across.side[:, None]
+    sideways = section[None, :, :1] * across.side[:, None]
     above = section[None, :, 1:] * across.up[:, None]
     centre = points + half_height[:, None] * across.up
-    corners = centre[:, None] + beside * half_width[:, None, None] + above * half_height[:, None, None]
-    normals = beside / np.maximum(half_width, 1e-9)[:, None, None] + above / np.maximum(half_height, 1e-9)[:, None, None]
+    corners = centre[:, None] + sideways * half_width[:, None, None] + above * half_height[:, None, None]
+    normals = sideways / np.maximum(half_width, 1e-9)[:, None, None] + above / np.maximum(half_height, 1e-9)[:, None, None]
     return Mesh(corners.reshape(-1, 3), unit(normals).reshape(-1, 3), _triangles(ends, sides))
 
 

@@ -16,7 +16,7 @@ _COLOURS = (
     (0.19, 0.21, 0.58), (0.10, 0.45, 0.82), (0.35, 0.75, 0.93), (0.25, 0.68, 0.30), (0.98, 0.83, 0.22), (0.96, 0.53, 0.12),
     (0.80, 0.09, 0.13),
 )
-NOT_COUNTED = (0.55, 0.55, 0.57)
+PAST_EDGES = (0.55, 0.55, 0.57)
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ def band_of(deviation: Array, tolerance: float) -> NDArray[np.int64]:
     return band
 
 
-def colours(deviation: Array, counted: NDArray[np.bool_], tolerance: float) -> Array:
+def colours(deviation: Array, within: NDArray[np.bool_], tolerance: float) -> Array:
     """Colours (n, 3) of deviations (n,); grey where they do not count."""
     found = np.array(_COLOURS)[band_of(deviation, tolerance)]
-    found[~counted] = NOT_COUNTED
+    found[~within] = PAST_EDGES
     return found

@@ -17,7 +17,7 @@ from .planned import Planned
 from .roundness import Round, least, narrowest
 
 BARS = 40  # of a histogram at most
-FEW = 600  # points from each end and from all over that a narrowest zone is begun with
+ZONE_SIZE = 600  # points from each end and from all over that a narrowest zone is begun with
 ROUND = 1e-3  # of the radius: what is planned within is a sphere
 FLAT = 0.1  # of a normal along the radius: a surface that lies flatter has no circle at a height
 ALL_ROUND = 0.25  # turns between neighbours on a circle beyond which it is not measured all round
@@ -167,18 +167,19 @@ def thickness(
 def zone_of(points: Array, where: str) -> Round:
     """The narrowest zone of points (n, d) as `roundness.narrowest` finds it, of many by those that matter: what holds all
     others too is the narrowest of all."""
-    if len(points) <= 4 * FEW:
+    if len(points) <= 4 * ZONE_SIZE:
         return narrowest(points, where)
     distance = np.linalg.norm(points - least(points, where).centre, axis=1)
     order = np.argsort(distance)
-    chosen = np.unique(np.r_[order[:FEW], order[-FEW:], np.linspace(0, len(points) - 1, FEW).astype(np.intp)])
+    evenly = np.linspace(0, len(points) - 1, ZONE_SIZE).astype(np.intp)
+    chosen = np.unique(np.r_[order[:ZONE_SIZE], order[-ZONE_SIZE:], evenly])
     for _ in range(20):
         found = narrowest(points[chosen], where)
         distance = np.linalg.norm(points - found.centre, axis=1)
         if np.ptp(distance) <= found.zone + 1e-9 * found.outer:
             break
         order = np.argsort(distance)
-        chosen = np.unique(np.r_[chosen, order[:FEW], order[-FEW:]])
+        chosen = np.unique(np.r_[chosen, order[:ZONE_SIZE], order[-ZONE_SIZE:]])
     inner, outer = float(distance.min()), float(distance.max())
     return Round(found.centre, 0.5 * (inner + outer), inner, outer)
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.fitted import REMAINS, Fitted
-from ..geometry.told import place
+from ..geometry.formatting import place
 from ..issues import NOTE, WARNING, InputError, Issue
 from ..parameters.scan import ScanParameters
 from ..toolpath import Bead, Layer, Toolpath
@@ -86,7 +86,7 @@ def fitted(toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out:
     record = _record(planned, layers[first], ways, scan, course, most, len(toolpath.layers), left_out, motion)
     return replace(
         toolpath, layers=tuple(layers), uneven=np.array(uneven) if uneven else toolpath.uneven, fitted=record,
-        issues=(*_told(record, toolpath.layer_height), *toolpath.issues),
+        issues=(*_issues(record, toolpath.layer_height), *toolpath.issues),
     )
 
 
@@ -157,14 +157,14 @@ def _record(
     left_out: int, motion: Array,
 ) -> Fitted:
     beads: list[Bead] = [bead.halved(np.arange(len(bead) - 1)) for bead in layer.beads]  # between points, too
-    laid = np.concatenate([bead.points for bead in beads])
-    found = scan.heights(laid, np.concatenate([ways(bead) for bead in beads]))
-    looked = np.unique(np.linspace(0, len(laid) - 1, LOOKED).astype(np.intp))
+    deposited = np.concatenate([bead.points for bead in beads])
+    found = scan.heights(deposited, np.concatenate([ways(bead) for bead in beads]))
+    looked = np.unique(np.linspace(0, len(deposited) - 1, LOOKED).astype(np.intp))
     places, off = np.concatenate([one.bead.points for one in planned]), np.concatenate([one.off for one in planned])
     some = np.unique(np.linspace(0, len(places) - 1, LOOKED).astype(np.intp))
     return Fitted(
         scan.label, len(scan.points), left_out, course.first, min(course.layers, layers - course.first), places[some],
-        off[some], laid[looked], np.where(found.covered, found.off, 0.0)[looked], _slope(planned),
+        off[some], deposited[looked], np.where(found.covered, found.off, 0.0)[looked], _slope(planned),
         most * course.share(layers - 1), motion,
     )
 
@@ -187,7 +187,7 @@ def _slope(planned: Sequence[Scanned]) -> float:
     return max(rises)
 
 
-def _told(record: Fitted, height: float) -> list[Issue]:
+def _issues(record: Fitted, height: float) -> list[Issue]:
     issues = [Issue(
         NOTE, "SCAN_FITTED", f"{record.file}: layer {record.layer} lies on what was scanned, {record.off.min():.3f} to "
         f"{record.off.max():.3f} mm from the plan, now within {np.abs(record.left).max():.3f} mm; {record.layers} layers "

@@ -17,7 +17,7 @@ from .figures import Ball, Circle, Spread, Thickness
 from .planned import Planned, sided
 from .point_file import Measured
 from .registration import (
-    ALIKE,
+    EQUAL_RATIO,
     LEAST_POINTS,
     Registration,
     Surface,
@@ -70,39 +70,39 @@ def inspect(measured: Measured, planned: Planned, parameters: InspectionParamete
     """Lay measured points onto the planned surface and judge them. InputError; InfeasibleError NOT_SETTLED."""
     refuse_too_few(measured.points, measured.label)
     report(0.05, "laying the points onto the part")
-    found, counted, distances = _laid(measured, planned, parameters)
+    found, within, distances = _aligned(measured, planned, parameters)
     report(0.6, "sphericity and circularity")
-    laid = measured.points @ found.motion[:3, :3].T + found.motion[:3, 3]
-    distance, normal = distances(laid)
+    aligned = measured.points @ found.motion[:3, :3].T + found.motion[:3, 3]
+    distance, normal = distances(aligned)
     deviation = distance - parameters.probe_radius
-    points = laid - parameters.probe_radius * normal
+    points = aligned - parameters.probe_radius * normal
     # what is farther off than all that was fitted was left out, too
-    fitted = counted & (np.abs(deviation) <= np.abs(found.distance[found.used]).max() + 1e-9)
-    kept, where = points[counted], measured.label
-    ball = figures.ball(kept, kept - deviation[counted, None] * normal[counted], where)
+    fitted = within & (np.abs(deviation) <= np.abs(found.distance[found.used]).max() + 1e-9)
+    kept, where = points[within], measured.label
+    ball = figures.ball(kept, kept - deviation[within, None] * normal[within], where)
     issues = [
-        *measured.issues, *_unlike(measured.points, planned), *_told(found, planned, counted, fitted, ball is not None),
+        *measured.issues, *_unlike(measured.points, planned), *_issues(found, planned, within, fitted, ball is not None),
     ]
     # without a wall nothing says that it is round
     levels = parameters.levels() or (() if planned.wall is None else figures.default_heights(planned, kept))
     circles = []
     for height in levels:
         try:
-            circles.append(figures.circle(planned, kept, normal[counted], height, parameters.band, where))
+            circles.append(figures.circle(planned, kept, normal[within], height, parameters.band, where))
         except InputError as error:
             if parameters.heights:
                 issues.append(Issue(WARNING, error.code, error.message))
     issues += [Issue(WARNING, "NOT_ALL_ROUND", text) for text in figures.warnings_of(circles)]
     report(0.8, "figures")
     return Inspected(
-        points, deviation, counted, fitted, found.motion, found.free, parameters.tolerance, where, planned.name,
-        figures.spread(deviation[counted], parameters.tolerance),
+        points, deviation, within, fitted, found.motion, found.free, parameters.tolerance, where, planned.name,
+        figures.spread(deviation[within], parameters.tolerance),
         ball, tuple(circles),
-        _thickness(laid, deviation, counted, planned, parameters), tuple(issues),
+        _thickness(aligned, deviation, within, planned, parameters), tuple(issues),
     )
 
 
-def _laid(
+def _aligned(
     measured: Measured, planned: Planned, parameters: InspectionParameters
 ) -> tuple[Registration, NDArray[np.bool_], Surface]:
     """The fit, which points are not past the edges, and the surface that was fitted to."""
@@ -116,7 +116,7 @@ def _laid(
         nearest = sided(planned.nearest, parameters.side, parameters.thickness)
         start = _begun(few, nearest, exact, planned, parameters, where)
     for _ in range(2):  # which points are past the edges, the fit tells
-        on_part = few[planned.counted(few @ start[:3, :3].T + start[:3, 3])]
+        on_part = few[planned.within_edges(few @ start[:3, :3].T + start[:3, 3])]
         if len(on_part) < LEAST_POINTS:
             raise InputError(
                 "NOT_ON_PART", where, f"{len(on_part)} of its points lie on {planned.name}; choose the object that was "
@@ -128,7 +128,7 @@ def _laid(
         else:
             found = register(on_part, exact, start[None], where, trim, radius, _allowed(planned, parameters), planned.free)
             start = found.motion
-    return found, planned.counted(points @ start[:3, :3].T + start[:3, 3]), exact
+    return found, planned.within_edges(points @ start[:3, :3].T + start[:3, 3]), exact
 
 
 def _begun(
@@ -147,7 +147,7 @@ def _begun(
     other = roughly(points, nearest, by_extents(points, planned.spread), trim, radius)
     few = points[:: max(1, len(points) // 400)]
     first, second = (mean_square(few, nearest, one, trim, radius) for one in (start, other))
-    return start if first <= ALIKE * second + planned.chord**2 + 1e-18 else other
+    return start if first <= EQUAL_RATIO * second + planned.chord**2 + 1e-18 else other
 
 
 def _by_pairs(parameters: InspectionParameters, where: str) -> Array:
@@ -170,13 +170,13 @@ def _allowed(planned: Planned, parameters: InspectionParameters) -> Array | None
 
 
 def _thickness(
-    laid: Array, deviation: Array, counted: NDArray[np.bool_], planned: Planned, parameters: InspectionParameters
+    aligned: Array, deviation: Array, within: NDArray[np.bool_], planned: Planned, parameters: InspectionParameters
 ) -> Thickness | None:
     if parameters.side != BOTH:
         return None
-    raw, normal = planned.exact(laid[counted])
-    feet = laid[counted] - raw[:, None] * normal
-    return figures.thickness(feet, deviation[counted], raw >= 0.0, parameters.thickness, max(parameters.band, 0.5))
+    raw, normal = planned.exact(aligned[within])
+    feet = aligned[within] - raw[:, None] * normal
+    return figures.thickness(feet, deviation[within], raw >= 0.0, parameters.thickness, max(parameters.band, 0.5))
 
 
 def _unlike(points: Array, planned: Planned) -> list[Issue]:
@@ -188,15 +188,15 @@ def _unlike(points: Array, planned: Planned) -> list[Issue]:
                   "unit of the file")]
 
 
-def _told(
-    found: Registration, planned: Planned, counted: NDArray[np.bool_], fitted: NDArray[np.bool_], is_ball: bool
+def _issues(
+    found: Registration, planned: Planned, within: NDArray[np.bool_], fitted: NDArray[np.bool_], is_ball: bool
 ) -> list[Issue]:
     free = ("turning it about the centre of the sphere",) if is_ball and len(found.free) == 3 else found.free
     issues = [Issue(NOTE, "FREE_MOTION", f"{text} changes no deviation: the points do not tell it") for text in free]
-    past = int((~counted).sum())
+    past = int((~within).sum())
     if past:
         issues.append(Issue(NOTE, "PAST_EDGES", f"{past} points lie past the edges of {planned.name} and count nowhere"))
-    out = int((counted & ~fitted).sum())
+    out = int((within & ~fitted).sum())
     if out:
         text = f"{out} points were left out of the fit, the farthest off; the figures have them"
         issues.append(Issue(NOTE, "LEFT_OUT", text))

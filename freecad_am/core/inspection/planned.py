@@ -45,7 +45,7 @@ class Planned:
     most: int = 20_000
     free: float = 1e-5
 
-    def counted(self, points: Array) -> Mask:
+    def within_edges(self, points: Array) -> Mask:
         """Which of points (n, 3) are not past its edges."""
         return np.asarray(self.past(points) <= PAST)
 
@@ -206,14 +206,14 @@ class _Meridian:
     def along_normals(self, points: Array) -> tuple[Array, Array, Array, Array]:
         """Distances (n,) along the normals at the nearest places, these normals (n, 3), how far points are past the edges,
         mm, and the nearest places (n, 3)."""
-        radius, height, azimuth, beside = self.local(points)
+        radius, height, azimuth, off_plane = self.local(points)
         s = self.nearest(radius, height)
         r, z, tangent = self.curve.at(s)
         normal = np.column_stack([tangent[:, 1], np.zeros(len(s)), -tangent[:, 0]])
         distance = (radius - r) * normal[:, 0] + (height - z) * normal[:, 2]
         over = np.abs((radius - r) * tangent[:, 0] + (height - z) * tangent[:, 1])
         at_end = ((s <= 0.0) & (self.curve.points[0, 0] > 0.0)) | ((s >= self.curve.length) & (not self.curve.closed_top))
-        past = np.hypot(np.where(at_end, over, 0.0), beside)
+        past = np.hypot(np.where(at_end, over, 0.0), off_plane)
         # a corner is nearest to all within its two normals: what leads to it is one of them
         inside = ~at_end & (over > 1e-6) & (over > 1e-3 * np.abs(distance))
         off = np.hypot(radius - r, height - z)

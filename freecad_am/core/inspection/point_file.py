@@ -16,14 +16,14 @@ from ..types import Array
 from . import mesh_file
 
 TABLES, MESHES = (".csv", ".txt", ".xyz", ".asc"), {".stl": mesh_file.stl, ".obj": mesh_file.obj, ".ply": mesh_file.ply}
-MOST = 200_000  # points that are kept of a larger scan, evenly
+MAX_POINTS = 200_000  # points that are kept of a larger scan, evenly
 LARGEST = 1000  # MB
 LOOK = 200  # rows by which a table's signs are told
 _MARKS = ("#", "//", "%", "!", "'", '"#')
 _SIGNS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
 _NAMES = {None: "blanks", ";": "semicolons", "\t": "tabs", ",": "commas"}
 _UNIT = re.compile(r"(?<![a-z])(mm|cm|m|um|µm|μm|inch|inches|in|millimet(?:er|re)s?|met(?:er|re)s?)(?![a-z])")
-_SAME = {"in": "inch", "inches": "inch", "µm": "um", "μm": "um"}
+_UNIT_NAMES = {"in": "inch", "inches": "inch", "µm": "um", "μm": "um"}
 
 
 @dataclass(frozen=True)
@@ -60,22 +60,22 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
         raise InputError("EMPTY_FILE", label, "it is empty; export the points again")
     suffix = Path(label).suffix.lower()
     if suffix in MESHES:
-        found, told, named = MESHES[suffix](data, label), ["the vertices of a mesh are taken as points"], ""
+        found, messages, named = MESHES[suffix](data, label), ["the vertices of a mesh are taken as points"], ""
     else:
-        found, told, named = _table(_text(data), label)
+        found, messages, named = _table(_text(data), label)
     level = NOTE
     finite = np.isfinite(found).all(axis=1)
     if not finite.all():
-        told.append(f"{int((~finite).sum())} points without finite coordinates are left out")
+        messages.append(f"{int((~finite).sum())} points without finite coordinates are left out")
         found, level = found[finite], WARNING
     if not len(found):
         raise InputError("NO_POINTS", label, "there are no points in it; give rows of x y z")
     chosen = unit if unit != AUTO else named or "mm"
-    told.append(f"coordinates in {chosen}" + ("" if unit != AUTO or named else ", as the file names no unit"))
-    if len(found) > MOST:
-        told.append(f"of {len(found)} points {MOST} are kept, evenly")
-        found = found[np.linspace(0, len(found) - 1, MOST).astype(np.intp)]
-    return Measured(found * UNITS[chosen], label, (Issue(level, "POINTS_READ", f"{label}: {'; '.join(told)}"),))
+    messages.append(f"coordinates in {chosen}" + ("" if unit != AUTO or named else ", as the file names no unit"))
+    if len(found) > MAX_POINTS:
+        messages.append(f"of {len(found)} points {MAX_POINTS} are kept, evenly")
+        found = found[np.linspace(0, len(found) - 1, MAX_POINTS).astype(np.intp)]
+    return Measured(found * UNITS[chosen], label, (Issue(level, "POINTS_READ", f"{label}: {'; '.join(messages)}"),))
 
 
 def _text(data: bytes) -> str:
@@ -98,8 +98,8 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
     first = is_row.index(True)
     heads = [row for _, row in cells[:first]]
     width = len(cells[first][1])
-    columns, named, told = _columns(heads, cells[first:][:LOOK], width, comma)
-    told.insert(0, f"columns between {_NAMES[delimiter]}" + (", decimal commas" if comma == "," else ""))
+    columns, named, messages = _columns(heads, cells[first:][:LOOK], width, comma)
+    messages.insert(0, f"columns between {_NAMES[delimiter]}" + (", decimal commas" if comma == "," else ""))
     found, bad = [], []
     for number, row in cells[first:]:
         picked = [row[k] for k in columns if k < len(row)]
@@ -111,11 +111,11 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
         raise InputError("BAD_FILE", f"{label} line {bad[0]}",
                          "this and most other lines are not points; give rows of x y z")
     if bad:
-        told.append(f"{len(bad)} lines that are not points are left out, the first is line {bad[0]}")
+        messages.append(f"{len(bad)} lines that are not points are left out, the first is line {bad[0]}")
     texts = [*named, *(" ".join(head) for head in heads if "unit" in " ".join(head).lower()),
              *(remark for remark in remarks if "unit" in remark.lower())]
     unit = next((one for one in map(_unit_in, texts) if one), "")
-    return np.array(found).reshape(-1, 3), told, unit
+    return np.array(found).reshape(-1, 3), messages, unit
 
 
 def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
@@ -166,16 +166,16 @@ def _columns(
         if len(head) == width and {"x", "y", "z"} <= set(plain):
             columns = [plain.index(axis) for axis in "xyz"]
             more = width - 3
-            told = ["x, y and z by their headings"] + ([f"{more} more columns not used"] if more else [])
-            return columns, [head[k] for k in columns], told
+            messages = ["x, y and z by their headings"] + ([f"{more} more columns not used"] if more else [])
+            return columns, [head[k] for k in columns], messages
     whole = [row for _, row in rows if len(row) == width]
     columns = [k for k in range(width) if all(_is_number(row[k], comma) for row in whole)]
-    told = []
+    messages = []
     if len(columns) > 3 and _running([row[columns[0]] for row in whole]):
-        columns, told = columns[1:], ["the first column is a running number"]
+        columns, messages = columns[1:], ["the first column is a running number"]
     if len(columns) > 3:
-        told.append(f"x, y and z are the first three columns{' of the others' if told else ''}")
-    return columns[:3], [], told
+        messages.append(f"x, y and z are the first three columns{' of the others' if messages else ''}")
+    return columns[:3], [], messages
 
 
 def _running(cells: list[str]) -> bool:
@@ -193,4 +193,4 @@ def _unit_in(text: str) -> str:
     name = found[1]
     if name.startswith("millim"):
         return "mm"
-    return "m" if name.startswith("met") else _SAME.get(name, name)
+    return "m" if name.startswith("met") else _UNIT_NAMES.get(name, name)

@@ -18,16 +18,16 @@ from scipy.linalg import expm
 from ..geometry.frames import pose, rotation_about
 from ..issues import InfeasibleError, InputError
 from ..types import Array, Mask
-from .told import motion_told
+from .formatting import motion_text
 
 # distance (n,) of points (n, 3), outside with a plus, and unit vectors (n, 3) along which it grows
 Surface = Callable[[Array], tuple[Array, Array]]
 
-FEW = 400  # points that each start is tried with
+TRIAL_POINTS = 400  # points that each start is tried with
 FIRST_ROUNDS, TRIAL_ROUNDS, ROUNDS = 4, 10, 100
 HOPE = 30.0  # starts whose mean square is more than this of the best are tried no longer
-ALIKE = 1.02  # mean squares that differ by no more are alike
-SETTLED = 1e-9  # mm that the last round moved any point by
+EQUAL_RATIO = 1.02  # mean squares that differ by no more are alike
+CONVERGED = 1e-9  # mm that the last round moved any point by
 STILL = 1e-6  # mm that the last round may have moved a point by for the fit to count
 FREE = 1e-5  # of the stiffest motion's: a singular value of a motion that distances do not feel
 LEAST_POINTS = 6
@@ -79,16 +79,16 @@ def register(
     if not 0.0 <= trim < 0.5:
         raise InputError("OUT_OF_RANGE", where, f"{trim:g} of the points left out, expected 0 or more and less than 0.5")
     best = roughly(points, surface, starts, trim, radius, allowed, free)
-    motion, _, moved = _settled(points, surface, best, trim, radius, ROUNDS, allowed, free)
+    motion, _, moved = _converged(points, surface, best, trim, radius, ROUNDS, allowed, free)
     if moved > still:
         raise InfeasibleError(
             "NOT_SETTLED", where, "the measured points do not settle on the part; give pairs of points to begin with",
         )
-    laid = _moved(points, motion)
-    distance, normal = surface(laid)
+    aligned = _moved(points, motion)
+    distance, normal = surface(aligned)
     distance = distance - radius
     used = _counting(distance, trim)
-    return Registration(motion, laid, distance, used, _free(laid[used], normal[used], allowed, free))
+    return Registration(motion, aligned, distance, used, _free(aligned[used], normal[used], allowed, free))
 
 
 def roughly(
@@ -97,15 +97,15 @@ def roughly(
 ) -> Array:
     """The motion (4, 4) that a few of the points tell: from the first of the starts that comes to about the least distances,
     so that what distances do not feel stays as it was measured."""
-    few = points[np.unique(np.linspace(0, len(points) - 1, FEW).astype(np.intp))]
-    begun = [_settled(few, surface, start, trim, radius, FIRST_ROUNDS, allowed, free) for start in starts]
+    few = points[np.unique(np.linspace(0, len(points) - 1, TRIAL_POINTS).astype(np.intp))]
+    begun = [_converged(few, surface, start, trim, radius, FIRST_ROUNDS, allowed, free) for start in starts]
     hopeful = HOPE * min(square for _, square, _ in begun) + 1e-18
     tried = [
-        _settled(few, surface, motion, trim, radius, TRIAL_ROUNDS, allowed, free)
+        _converged(few, surface, motion, trim, radius, TRIAL_ROUNDS, allowed, free)
         for motion, square, _ in begun if square <= hopeful
     ]
     least = min(square for _, square, _ in tried)
-    return next(motion for motion, square, _ in tried if square <= ALIKE * least + 1e-18)
+    return next(motion for motion, square, _ in tried if square <= EQUAL_RATIO * least + 1e-18)
 
 
 def mean_square(points: Array, surface: Surface, motion: Array, trim: float = 0.0, radius: float = 0.0) -> float:
@@ -150,18 +150,18 @@ def by_pairs(measured: Array, planned: Array, where: str) -> Array:
     return np.asarray(pose(turn, there - turn @ here))[None]
 
 
-def _settled(
+def _converged(
     points: Array, surface: Surface, start: Array, trim: float, radius: float, rounds: int, allowed: Array | None,
     free: float,
 ) -> tuple[Array, float, float]:
     """Motion, mean square distance of what counts, and how far the last round moved a point, mm."""
     motion, damping, moved = start, 0.0, np.inf
-    laid = _moved(points, motion)
-    distance, normal = surface(laid)
+    aligned = _moved(points, motion)
+    distance, normal = surface(aligned)
     square = _square(distance - radius, trim)
     for _ in range(rounds):
         used = _counting(distance - radius, trim)
-        change = _step(laid[used], normal[used], distance[used] - radius, damping, allowed, free)
+        change = _step(aligned[used], normal[used], distance[used] - radius, damping, allowed, free)
         tried = change @ motion
         moving = _moved(points, tried)
         next_distance, next_normal = surface(moving)
@@ -172,10 +172,10 @@ def _settled(
                 moved = 0.0
                 break
             continue
-        moved = float(np.linalg.norm(moving - laid, axis=1).max())
-        motion, laid, distance, normal, square = tried, moving, next_distance, next_normal, next_square
+        moved = float(np.linalg.norm(moving - aligned, axis=1).max())
+        motion, aligned, distance, normal, square = tried, moving, next_distance, next_normal, next_square
         damping *= 0.1 if damping > 1e-9 else 0.0
-        if moved < SETTLED:
+        if moved < CONVERGED:
             break
     return motion, square, moved if np.isfinite(moved) else 0.0
 
@@ -198,8 +198,8 @@ def _step(
         twist[:3, 3] = shift - np.cross(turn, middle)
         return np.asarray(expm(twist))
     angle = float(np.linalg.norm(turn))
-    spin = rotation_about(turn / angle, angle) if angle > 0.0 else np.eye(3)
-    return np.asarray(pose(spin, middle + shift - spin @ middle))
+    rotation = rotation_about(turn / angle, angle) if angle > 0.0 else np.eye(3)
+    return np.asarray(pose(rotation, middle + shift - rotation @ middle))
 
 
 def _basis(allowed: Array | None, middle: Array, size: float) -> Array:
@@ -224,7 +224,7 @@ def _free(points: Array, normal: Array, allowed: Array | None, least: float) -> 
     basis = _basis(allowed, middle, size)
     _, stretch, right = np.linalg.svd(system @ basis, full_matrices=False)
     free = right[stretch <= max(1e-3, least) * stretch[0]] @ basis.T
-    return tuple(motion_told(one[:3] / size, one[3:], middle) for one in free)
+    return tuple(motion_text(one[:3] / size, one[3:], middle) for one in free)
 
 
 def _counting(distance: Array, trim: float) -> Mask:

@@ -6,15 +6,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.mesh.solid import SolidMesh
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..issues import InputError
 from ..parameters.inspection import UNITS
 from ..types import Array
 from .inspect import UNLIKE
 
 LOOKED = 10_000  # points
-NEAR = 0.8  # share of the points of a scan that have to lie on what was scanned
-ALIKE = 1.5  # times that a scan may be larger or smaller than a part for its unit to be guessed
+LEAST_ON_PART = 0.8  # share of the points of a scan that have to lie on what was scanned
+SCALE_RATIO = 1.5  # times that a scan may be larger or smaller than a part for its unit to be guessed
 
 
 def near(points: Array, body: Body, within: float) -> float:
@@ -28,7 +28,8 @@ def refuse_size(points: Array, label: str, body: Body) -> None:
     if asked <= size * UNLIKE and size <= UNLIKE * asked:
         return
     ratio = asked / max(size, 1e-12)
-    unit = next((name for name, scale in UNITS.items() if name != "mm" and 1.0 / ALIKE < ratio / scale < ALIKE), "")
+    units = (name for name, scale in UNITS.items() if name != "mm" and 1.0 / SCALE_RATIO < ratio / scale < SCALE_RATIO)
+    unit = next(units, "")
     remedy = f"in {unit} it would be about as large, give that as substrate.scan_unit" if unit else (
         "check its unit, substrate.scan_unit, and what was scanned"
     )
@@ -41,11 +42,11 @@ def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
     """InputError SCAN_OTHER with what was measured where points (n, 3), as they are laid, are none of the body."""
     off = _off(points, body)
     share = float((off <= within).mean())
-    if share >= NEAR:
+    if share >= LEAST_ON_PART:
         return
     raise InputError(
         "SCAN_OTHER", label, f"{share:.0%} of its {len(points)} points lie within {within:g} mm of {body.name}, at least "
-        f"{NEAR:.0%} have to; half of them are farther off than {np.median(off):.3g} mm. It reaches over "
+        f"{LEAST_ON_PART:.0%} have to; half of them are farther off than {np.median(off):.3g} mm. It reaches over "
         f"{extent(points):.4g} mm, {body.name} over {extent(body.vertices):.4g} mm: scan this part, crop the scan to it, "
         "check its unit, or raise substrate.scan_within"
     )

@@ -20,10 +20,10 @@ LEAST = 12  # of them that have to count
 BIWEIGHT = 4.685  # times the spread of points about their patch beyond which they do not count (Tukey)
 SPREAD = 1.4826  # of the standard deviation to the median of amounts
 ROUNDS = 4
-BESIDE = 0.5  # of a patch's radius that the middle of its points may be off the place: more, and it lies past an edge
+OFF_CENTRE = 0.5  # of a patch's radius that the middle of its points may be off the place: more, and it lies past an edge
 WIDE = 3.0  # times wider than patches are as a rule: a hole in the scan
 PIECE = 4000  # places that are looked at together
-SMALL = 1e-6  # mm
+TINY_MM = 1e-6  # mm
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Scan:
         arm = self.points[near] - places[:, None]
         along, across = _sideways(ways)
         u, v, high = (np.einsum("mkc,mc->mk", arm, axis) for axis in (along, across, ways))
-        radius = np.maximum(np.hypot(u, v).max(axis=1), SMALL)[:, None]
+        radius = np.maximum(np.hypot(u, v).max(axis=1), TINY_MM)[:, None]
         u, v = u / radius, v / radius
         close = np.maximum(1.0 - np.hypot(u, v) ** 3, 0.0) ** 3 * (np.abs(high) <= 2.0 * self.within)
         flat = np.stack([np.ones_like(u), u, v], axis=2)
@@ -94,13 +94,13 @@ class Scan:
             for _ in range(ROUNDS):
                 solved = _solved(columns, high, weight)
                 rest = np.abs(high - np.einsum("mkc,mc->mk", columns, solved))
-                limit = BIWEIGHT * np.maximum(SPREAD * _median(rest, close > 0.0), SMALL)[:, None]
+                limit = BIWEIGHT * np.maximum(SPREAD * _median(rest, close > 0.0), TINY_MM)[:, None]
                 weight = close * np.maximum(1.0 - (rest / limit) ** 2, 0.0) ** 2
-        total = np.maximum(weight.sum(axis=1), SMALL)
-        beside = np.hypot((weight * u).sum(axis=1), (weight * v).sum(axis=1)) / total
-        covered = ((weight > 0.0).sum(axis=1) >= min(LEAST, near.shape[1])) & (beside <= BESIDE)
+        total = np.maximum(weight.sum(axis=1), TINY_MM)
+        off_centre = np.hypot((weight * u).sum(axis=1), (weight * v).sum(axis=1)) / total
+        covered = ((weight > 0.0).sum(axis=1) >= min(LEAST, near.shape[1])) & (off_centre <= OFF_CENTRE)
         slope = np.hypot(solved[:, 1], solved[:, 2]) / radius[:, 0]
-        wide = radius[:, 0] > max(WIDE * self._radius, SMALL)
+        wide = radius[:, 0] > max(WIDE * self._radius, TINY_MM)
         return _Patches(np.where(covered, solved[:, 0], 0.0), slope, covered, wide)
 
 
@@ -120,10 +120,10 @@ def _solved(columns: Array, high: Array, weight: Array) -> Array:
     return np.asarray(np.linalg.solve(system, np.einsum("mkc,mk->mc", weighted, high)[:, :, None])[:, :, 0])
 
 
-def _median(values: Array, counted: Mask) -> Array:
+def _median(values: Array, valid: Mask) -> Array:
     """Medians (m,) of those of values (m, k) that count; 0 of none."""
-    ordered = np.sort(np.where(counted, values, np.inf), axis=1)
-    count = counted.sum(axis=1)
+    ordered = np.sort(np.where(valid, values, np.inf), axis=1)
+    count = valid.sum(axis=1)
     middle = ordered[np.arange(len(values)), np.maximum(count - 1, 0) // 2]
     return np.where(count > 0, middle, 0.0)
 

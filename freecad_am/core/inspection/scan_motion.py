@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..issues import AmError, InputError
 from ..types import Array
 from .planned import of_triangles
@@ -15,16 +15,16 @@ from .registration import Surface, by_extents, mean_square, register, roughly
 NEIGHBOURS = 8
 ALONE = 3.0  # times farther from its neighbours than points are as a rule: it is none of the surface
 FITTED = 3000  # points
-FEW, HOPEFUL = 300, 12  # points by which attitudes are told apart, and attitudes that are tried
+TRIAL_POINTS, HOPEFUL = 300, 12  # points by which attitudes are told apart, and attitudes that are tried
 OUTLYING = 5.0  # standard deviations, by the median, that a point may be off once it is laid
-ALIKE = 1.1  # times the least mean square: attitudes that points do not tell apart
+EQUAL_RATIO = 1.1  # times the least mean square: attitudes that points do not tell apart
 LOOSE = 0.1  # of the most: motions that distances feel by less are those along a flat face, which its rims hardly tell
 STILL = 0.01  # mm: of a bent body's flat faces the least distances are hardly less than those around
 OTHER = np.radians(10.0)  # between attitudes that are not the same
 PLAIN = np.radians(45.0)  # from as it was measured: an attitude that is taken though others are alike
 
 
-def laid(points: Array, body: Body, label: str) -> Array:
+def aligned(points: Array, body: Body, label: str) -> Array:
     """The motion (4, 4) that lays measured points (n, 3) onto a body. InputError SCAN_OTHER, SCAN_AMBIGUOUS."""
     planned = of_triangles(body.name, body.vertices, body.triangles)
     far = np.asarray(cKDTree(points).query(points, k=min(NEIGHBOURS + 1, len(points)))[0])[:, -1]
@@ -45,11 +45,11 @@ def laid(points: Array, body: Body, label: str) -> Array:
 def _attitude(points: Array, surface: Surface, starts: Array, label: str) -> Array:
     """Of the attitudes that fit the points about best the one nearest to as they were measured. InputError SCAN_AMBIGUOUS
     where several are alike and none of them is near to that."""
-    few = points[:: max(1, len(points) // FEW)]
+    few = points[:: max(1, len(points) // TRIAL_POINTS)]
     order = np.argsort([mean_square(few, surface, start) for start in starts], kind="stable")
     tried = [roughly(few, surface, start[None], free=LOOSE) for start in starts[order[:HOPEFUL]]]
     squares = np.array([mean_square(few, surface, motion) for motion in tried])
-    alike = [motion for motion, square in zip(tried, squares, strict=True) if square <= ALIKE * squares.min() + 1e-12]
+    alike = [motion for motion, square in zip(tried, squares, strict=True) if square <= EQUAL_RATIO * squares.min() + 1e-12]
     turns = np.array([_turn(motion[:3, :3]) for motion in alike])
     best = alike[int(turns.argmin())]
     others = [motion for motion in alike if _turn(motion[:3, :3] @ best[:3, :3].T) > OTHER]

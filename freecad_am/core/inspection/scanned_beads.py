@@ -89,9 +89,9 @@ def moved(of: Scanned, share: float, thinner: float, height: float) -> Bead:
     if bead.closed:
         shift[-1] = shift[0]
     high = 1.0 - thinner * of.off
-    pace = np.r_[high[:1], 0.5 * (high[1:] + high[:-1])]
+    rise = np.r_[high[:1], 0.5 * (high[1:] + high[:-1])]
     changed = {} if not thinner else {
-        "speed": bead.speed / pace, "height": high * (height if bead.height is None else bead.height),
+        "speed": bead.speed / rise, "height": high * (height if bead.height is None else bead.height),
     }
     return replace(bead, points=bead.points + shift, tangents=_tangents(bead, shift), **changed)
 

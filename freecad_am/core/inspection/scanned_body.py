@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from ..geometry.mesh.refined import refined
 from ..geometry.mesh.solid import SolidMesh
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..types import Array
 from .scan_heights import Scan
 
 PARTS = 40  # along the longest side of the body, of its triangles once they are divided
 FINEST = 4.0  # mm
-MOST = 100_000  # triangles
+MAX_TRIANGLES = 100_000  # triangles
 FACING = 0.2  # cosine; faces that lean farther away from where layers grow are not scanned along their normals
 
 
@@ -32,7 +32,7 @@ def scanned(body: Body, scan: Scan, ways: Array) -> Body:
     was not scanned stays."""
     longest = max(float(np.ptp(body.vertices, axis=0).max()) / PARTS, FINEST)
     owner = np.zeros(len(body.triangles), dtype=np.intp)
-    found = refined(body.vertices, body.triangles, owner, longest, lambda middle, *_: middle, MOST)
+    found = refined(body.vertices, body.triangles, owner, longest, lambda middle, *_: middle, MAX_TRIANGLES)
     vertices, triangles = (body.vertices, body.triangles) if found is None else found[:2]
     units = SolidMesh(vertices, triangles).units
     some = ways[np.unique(np.linspace(0, len(ways) - 1, 50).astype(np.intp))]

@@ -103,8 +103,8 @@ def deviations(inspected: Inspected) -> Iterable[str]:
     """Lines of a CSV file: the points in part coordinates with their deviations."""
     yield "x_mm,y_mm,z_mm,deviation_mm,counted,fitted\n"
     columns = (inspected.points, inspected.deviation, inspected.counted, inspected.fitted)
-    for point, deviation, counted, fitted in zip(*columns, strict=True):
-        yield "{:.6f},{:.6f},{:.6f},".format(*point) + f"{deviation:.6f},{int(counted)},{int(fitted)}\n"
+    for point, deviation, within, fitted in zip(*columns, strict=True):
+        yield "{:.6f},{:.6f},{:.6f},".format(*point) + f"{deviation:.6f},{int(within)},{int(fitted)}\n"
 
 
 def compared(each: list[Inspected]) -> list[tuple[str, str, list[float | None], float | None, float | None]]:

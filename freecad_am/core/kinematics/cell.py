@@ -17,7 +17,7 @@ import numpy as np
 
 from ..geometry import frames
 from ..geometry.columns import columns
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..issues import InputError
 from ..parameters.cell import CellParameters, NozzleParameters
 from ..parameters.external import externals
@@ -26,7 +26,7 @@ from .arrangement import Arrangement, of_setup, planned_of
 from .external import ExternalAxes, coupled, upward
 from .inverse import opw
 from .limits import Limits
-from .links.beside import BesideLink, links_beside
+from .links.external_links import ExternalLink, external_links
 from .machines import machine as machines
 from .machines.machine import Machine
 from .pose_frames import PoseFrames
@@ -70,7 +70,7 @@ class Cell:
     up: Array = field(default_factory=lambda: np.array(UP))
     torch: Torch | None = None
     offset: WorkOffset | None = None
-    beside: tuple[BesideLink, ...] = ()
+    external_links: tuple[ExternalLink, ...] = ()
 
     @property
     def robot(self) -> Machine:
@@ -102,14 +102,14 @@ class Cell:
         found: Array = self.external.base(values) @ self.robot.base
         return found
 
-    def beside_frames(self, joints: Array) -> Array:
-        """(n, links, 4, 4) the frames of the links `beside`, seen from where the machine's chain begins, for joints
+    def external_link_frames(self, joints: Array) -> Array:
+        """(n, links, 4, 4) the frames of the links `has_external`, seen from where the machine's chain begins, for joints
         (n, axes)."""
         values = self.external_of(joints)
-        if not self.beside or self.external is None or values is None:
+        if not self.external_links or self.external is None or values is None:
             return np.zeros((len(joints), 0, 4, 4))
         links = self.external.links(values)
-        in_world = np.stack([links[one.mechanism][:, one.link] for one in self.beside], axis=1)
+        in_world = np.stack([links[one.mechanism][:, one.link] for one in self.external_links], axis=1)
         return np.asarray(self.world(joints)[:, None] @ in_world)
 
     @property
@@ -206,7 +206,7 @@ class Cell:
         tip: Array = (flange @ self.carried)[:, :3, 3]
         return tip
 
-    def spin_axis(self, flange: Array) -> Array:
+    def rotation_axis(self, flange: Array) -> Array:
         """(n, 3) angular velocity of the flange in base_link per unit of phi, about the deposition point."""
         if self.torch_stands:
             return np.broadcast_to(self.station[:3, 2], (len(flange), 3))
@@ -257,8 +257,8 @@ def resolve(
     """
     arrangement = planned_of(parameters.setup)
     machine = machines.load(parameters.machine, tuple(folders))
-    beside = externals(parameters.external)
-    _refuse_otherwise(machine, arrangement, bool(beside))
+    mechanisms = externals(parameters.external)
+    _refuse_otherwise(machine, arrangement, bool(mechanisms))
     platform = parameters.platform
     platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
     limits, external = machine.limits(parameters.limits), None
@@ -266,8 +266,8 @@ def resolve(
     station = frames.bryant(parameters.deposition_point) if arrangement.redundant else np.eye(4)
     mount, offset = mounted(parameters, feature_frame, family), of_cell(parameters, arrangement)
     station = station if offset is None else offset.pose @ mount
-    if beside:
-        machine, limits, external = coupled(machine, limits, beside, parameters.upward(), folders)
+    if mechanisms:
+        machine, limits, external = coupled(machine, limits, mechanisms, parameters.upward(), folders)
         station = station if not external.turning else frames.bryant(platform_pose)
     return Cell(
         machine=machine,
@@ -282,11 +282,11 @@ def resolve(
         external=external,
         arm_clearance=parameters.arm_clearance,
         up=upward(parameters.upward()),
-        offset=offset, beside=links_beside(external),
+        offset=offset, external_links=external_links(external),
     )
 
 
-def _refuse_otherwise(machine: Machine, arrangement: Arrangement, beside: bool) -> None:
+def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: bool) -> None:
     """InputError WRONG_SETUP for what the machine, or axes beside it, do not do, NO_CLOSED_FORM for an arm whose inverse is
     not known."""
     if arrangement not in machine.arrangements:
@@ -295,6 +295,6 @@ def _refuse_otherwise(machine: Machine, arrangement: Arrangement, beside: bool) 
         raise InputError("WRONG_SETUP", "cell.setup", f"{machine.title} {kind}; use {wanted}, or choose another machine")
     if machine.arm is None and machine.redundant:
         raise InputError("NO_CLOSED_FORM", "cell.machine", f"{machine.title}: {machine.no_arm}")
-    if beside and arrangement.carries_part:
+    if has_external and arrangement.carries_part:
         raise InputError("WRONG_SETUP", "cell.external", f"{arrangement.setup}: axes beside the robot need "
                          "the tool on the robot; use setup: tool-on-robot, or leave external out")

@@ -213,17 +213,17 @@ def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
 
 def _mechanisms(found: Sequence[tuple[External, Machine]], values: Sequence[NDArray[np.intp]]) -> tuple[Mechanism, ...]:
     """The mechanisms where they stand: those that carry the part on one another."""
-    beside: list[Mechanism] = []
+    adjacent: list[Mechanism] = []
     under: int | None = None
     face = np.eye(4)
     for k, (one, machine) in enumerate(found):
         start = frames.bryant(one.pose) @ frames.inverse(machine.base)
         if one.carries == ROBOT:
-            beside.append(Mechanism(machine, ROBOT, start, values[k], None))
+            adjacent.append(Mechanism(machine, ROBOT, start, values[k], None))
             continue
-        beside.append(Mechanism(machine, PART, frames.inverse(face) @ start, values[k], under))
+        adjacent.append(Mechanism(machine, PART, frames.inverse(face) @ start, values[k], under))
         under, face = k, start @ machine.chain.forward(np.zeros(machine.chain.axes))
-    return tuple(beside)
+    return tuple(adjacent)
 
 
 def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machine:
@@ -239,7 +239,7 @@ def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machin
         offset.append(other.controller_offset)
         at += more
     all_ = (robot, *others)
-    told = all(one.pulses_per_degree for one in all_)
+    known = all(one.pulses_per_degree for one in all_)
     alike = {
         name: np.concatenate([getattr(one, name) for one in all_])
         for name in ("max_speed", "max_acceleration", "max_jerk")
@@ -248,7 +248,7 @@ def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machin
         robot, title=" + ".join(one.title for one in (robot, *others)), chain=chain, base=np.eye(4), external=count,
         axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))), controller_matrix=matrix,
         controller_offset=np.concatenate(offset),
-        pulses_per_degree=sum((one.pulses_per_degree for one in all_), ()) if told else (), **alike,
+        pulses_per_degree=sum((one.pulses_per_degree for one in all_), ()) if known else (), **alike,
     )
 
 

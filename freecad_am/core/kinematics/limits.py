@@ -48,7 +48,7 @@ class Limits:
         return len(self.lower)
 
     @property
-    def endless(self) -> NDArray[np.bool_]:
+    def continuous(self) -> NDArray[np.bool_]:
         """Which axes (axes,) turn without end."""
         without: NDArray[np.bool_] = ~np.isfinite(self.upper - self.lower)
         return without

@@ -28,21 +28,21 @@ class PoseFrames:
     def at(self, phi: Array) -> Array:
         """(..., n, 4, 4) flange poses for rotations phi (..., n)."""
         cos, sin = np.cos(phi), self.sign * np.sin(phi)
-        spun = np.empty((*phi.shape, 4, 4))
+        rotated = np.empty((*phi.shape, 4, 4))
         # entry by entry: along axes of four it takes twice as long
         if len(self.left) == 1:
             for column in range(4):
                 first, second = np.ascontiguousarray(self.right[:, :2, column].T)
-                spun[..., 0, column] = cos * first - sin * second
-                spun[..., 1, column] = sin * first + cos * second
-            spun[..., 2:, :] = self.right[:, 2:]
-            return _moved_by(self.left[0], spun)
+                rotated[..., 0, column] = cos * first - sin * second
+                rotated[..., 1, column] = sin * first + cos * second
+            rotated[..., 2:, :] = self.right[:, 2:]
+            return _moved_by(self.left[0], rotated)
         for row in range(4):
             first, second = np.ascontiguousarray(self.left[:, row, :2].T)
-            spun[..., row, 0] = cos * first + sin * second
-            spun[..., row, 1] = cos * second - sin * first
-        spun[..., :, 2:] = self.left[:, :, 2:]
-        turned: Array = (spun.reshape(-1, 4) @ self.right[0]).reshape(spun.shape)
+            rotated[..., row, 0] = cos * first + sin * second
+            rotated[..., row, 1] = cos * second - sin * first
+        rotated[..., :, 2:] = self.left[:, :, 2:]
+        turned: Array = (rotated.reshape(-1, 4) @ self.right[0]).reshape(rotated.shape)
         return turned
 
 

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry import frames
-from ..geometry.rods import Rod
+from ..geometry.cylinders import Cylinder
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
 from ..types import Array
@@ -28,7 +28,7 @@ from .arrangement import OF_ROBOTS, of_setup
 from .cell import Cell, resolve
 from .inverse import opw
 from .limits import margins
-from .links import rods as link_rods
+from .links import cylinders as link_cylinders
 from .links.contact import ArmContact
 from .machines import machine as machines
 
@@ -77,8 +77,8 @@ def searched(parameters: CellParameters, folders: Sequence[str] = (), own_branch
         leanings = [_directions(TILTS, 1)]
     else:
         leanings = [_directions(LEANING[:steepest], ROUND) for steepest in range(len(LEANING), 0, -1)]
-    rods = link_rods.of_robot(cell.robot.chain)
-    for touched in (rods, ()):
+    cylinders = link_cylinders.of_robot(cell.robot.chain)
+    for touched in (cylinders, ()):
         for axes in leanings:
             found = _best(cell, axes, branches, touched)
             if found is not None:
@@ -105,15 +105,15 @@ class _Place(NamedTuple):
     point: Pose
 
 
-def _best(cell: Cell, axes: Array, branches: Sequence[int], rods: Sequence[Sequence[Rod]]) -> _Place | None:
-    """Where deposit on a ball along the axes (n, 3) has most room, None where it has none anywhere. Without rods links may
-    touch what they like."""
+def _best(cell: Cell, axes: Array, branches: Sequence[int], cylinders: Sequence[Sequence[Cylinder]]) -> _Place | None:
+    """Where deposit on a ball along the axes (n, 3) has most room, None where it has none anywhere. Without cylinders links
+    may touch what they like."""
     places = sorted(_places(cell, axes, branches))
     best: _Place | None = None
-    for place in places if rods else places[:1]:
+    for place in places if cylinders else places[:1]:
         if best is not None and best.lack <= place.lack:  # those that come now have no more room, whatever is touched
             break
-        lack = 1.0 - _clear_room(_stood(cell, place.point), axes, place.branch, rods)
+        lack = 1.0 - _clear_margin(_stood(cell, place.point), axes, place.branch, cylinders)
         if lack < (1.0 if best is None else best.lack):
             best = place._replace(lack=lack)
     return best
@@ -131,7 +131,7 @@ def _places(cell: Cell, axes: Array, branches: Sequence[int]) -> Iterator[_Place
         x, z = np.round([shoulder + ahead * arm.reach, above])
         point = (float(x), 0.0, float(z), 0.0, 0.0, 0.0)
         there = _stood(cell, point)
-        worst = _room(cell, _joints(there, axes)).max(axis=1).min(axis=1)
+        worst = _margin(cell, _joints(there, axes)).max(axis=1).min(axis=1)
         yield from (_Place(1.0 - float(worst[k]), number, k, point) for k in branches if worst[k] > 0.0)
 
 
@@ -150,18 +150,18 @@ def _joints(cell: Cell, axes: Array) -> Array:
     return joints
 
 
-def _clear_room(cell: Cell, axes: Array, branch: int, rods: Sequence[Sequence[Rod]]) -> float:
+def _clear_margin(cell: Cell, axes: Array, branch: int, cylinders: Sequence[Sequence[Cylinder]]) -> float:
     """The room of the worst pose in a branch, of those turned so that no link touches anything; below 0 where there is
     none."""
     joints = _joints(cell, axes)[branch]
-    room = _room(cell, joints)
-    if rods:
-        some = room > 0.0
-        room[some] = np.where(ArmContact(cell, rods).touches(joints[some]).any, -1.0, room[some])
-    return float(room.max(axis=0).min())
+    margin = _margin(cell, joints)
+    if cylinders:
+        some = margin > 0.0
+        margin[some] = np.where(ArmContact(cell, cylinders).touches(joints[some]).any, -1.0, margin[some])
+    return float(margin.max(axis=0).min())
 
 
-def _room(cell: Cell, joints: Array) -> Array:
+def _margin(cell: Cell, joints: Array) -> Array:
     """(..., turns, n) 1 in the middle of everything, 0 at a limit or where the arm or the wrist is stretched, less beyond
     and where the robot does not reach."""
     arm, limits = cell.machine.arm, cell.limits
@@ -170,5 +170,5 @@ def _room(cell: Cell, joints: Array) -> Array:
         left = margins(joints[..., :5], limits.lower[:5], limits.upper[:5]).min(axis=-1)
     else:
         left = limits.smallest_share(joints.reshape(-1, 6)).reshape(joints.shape[:-1])
-    room: Array = np.nan_to_num(np.minimum(left, arm.bend(joints)), nan=-1.0)
-    return room
+    margin: Array = np.nan_to_num(np.minimum(left, arm.bend(joints)), nan=-1.0)
+    return margin

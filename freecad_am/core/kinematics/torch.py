@@ -2,7 +2,7 @@
 """The torch as a solid: what holds the nozzle, as a file shows it. `cell.nozzle.shape`.
 
 Next to the deposit, up to `cell.nozzle.length`, the nozzle is the cone that build directions are kept clear with; the torch
-lies within it there, or is refused. Beyond, it is rods as links are, which keep `cell.arm_clearance`.
+lies within it there, or is refused. Beyond, it is cylinders as links are, which keep `cell.arm_clearance`.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..collision.inside import inside_of
-from ..geometry.rods import Rod, about
-from ..geometry.surroundings import Body
+from ..geometry.cylinders import Cylinder, about
+from ..geometry.obstacles import Body
 from ..issues import InputError
 from ..parameters.cell import NozzleParameters
 from ..types import Array
@@ -26,17 +26,17 @@ CODE, WHERE = "TORCH", "cell.nozzle.shape"
 FARTHEST = 50.0  # mm from the tip to the torch, which a wire is not longer; a file that is farther off has another origin
 BEYOND = 0.5  # mm that it may reach beyond its tip: what stands there would be in the deposit
 WIDER = 0.05  # mm that it may stand out of the cone, which is what triangles of round sides are off them
-MOST, SAVED = 16, 0.02  # rods, and the share of their volume that one more has to save
+MAX_CYLINDERS, SAVED = 16, 0.02  # cylinders, and the share of their volume that one more has to save
 # files have Z out of the nozzle, we have the tip's Z into it
 _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True)
 class Torch:
-    """body: all of it; rods: that hold what of it is beyond the nozzle's cone. In the frame of the tip, Z into it."""
+    """body: all of it; cylinders: that hold what of it is beyond the nozzle's cone. In the frame of the tip, Z into it."""
 
     body: Body
-    rods: tuple[Rod, ...]
+    cylinders: tuple[Cylinder, ...]
 
 
 def torch(body: Body, nozzle: NozzleParameters) -> Torch:
@@ -55,38 +55,38 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
         raise InputError(CODE, WHERE, f"it reaches {-low:.4g} mm beyond its origin along Z, where the deposit is; Z of the "
                          "file points out of the nozzle, away from the torch, and the origin is its tip")
     _refuse_wider(found, nozzle)
-    return Torch(found, tuple(_rods(cut(found.vertices, found.triangles, nozzle.length, above=True))))
+    return Torch(found, tuple(_cylinders(cut(found.vertices, found.triangles, nozzle.length, above=True))))
 
 
-def _rods(whole: Piece) -> list[Rod]:
-    """Rods that hold triangles: these are cut in two, again and again, where that saves most of their volume."""
+def _cylinders(whole: Piece) -> list[Cylinder]:
+    """Cylinders that hold triangles: these are cut in two, again and again, where that saves most of their volume."""
     pieces = [_Cut(whole)] if len(whole[1]) else []
-    while 0 < len(pieces) < MOST:
+    while 0 < len(pieces) < MAX_CYLINDERS:
         k = int(np.argmax([one.saved for one in pieces]))
-        if pieces[k].saved < SAVED * sum(_volume(one.rod) for one in pieces):
+        if pieces[k].saved < SAVED * sum(_volume(one.cylinder) for one in pieces):
             break
         pieces[k : k + 1] = [_Cut(part) for part in pieces[k].parts]
-    return [one.rod for one in pieces]
+    return [one.cylinder for one in pieces]
 
 
 class _Cut:
-    """A piece with its rod, and how it is best cut in two: the parts, and what of the rod's volume that saves."""
+    """A piece with its cylinder, and how it is best cut in two: the parts, and what of the cylinder's volume that saves."""
 
     def __init__(self, piece: Piece) -> None:
-        self.rod, self.saved = _about(piece), 0.0
+        self.cylinder, self.saved = _about(piece), 0.0
         self.parts: tuple[Piece, ...] = ()
         for parts in _halves(piece):
-            saved = _volume(self.rod) - sum(_volume(_about(part)) for part in parts)
+            saved = _volume(self.cylinder) - sum(_volume(_about(part)) for part in parts)
             if saved > self.saved:
                 self.saved, self.parts = saved, parts
 
 
-def _about(piece: Piece) -> Rod:
+def _about(piece: Piece) -> Cylinder:
     return about(piece[0][np.unique(piece[1])])
 
 
-def _volume(rod: Rod) -> float:
-    return rod.length * rod.radius**2
+def _volume(cylinder: Cylinder) -> float:
+    return cylinder.length * cylinder.radius**2
 
 
 def _halves(piece: Piece) -> list[tuple[Piece, Piece]]:
@@ -136,9 +136,9 @@ def _refuse_wider(found: Body, nozzle: NozzleParameters) -> None:
     if not len(seen):
         return
     tip, away = 0.5 * nozzle.diameter, np.hypot(seen[:, 0], seen[:, 1])
-    room = tip + np.maximum(seen[:, 2], 0.0) * np.tan(nozzle.half_angle)
-    worst = int(np.argmax(away - room))
-    if away[worst] - room[worst] <= WIDER:
+    allowed = tip + np.maximum(seen[:, 2], 0.0) * np.tan(nozzle.half_angle)
+    worst = int(np.argmax(away - allowed))
+    if away[worst] - allowed[worst] <= WIDER:
         return
     high = np.maximum(seen[:, 2], 1e-3)
     least = float(np.degrees(np.arctan(np.maximum((away - tip) / high, 0.0).max())))
@@ -147,7 +147,7 @@ def _refuse_wider(found: Body, nozzle: NozzleParameters) -> None:
     )
     raise InputError(
         CODE, WHERE, f"{seen[worst, 2]:.4g} mm over its tip it reaches {away[worst]:.4g} mm from its axis, the nozzle as a "
-        f"cone {room[worst]:.4g} mm, and it is the cone that is kept clear of the deposit; give {remedy}, or a smaller "
+        f"cone {allowed[worst]:.4g} mm, and it is the cone that is kept clear of the deposit; give {remedy}, or a smaller "
         "cell.nozzle.length",
     )
 

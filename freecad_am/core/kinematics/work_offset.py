@@ -72,9 +72,9 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
     residual = np.linalg.norm(part @ turn.T + pose[:3, 3] - robot, axis=1)
     worst = int(np.argmax(residual))
     if residual[worst] > tolerance:
-        told = ", ".join(f"{value:.3g}" for value in residual)
+        text = ", ".join(f"{value:.3g}" for value in residual)
         raise InputError(CODE, WHERE, f"point {worst + 1} is {residual[worst]:.3g} mm from where it was touched (of all: "
-                         f"{told} mm), more than cell.touched_tolerance of {tolerance:g} mm; touch it again, and see that "
+                         f"{text} mm), more than cell.touched_tolerance of {tolerance:g} mm; touch it again, and see that "
                          "the points stand in the same order, are of this part, and that the tip is calibrated")
     return WorkOffset(pose, residual)
 

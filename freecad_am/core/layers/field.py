@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from ..geometry.curves.guide import Guide
 from ..geometry.developable import Developable
+from ..geometry.obstacles import Body
 from ..geometry.on_hub import Group, middle_azimuth
-from ..geometry.surroundings import Body
 from ..parameters.filled import DevelopableParameters, FilledParameters, SolidParameters
 from ..slicing.solids.equidistant import Facets
 from ..slicing.solids.unrolled import cut

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.curves.guide import Guide
+from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base
-from ..geometry.surroundings import Body
 from ..types import Array
 from .planes.stacking import facets
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from ..geometry.formatting import place
 from ..geometry.on_hub import Base
 from ..geometry.regions.region import Region
-from ..geometry.told import place
 from ..issues import WARNING, Issue
 from ..parameters.filled import SolidParameters
 from .surface import Slice

@@ -94,13 +94,13 @@ class BeadClass:
     end_travel_speed: float | None = _phase("travel_speed")
     end_schedule: int | None = _phase("schedule")
 
-    def told(self) -> dict[str, float]:
+    def own_values(self) -> dict[str, float]:
         """What it has of its own, by name, in inner units."""
         return {name: value for name, value in dataclasses.asdict(self).items() if value is not None}
 
     def __str__(self) -> str:
         fields = {one.name: f.spec_of(one).kind for one in dataclasses.fields(self)}
-        outer = {name: _OUTER.get(fields[name], float)(value) for name, value in self.told().items()}
+        outer = {name: _OUTER.get(fields[name], float)(value) for name, value in self.own_values().items()}
         return ", ".join(f"{name} {value:.12g}" for name, value in outer.items())
 
 
@@ -123,7 +123,7 @@ def made(name: str, values: dict[str, float | int | None], where: str = WHERE) -
 
 def text_of(classes: dict[str, BeadClass]) -> str:
     """The text of classes, those that have something of their own in the usual order; NONE where there are none."""
-    parts = [f"{name}: {classes[name]}" for name in CLASSES if name in classes and classes[name].told()]
+    parts = [f"{name}: {classes[name]}" for name in CLASSES if name in classes and classes[name].own_values()]
     return f"{MORE} ".join(parts) or NONE
 
 

@@ -15,7 +15,7 @@ from .cell import Pose
 
 AUTO, POINT, PLATFORM, POSITIONER = "auto", "deposition-point", "platform", "positioner"
 MARGIN, TIME, CLEARANCE = "margin", "time", "clearance"
-MOST = 20_000  # poses
+MAX_POSES = 20_000  # poses
 SIDES = ("x", "y", "z", "rx", "ry", "rz")
 
 
@@ -60,9 +60,9 @@ class PlaceParameters:
     def __post_init__(self) -> None:
         f.check(self, "place")
         count = math.prod(len(values) for values in self._values())
-        if count > MOST:
-            raise InputError("BAD_VALUE", "place.step", f"these are {count} poses, more than {MOST}; give a larger step or "
-                             "a smaller box")
+        if count > MAX_POSES:
+            raise InputError("BAD_VALUE", "place.step", f"these are {count} poses, more than {MAX_POSES}; give a larger "
+                             "step or a smaller box")
 
     def _values(self) -> list[NDArray[np.float64]]:
         """What is added to each of the six numbers of a pose."""

@@ -188,7 +188,7 @@ class ProcessParameters:
 
     def for_class(self, name: str) -> ProcessParameters:
         """The process as beads of a class are laid by."""
-        own = self.of_class(name).told()
+        own = self.of_class(name).own_values()
         mine: dict[str, Any] = {key: value for key, value in own.items() if key in IN_PROCESS}
         for phase in (bead_classes.START, bead_classes.END):
             ends = {key.removeprefix(f"{phase}_"): value for key, value in own.items() if key.startswith(f"{phase}_")}
@@ -202,4 +202,4 @@ class ProcessParameters:
         classes = bead_classes.classes(self.classes).values()
         keys = ("schedule", "start_schedule", "end_schedule")
         ends = (self.schedule, self.start.schedule, self.end.schedule)
-        return any(one is not None for one in ends) or any(key in one.told() for one in classes for key in keys)
+        return any(one is not None for one in ends) or any(key in one.own_values() for one in classes for key in keys)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..collision.bead_ends import LINK_GRAIN, Beads
-from ..geometry.rods import Rod
+from ..geometry.cylinders import Cylinder
 from ..issues import ERROR, AmError, Issue
 from ..kinematics.cell import Cell
 from ..kinematics.inverse import opw
@@ -32,7 +32,7 @@ from ..planning.sampled import Sampled, sampled
 from ..toolpath import Bead, Toolpath
 from .screen import alone, screened
 
-Rods = tuple[tuple[Rod, ...], ...]
+Cylinders = tuple[tuple[Cylinder, ...], ...]
 
 TOGETHER = 2  # beads that follow each other, so that rapids are among what is planned
 REACH = 200.0  # mm, beyond which it is not told how far the arm is from everything
@@ -41,12 +41,12 @@ UNREACHED = "NO_ROTATION"
 
 @dataclass(frozen=True)
 class Job:
-    """What is placed. cell: resolves the parameters of a cell for it, with what stands there, or raises AmError. rods: of
-    the links of the robot in a cell."""
+    """What is placed. cell: resolves the parameters of a cell for it, with what stands there, or raises AmError.
+    cylinders: of the links of the robot in a cell."""
 
     toolpath: Toolpath
     cell: Callable[[CellParameters], Cell]
-    rods: Callable[[Cell], Rods]
+    cylinders: Callable[[Cell], Cylinders]
     process: ProcessParameters
     joints: JointParameters
 
@@ -79,7 +79,7 @@ class Judge:
     job: Job
     most: int | None
     _some: Sampled = field(init=False, repr=False)
-    _laid: Beads = field(init=False, repr=False)
+    _deposit: Beads = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         whole = self.job.toolpath
@@ -88,7 +88,7 @@ class Judge:
         most = whole.point_count if self.most is None else self.most
         object.__setattr__(self, "_some", sampled(whole, most, TOGETHER))
         width = whole.bead_width or whole.layer_height
-        object.__setattr__(self, "_laid", Beads.of([bead for _, _, bead in whole], width, whole.layer_height))
+        object.__setattr__(self, "_deposit", Beads.of([bead for _, _, bead in whole], width, whole.layer_height))
 
     @property
     def points(self) -> int:
@@ -103,14 +103,14 @@ class Judge:
             share = self._share(cell) if cell.arrangement.redundant else 1.0
             if share is not None and share < 1.0 and not _several_alike(cell):
                 return Judged(share, UNREACHED, message="some points no rotation about the tool serves")
-            rods = job.rods(cell)
+            cylinders = job.cylinders(cell)
             path = plan_joints(some, cell, dataclasses.replace(job.joints, given=self._some.given(job.joints.given)),
-                               progress, () if cell.arm_clearance is None else rods)
+                               progress, () if cell.arm_clearance is None else cylinders)
             motion, rapids = assemble(path, cell, job.process, some.surroundings, job.joints, some.layer_height,
-                                      () if cell.arm_clearance is None else rods)
+                                      () if cell.arm_clearance is None else cylinders)
         except AmError as error:
             return Judged(0.0, error.code, message=error.message)
-        return self._figures(cell, path, motion, [*path.issues, *rapids], rods)
+        return self._figures(cell, path, motion, [*path.issues, *rapids], cylinders)
 
     def _share(self, cell: Cell) -> float | None:
         """The share of points that are served; None where a track decides where the robot stands."""
@@ -123,7 +123,7 @@ class Judge:
         return screened(cell, alone(beads, cell), job.joints, wanted).share
 
     def _figures(
-        self, cell: Cell, path: JointPath, motion: Motion, issues: list[Issue], rods: Rods
+        self, cell: Cell, path: JointPath, motion: Motion, issues: list[Issue], cylinders: Cylinders
     ) -> Judged:
         wrong = next((issue for issue in issues if issue.level == ERROR), None)
         joints = path.joints
@@ -133,15 +133,15 @@ class Judge:
             return Judged(served, wrong.code, branch=path.branch, message=wrong.message)
         return Judged(
             served, "" if wrong is None else wrong.code, float(np.nanmin(left)), self._time(path, motion),
-            self._clearance(cell, path, rods), path.branch, "" if wrong is None else wrong.message,
+            self._clearance(cell, path, cylinders), path.branch, "" if wrong is None else wrong.message,
         )
 
-    def _clearance(self, cell: Cell, path: JointPath, rods: Rods) -> float:
+    def _clearance(self, cell: Cell, path: JointPath, cylinders: Cylinders) -> float:
         """mm between the arm and everything at the points of the beads, all of what is deposited by then among it."""
-        if not rods:
+        if not cylinders:
             return np.nan
         whole = self.job.toolpath
-        contact = ArmContact(cell, rods, whole.surroundings, self._laid.solid(LINK_GRAIN))
+        contact = ArmContact(cell, cylinders, whole.surroundings, self._deposit.solid(LINK_GRAIN))
         counts = np.cumsum([0, *(len(bead) for _, _, bead in whole)])
         before = {(layer, index): int(n) for (layer, index, _), n in zip(whole, counts, strict=False)}
         here = {(layer, index): place for (layer, index, _), place in

@@ -55,12 +55,12 @@ def moved(settings: CellParameters, moves: str, pose: Sequence[float]) -> CellPa
         return dataclasses.replace(settings, deposition_point=there)
     if moves == PLATFORM:
         return dataclasses.replace(settings, platform=there)
-    beside, done = [], False
+    mechanisms, done = [], False
     for one in externals(settings.external):
         turns = one.carries == PART and not done
         done |= turns
-        beside.append(str(dataclasses.replace(one, pose=there) if turns else one))
-    return dataclasses.replace(settings, external=f"{MORE} ".join(beside))
+        mechanisms.append(str(dataclasses.replace(one, pose=there) if turns else one))
+    return dataclasses.replace(settings, external=f"{MORE} ".join(mechanisms))
 
 
 def outer(pose: Pose) -> list[float]:

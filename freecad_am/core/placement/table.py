@@ -35,13 +35,13 @@ def key(found: Placed, number: int) -> str:
         return f"deposition_point: {_list(found.pose(number))}"
     if found.moves == PLATFORM:
         return f"platform: {_list(found.pose(number))}"
-    beside, done = [], False
+    mechanisms, done = [], False
     for one in externals(found.settings.external):
         turns = one.carries == PART and not done
         done |= turns
         pose = found.pose(number) if turns else one.pose
-        beside.append(f"{{machine: {one.machine}, pose: {_list(pose)}, carries: {one.carries}}}")
-    return f"external: [{', '.join(beside)}]"
+        mechanisms.append(f"{{machine: {one.machine}, pose: {_list(pose)}, carries: {one.carries}}}")
+    return f"external: [{', '.join(mechanisms)}]"
 
 
 def _list(pose: Pose) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..issues import Issue
 from ..kinematics.cell import Cell
 from ..motion import DEPOSIT, Motion
@@ -17,8 +17,8 @@ from ..parameters.bead_classes import number_of
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
 from ..types import Array
-from . import nozzle_beside
-from .arm.kept import Rods
+from . import nozzle_obstacles
+from .arm.kept import Cylinders
 from .beads.retreat import turns_back
 from .joint_path import BeadPath, JointPath
 from .rapids.findings import findings
@@ -53,7 +53,7 @@ class _Rows:
 
 def assemble(
     joint_path: JointPath, cell: Cell, process: ProcessParameters, bodies: Sequence[Body] = (),
-    parameters: JointParameters | None = None, layer_height: float = 0.0, rods: Rods = (),
+    parameters: JointParameters | None = None, layer_height: float = 0.0, cylinders: Cylinders = (),
 ) -> tuple[Motion, tuple[Issue, ...]]:
     """The motion of a joint path with its rapids, and what is wrong with the rapids.
 
@@ -64,11 +64,11 @@ def assemble(
     the sphere about all of these, then in other directions. Where nothing helps, that is an issue.
 
     parameters: those the joint path was planned with, for the least condition; the usual ones where left out. layer_height:
-    mm, how high beads are that do not tell it. rods: of each link of the robot, kept clear as the nozzle is where
+    mm, how high beads are that do not tell it. cylinders: of each link of the robot, kept clear as the nozzle is where
     `cell.arm_clearance` asks for it.
     """
     ways = RapidWays(joint_path, cell, process.between_layers.lift, bodies, parameters or JointParameters(),
-                      process.bead_width, layer_height, rods)
+                      process.bead_width, layer_height, cylinders)
     parts: list[_Rows] = []
     for number, path in enumerate(joint_path.beads):
         parts += [_rapid(path, ways.ways[number], ways.legs[2 * number], cell), _deposit(path)]
@@ -76,7 +76,7 @@ def assemble(
         last = 2 * len(joint_path.beads) - 1
         parts.append(_retract(joint_path.beads[-1], ways.ways[-1], ways.legs[last]))
     motion = _joined(parts, cell, process)
-    return motion, (*findings(ways), *nozzle_beside.findings(motion, cell))
+    return motion, (*findings(ways), *nozzle_obstacles.findings(motion, cell))
 
 
 def _place(path: BeadPath) -> tuple[int, int, int]:

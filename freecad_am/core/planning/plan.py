@@ -17,12 +17,12 @@ from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
 from . import comparison
 from .arm import clear as arm_clear
-from .arm.kept import ArmKept, Rods, of_job
+from .arm.kept import ArmKept, Cylinders, of_job
 from .beads import phases
+from .beads.chord_error import refined_to_chord_error
 from .beads.overlap import run_on
 from .beads.retreat import go_back
 from .beads.speeds import corners_slowed, rings_slowed, too_fast
-from .beads.straight import kept_straight
 from .certificate import bound
 from .external import rule as external_rule
 from .external import track
@@ -56,7 +56,7 @@ def _silent(fraction: float, text: str) -> None:
 
 
 def plan_joints(
-    toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress = _silent, rods: Rods = ()
+    toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress = _silent, cylinders: Cylinders = ()
 ) -> JointPath:
     """The joint path of a toolpath.
 
@@ -75,7 +75,7 @@ def plan_joints(
     joined = all(part.family != REVOLUTION for part, _ in toolpath.parts)
     wanted = cell.branch if parameters.own_branch == OF_CELL else opw.branch_index(parameters.own_branch.split("-"))
     among = range(BRANCHES) if wanted is None else (wanted,)
-    places, kept = [(layer, index) for layer, index, _ in toolpath], of_job(toolpath, cell, rods)
+    places, kept = [(layer, index) for layer, index, _ in toolpath], of_job(toolpath, cell, cylinders)
 
     def served(some: Sequence[Bead]) -> float:
         return -_ranked(some, places, Task(cell, 0, parameters, joined, kept), among)[0][0] / min(len(some), SCREENED)
@@ -238,10 +238,10 @@ def _finished(
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with the points that straight motion asks for, turns counted on, and what is wrong with them."""
     longer = [run_on(task, go_back(task, path, toolpath.retreat), toolpath.overlap) for path in paths]
-    straight = [kept_straight(task, path, toolpath.chord_error) for path in longer]
-    paths, notes = turns.counted_on(task, [path for path, _ in straight])
-    paths, told = _phased(task.cell, paths, task.condition_at)
-    issues = [*notes, *told, *(issue for _, found in straight for issue in found)]
+    straight = [refined_to_chord_error(task, path, toolpath.chord_error) for path in longer]
+    paths, notes = turns.unwrapped(task, [path for path, _ in straight])
+    paths, more = _phased(task.cell, paths, task.condition_at)
+    issues = [*notes, *more, *(issue for _, found in straight for issue in found)]
     for path in paths:
         issues += findings(task, path)
     if task.kept is not None:
@@ -262,7 +262,7 @@ def _phased(
 
 def _slowed(cell: Cell, paths: Sequence[BeadPath], toolpath: Toolpath) -> tuple[list[BeadPath], list[Issue]]:
     """The paths slowed where axes cannot follow and that is usual, and what is wrong with the rest."""
-    done, told = list(paths), []
+    done, notes = list(paths), []
     for part, numbers in toolpath.parts:
         rows = [k for k, path in enumerate(paths) if path.layer in set(numbers.tolist())] if toolpath.features else (
             list(range(len(paths))))
@@ -273,10 +273,10 @@ def _slowed(cell: Cell, paths: Sequence[BeadPath], toolpath: Toolpath) -> tuple[
             some, found = corners_slowed(cell, some, part.layer_height, part.law)
         else:
             some, found = rings_slowed(cell, some, part.layer_height)
-        told += found
+        notes += found
         for k, path in zip(rows, some, strict=True):
             done[k] = path
-    return done, told + too_fast(cell, done)
+    return done, notes + too_fast(cell, done)
 
 
 def _compared(

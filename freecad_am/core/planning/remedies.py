@@ -16,20 +16,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..issues import ERROR, NOTE, AmError, Issue, has_errors
 from ..kinematics import cell as cells
 from ..kinematics import proposed_cell
 from ..kinematics.arrangement import of_setup
 from ..kinematics.inverse import opw
-from ..kinematics.links.beside import BesideLink, links_beside
+from ..kinematics.links.external_links import ExternalLink, external_links
 from ..kinematics.torch import Torch
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import externals
 from ..parameters.joints import OF_CELL, JointParameters
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
-from .arm.kept import Rods
+from .arm.kept import Cylinders
 from .beads.speeds import share_of_speed
 from .external import remedies as external_remedies
 from .external.level import levelled
@@ -43,7 +43,7 @@ POINTS = 12_000  # planned so in all
 CHANGES = 16  # that are tried, about
 LONGEST = 20_000  # points of a job that is planned anew as a whole
 WHOLE = 3  # times that it is
-LIFTS = (50.0, 100.0, 5.0)  # mm
+RETRACTS = (50.0, 100.0, 5.0)  # mm
 SHIFTS = ((0.0, -150.0), (0.0, 150.0), (-150.0, 0.0), (150.0, 0.0))  # of the deposition point, ahead of the robot and up, mm
 FULL_TURN = (-math.pi, math.pi)
 
@@ -51,7 +51,7 @@ FULL_TURN = (-math.pi, math.pi)
 class Fixed(NamedTuple):
     """A toolpath with fixed build directions where they were not: the keys that say so, and what makes it."""
 
-    told: str
+    remedy: str
     make: Callable[[], Toolpath]
 
 
@@ -67,27 +67,28 @@ class Tried:
     process: ProcessParameters
     joints: JointParameters
     fixed: Fixed | None = None
-    told: str = field(default="")
+    remedy: str = field(default="")
     own_speed: tuple[bool, ...] = ()
-    rods: Rods = ()
+    cylinders: Cylinders = ()
     obstacles: tuple[Body, ...] = ()
     torch: Torch | None = None
-    beside: tuple[BesideLink, ...] = ()
+    external_links: tuple[ExternalLink, ...] = ()
 
     def cell(self, toolpath: Toolpath) -> cells.Cell:
         """The cell of a toolpath of it."""
         found = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
-        beside = links_beside(found.external, known=self.beside)
-        return dataclasses.replace(found, obstacles=self.obstacles, torch=self.torch, beside=beside)
+        adjacent = external_links(found.external, known=self.external_links)
+        return dataclasses.replace(found, obstacles=self.obstacles, torch=self.torch, external_links=adjacent)
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
         """What is wrong with it; rapids only of a whole one."""
         cell = self.cell(toolpath)
         joints = dataclasses.replace(self.joints, compare=())
-        path = plan_joints(toolpath, cell, joints, progress, self.rods)
+        path = plan_joints(toolpath, cell, joints, progress, self.cylinders)
         found = (*toolpath.issues, *path.issues)
         if whole and not has_errors(found):
-            _, rapids = assemble(path, cell, self.process, toolpath.surroundings, joints, toolpath.layer_height, self.rods)
+            height = toolpath.layer_height
+            _, rapids = assemble(path, cell, self.process, toolpath.surroundings, joints, height, self.cylinders)
             found += rapids
         return found
 
@@ -108,23 +109,23 @@ def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Pro
     failed = _failed(issues)
     points, whole, tried = POINTS, WHOLE, []
     for change in _changes(job, path, issues):
-        progress(1.0, f"looking for what would make it feasible: {change.told}")
+        progress(1.0, f"looking for what would make it feasible: {change.remedy}")
         try:
             toolpath = change.toolpath()
             some = _some(toolpath, failed)
             points -= some.point_count
             if points < 0:
                 break
-            tried.append(change.told)
+            tried.append(change.remedy)
             if has_errors(change.issues(some, False, progress)):
                 continue
             if toolpath.point_count > LONGEST:
                 count = len(some.layers)
-                return [Issue(NOTE, REMEDY, f"with {change.told} the {count} of the layers in question that were planned "
+                return [Issue(NOTE, REMEDY, f"with {change.remedy} the {count} of the layers in question that were planned "
                               "anew are feasible; the whole job was not tried")]
             whole -= 1
             if not has_errors(change.issues(toolpath, True, progress)):
-                return [Issue(NOTE, REMEDY, f"with {change.told} this job is feasible; it was planned so")]
+                return [Issue(NOTE, REMEDY, f"with {change.remedy} this job is feasible; it was planned so")]
             if not whole:
                 break
         except AmError:  # what cannot be asked for is not a remedy
@@ -155,23 +156,23 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
     if "SPEED" in codes and job.process.bead_model == "none":
         yield from _slower(job, path)
     if all(code.startswith("RAPID") for code in codes):
-        yield from _lifts(job)
+        yield from _retracts(job)
     if arrangement.redundant and codes != {external_remedies.NOT_LEVEL}:  # which no turn about the tool mends
         yield from _branches(job)
         yield from _rotations(job)
     if job.fixed is not None:
-        fixed = dataclasses.replace(job, toolpath=job.fixed.make, told=job.fixed.told)
+        fixed = dataclasses.replace(job, toolpath=job.fixed.make, remedy=job.fixed.remedy)
         yield fixed
         if arrangement.redundant and job.settings.branch != "auto":
-            yield _with_cell(fixed, f"{fixed.told} and `cell.branch: auto`", branch="auto")
+            yield _with_cell(fixed, f"{fixed.remedy} and `cell.branch: auto`", branch="auto")
     if not left_out and arrangement.redundant:
         yield from _points(job)
     if arrangement.redundant:
-        yield from _beside_robot(job, codes)
+        yield from _external_axes(job, codes)
 
 
-def _with_cell(job: Tried, told: str, **values: object) -> Tried:
-    return dataclasses.replace(job, settings=dataclasses.replace(job.settings, **values), told=told)  # type: ignore[arg-type]
+def _with_cell(job: Tried, remedy: str, **values: object) -> Tried:
+    return dataclasses.replace(job, settings=dataclasses.replace(job.settings, **values), remedy=remedy)  # type: ignore[arg-type]
 
 
 def _slower(job: Tried, path: JointPath) -> Iterator[Tried]:
@@ -192,16 +193,16 @@ def _slower(job: Tried, path: JointPath) -> Iterator[Tried]:
     slower = dataclasses.replace(toolpath, layers=layers)
     process = dataclasses.replace(job.process, travel_speed=speed)
     yield dataclasses.replace(
-        job, toolpath=lambda: slower, process=process, told=f"`process.travel_speed: {speed:g} mm/s`"
+        job, toolpath=lambda: slower, process=process, remedy=f"`process.travel_speed: {speed:g} mm/s`"
     )
 
 
-def _lifts(job: Tried) -> Iterator[Tried]:
-    for lift in LIFTS:
-        between = dataclasses.replace(job.process.between_layers, lift=lift)
+def _retracts(job: Tried) -> Iterator[Tried]:
+    for retract in RETRACTS:
+        between = dataclasses.replace(job.process.between_layers, lift=retract)
         if between != job.process.between_layers:
             process = dataclasses.replace(job.process, between_layers=between)
-            yield dataclasses.replace(job, process=process, told=f"`process.between_layers.lift: {lift:g} mm`")
+            yield dataclasses.replace(job, process=process, remedy=f"`process.between_layers.lift: {retract:g} mm`")
 
 
 def _branches(job: Tried) -> Iterator[Tried]:
@@ -222,10 +223,10 @@ def _rotations(job: Tried) -> Iterator[Tried]:
     low, high = job.joints.rotation_range
     if high - low < FULL_TURN[1] - FULL_TURN[0] - 1e-9:
         free = dataclasses.replace(job.joints, rotation_range=FULL_TURN)
-        yield dataclasses.replace(job, joints=free, told="`joints.rotation_range: [-180 deg, 180 deg]`")
+        yield dataclasses.replace(job, joints=free, remedy="`joints.rotation_range: [-180 deg, 180 deg]`")
     if job.joints.method == "constant":
         layers = dataclasses.replace(job.joints, method="layer-by-layer")
-        yield dataclasses.replace(job, joints=layers, told="`joints.method: layer-by-layer`")
+        yield dataclasses.replace(job, joints=layers, remedy="`joints.method: layer-by-layer`")
 
 
 def _points(job: Tried) -> Iterator[Tried]:
@@ -238,21 +239,21 @@ def _points(job: Tried) -> Iterator[Tried]:
         words = best.branch if isinstance(best.branch, str) else f"[{', '.join(best.branch)}]"
         yield _with_cell(job, f"{_shown(best.deposition_point)} and `cell.branch: {words}`",
                          deposition_point=best.deposition_point, branch=best.branch)
-    for point in _before(job) if not of_setup(job.settings.setup).carries_part else _beside(job.settings.deposition_point):
+    for point in _before(job) if not of_setup(job.settings.setup).carries_part else _adjacent(job.settings.deposition_point):
         yield _with_cell(job, f"{_shown(point)} and `cell.branch: auto`", deposition_point=point, branch="auto")
 
 
-def _beside_robot(job: Tried, codes: set[str]) -> Iterator[Tried]:
+def _external_axes(job: Tried, codes: set[str]) -> Iterator[Tried]:
     """A positioner elsewhere, or axes beside a robot that has none."""
-    for told, settings in external_remedies.moved(job.settings, job.folders):
-        yield dataclasses.replace(job, settings=settings, told=told)
+    for remedy, settings in external_remedies.moved(job.settings, job.folders):
+        yield dataclasses.replace(job, settings=settings, remedy=remedy)
     toolpath = job.toolpath()
     mass = external_remedies.weight(toolpath, job.process)
-    for told, settings in external_remedies.added(job.settings, job.folders, toolpath, codes, mass):
-        yield dataclasses.replace(job, settings=settings, told=told)
+    for remedy, settings in external_remedies.added(job.settings, job.folders, toolpath, codes, mass):
+        yield dataclasses.replace(job, settings=settings, remedy=remedy)
 
 
-def _beside(point: Pose) -> list[Pose]:
+def _adjacent(point: Pose) -> list[Pose]:
     x, y, *rest = point
     ahead = math.hypot(x, y) or 1.0
     return [

@@ -40,14 +40,14 @@ class Sampled:
         """Entries of `joints.given` for the whole, told of the beads as they are numbered here; without those of beads that
         are left out."""
         here = {place: (layer, bead) for place, (layer, bead, _) in zip(self.places, self.toolpath)}
-        told = []
+        issues = []
         for entry, place in zip(given, given_polynomials(tuple(given))):
             if place is None:
-                told.append(entry)
+                issues.append(entry)
             elif place in here:
                 layer, bead = here[place]
-                told.append(f"{layer}/{bead}:{entry.partition(':')[2]}")
-        return tuple(told)
+                issues.append(f"{layer}/{bead}:{entry.partition(':')[2]}")
+        return tuple(issues)
 
 
 def sampled(toolpath: Toolpath, most: int, together: int = 1) -> Sampled:

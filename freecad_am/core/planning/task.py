@@ -26,7 +26,7 @@ PIECE = 4096  # points whose poses and Jacobians are held together
 
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
-ENDLESS_STROKE = 1e6 * TURN
+CONTINUOUS_STROKE = 1e6 * TURN
 CONDITION_FLOOR = 0.02
 CONDITION_SHARE = 0.25
 UNREACHABLE = -np.inf
@@ -106,14 +106,14 @@ class Task:
         return limit_rows(self.cell.limits)
 
     @cached_property
-    def endless(self) -> NDArray[np.bool_]:
+    def continuous(self) -> NDArray[np.bool_]:
         """(axes,) bool, axes without limits."""
-        return self.cell.limits.endless
+        return self.cell.limits.continuous
 
     @cached_property
     def unturned(self) -> NDArray[np.bool_]:
         """(axes,) bool, axes whose whole turns count for nothing: those without limits, and those that slide."""
-        return np.asarray(self.endless | self.cell.machine.chain.sliding, dtype=np.bool_)
+        return np.asarray(self.continuous | self.cell.machine.chain.sliding, dtype=np.bool_)
 
     def rows_of_axis(self, axis: int) -> tuple[float, float]:
         """Lower and upper limit of one axis with the reserve taken off, rad."""
@@ -124,12 +124,12 @@ class Task:
         """(axes,) the middle of each axis's range, 0 where it has no end; rad."""
         limits = self.cell.limits
         with np.errstate(invalid="ignore"):
-            return np.where(self.endless, 0.0, 0.5 * (limits.lower + limits.upper))
+            return np.where(self.continuous, 0.0, 0.5 * (limits.lower + limits.upper))
 
     @cached_property
     def weights(self) -> Array:
         """(axes,) weights of eq. 17, one over the stroke in rad; the characteristic length is one rad of axes that slide."""
-        stroke = np.where(self.endless, ENDLESS_STROKE, self.cell.limits.upper - self.cell.limits.lower)
+        stroke = np.where(self.continuous, CONTINUOUS_STROKE, self.cell.limits.upper - self.cell.limits.lower)
         sliding = self.cell.machine.chain.sliding
         return np.asarray(np.where(sliding, 1.0 / (stroke * self.parameters.characteristic_length), 1.0 / stroke))
 
@@ -162,14 +162,14 @@ class Task:
             joints = following.along_beads(self.arm, rows, self.branch, points).reshape(*phi.shape, -1)
         else:
             joints = self.arm.inverse_branch(flange.reshape(-1, 4, 4), self.branch).reshape(*phi.shape, -1)
-        return joints if points.external is None else beside(joints, points.external)
+        return joints if points.external is None else with_external(joints, points.external)
 
     def _raw_joints_of_all(self, points: Points, phi: Array) -> Array:
         """The same of one phi (T,) for all points: their poses together would take much memory."""
         joints = np.empty((self.cell.machine.chain.axes, len(points))).T
         for some in in_pieces(len(points)):
             own = self.arm.inverse_branch(points.frames.of(some).at(phi[some]), self.branch)
-            joints[some] = own if points.external is None else beside(own, points.external[some])
+            joints[some] = own if points.external is None else with_external(own, points.external[some])
         return joints
 
     def inverse(self, flange: Array, near: Array | None = None) -> Array:
@@ -183,7 +183,7 @@ class Task:
         else:
             joints = self.arm.inverse_branch(flange, self.branch)
         external = None if near is None else self.cell.external_of(near)
-        return joints if external is None else beside(joints, external)
+        return joints if external is None else with_external(joints, external)
 
     def _own(self, joints: Array) -> Array:
         """(..., axes of the robot) joints without those of external axes."""
@@ -248,12 +248,12 @@ class Task:
         at_zero = self.condition(points, phi, self.raw_joints(points, phi))
         return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
 
-    def spin_rates(self, flange: Array, joints: Array) -> tuple[Array, Array]:
+    def rotation_rates(self, flange: Array, joints: Array) -> tuple[Array, Array]:
         """d q / d phi (N, axes), none of external axes, and the robot's Jacobian (N, 6, 6) at N flange poses (N, 4, 4) that
         are reached."""
         matrix = self.jacobian_at(flange, joints)
         twist = np.zeros((len(joints), 6, 1))
-        twist[:, 3:, 0] = self.cell.spin_axis(flange)
+        twist[:, 3:, 0] = self.cell.rotation_axis(flange)
         try:
             rates = np.linalg.solve(matrix, twist)[:, :, 0]
         except np.linalg.LinAlgError:
@@ -268,7 +268,7 @@ def in_pieces(count: int) -> list[slice]:
     return [slice(start, start + PIECE) for start in range(0, count, PIECE)]
 
 
-def beside(joints: Array, external: Array) -> Array:
+def with_external(joints: Array, external: Array) -> Array:
     """(..., N, axes) joints (..., N, 6) of the robot with the values of external axes (N, k) beside them; NaN where the
     robot does not reach, so that nothing is known of any axis."""
     values = np.broadcast_to(external, (*joints.shape[:-1], external.shape[-1]))

@@ -58,7 +58,7 @@ def promises(evidence: Evidence) -> tuple[Promise, ...]:
     return (
         deposit.lies_on_part(evidence.toolpath, issues),
         deposit.whole(evidence.balance, issues),
-        deposit.nothing_beside(evidence.balance, issues),
+        deposit.nothing_outside(evidence.balance, issues),
         deposit.once(evidence.balance, issues),
         deposit.carried(evidence.toolpath, issues),
         deposit.layers(evidence.toolpath, issues, evidence.distances),
@@ -79,6 +79,6 @@ def _of_motion(evidence: Evidence) -> list[Promise]:
         *joints.promises(motion, cell, evidence.condition, evidence.threshold),
         clearance.rapids(evidence.issues, rapids),
         clearance.arm(motion, cell, evidence.arm, evidence.true_shapes),
-        *clearance.beside(motion, cell, evidence.arm, evidence.true_shapes, evidence.issues),
+        *clearance.external_links(motion, cell, evidence.arm, evidence.true_shapes, evidence.issues),
         *payload.carried(motion, cell, evidence.toolpath, evidence.process, evidence.issues),
     ]

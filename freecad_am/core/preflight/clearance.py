@@ -71,15 +71,16 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
     return Promise(what, how, not len(rows), float(len(rows)), "points", 0.0, place)
 
 
-def beside(
+def external_links(
     motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: bool, issues: Sequence[Issue]
 ) -> list[Promise]:
     """Of positioner and track; nothing of a cell without external axes. Links of the robot that are drawn from the
     kinematics alone can neither keep the promise nor break it."""
     if cell.external is None:
         return []
-    what, names = "Positioner and track stay clear of nozzle, torch, robot and obstacles", [one.name for one in cell.beside]
-    known = {one.mechanism for one in cell.beside}
+    what = "Positioner and track stay clear of nozzle, torch, robot and obstacles"
+    names = [one.name for one in cell.external_links]
+    known = {one.mechanism for one in cell.external_links}
     untold = [one.machine.title for k, one in enumerate(cell.external.mechanisms) if k not in known]
     missing = f"no file tells what {', '.join(untold)} is made of" if untold else ""
     if touches is None or not names:
@@ -92,8 +93,8 @@ def beside(
     if len(rows):
         place = row_place(motion, int(rows[0]))
         met = f"{touches.names[touches.what[rows[0]]]} with {touches.links[touches.link[rows[0]]]}"
-    told = [one for one in of_codes(issues, (*DEPOSITING, *RAPIDS)) if any(name in one.message for name in names)]
-    broken = bool(told) or bool(len(rows) and (true_shapes or touches.link[rows[0]] > own))
+    text = [one for one in of_codes(issues, (*DEPOSITING, *RAPIDS)) if any(name in one.message for name in names)]
+    broken = bool(text) or bool(len(rows) and (true_shapes or touches.link[rows[0]] > own))
     whole = true_shapes and not untold
     step = number(math.degrees(touches.step))
     how = (
@@ -107,4 +108,4 @@ def beside(
             f"motion, the nozzle every mm; they touch {met}"
         )
     ok = False if broken else True if whole else None
-    return [Promise(what, how, ok, float(len(rows)), "points", 0.0 if whole else None, issue_place(told) or place)]
+    return [Promise(what, how, ok, float(len(rows)), "points", 0.0 if whole else None, issue_place(text) or place)]

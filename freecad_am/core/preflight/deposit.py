@@ -67,16 +67,16 @@ def whole(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     return Promise(what, how, not found, worst, "cm3")
 
 
-def nothing_beside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
+def nothing_outside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     """Of what the beads deposit that is not the part."""
     what = "Nothing is deposited beside the part"
-    if balance is None or balance.beside is None:
+    if balance is None or balance.outside is None:
         return Promise(what, "not checked: the part encloses no volume", None)
-    found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.BESIDE,), WARNING)
+    found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.OUTSIDE,), WARNING)
     how = "volume of the beads, as wide as they count, that is wider than the part is thick"
     if balance.filled:
         how = "volume of the beads, as wide as they are laid, outside of their layers, and of layers outside of the part"
-    return Promise(what, how, not found, balance.beside / MM3, "cm3")
+    return Promise(what, how, not found, balance.outside / MM3, "cm3")
 
 
 def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:

@@ -43,9 +43,9 @@ def _reach(motion: Motion, cell: Cell) -> Promise:
     if len(lost):
         place = row_place(motion, int(lost[0]))
         return Promise(what, "closed-form inverse", False, float(len(lost)), "points", 0.0, place)
-    laid = np.flatnonzero(motion.deposit)
-    away = np.linalg.norm(cell.tip_at(motion.joints[laid]) - motion.position[laid], axis=1)
-    row = int(laid[int(away.argmax())])
+    deposited = np.flatnonzero(motion.deposit)
+    away = np.linalg.norm(cell.tip_at(motion.joints[deposited]) - motion.position[deposited], axis=1)
+    row = int(deposited[int(away.argmax())])
     how = "planned joints of the deposit driven through the joint-frame chain, which planning does not use"
     worst = float(away.max())
     return Promise(what, how, worst <= COMPUTED_MM, worst, "mm", COMPUTED_MM, row_place(motion, row))

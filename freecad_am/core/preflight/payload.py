@@ -23,13 +23,13 @@ def carried(
     """Of robot or positioner; nothing where the part stands still, or lies on a machine with rotary axes."""
     if not cell.carriers or not cell.arrangement.redundant:
         return []
-    mass, told = finished(motion, cell, toolpath, process), of_codes(issues, (CODE,))
+    mass, text = finished(motion, cell, toolpath, process), of_codes(issues, (CODE,))
     least = min(cell.carriers, key=lambda one: one.payload.kg)
     weighed = f"deposit and what it grows on, where that is closed, at {number(process.density)} g/cm3 (process.density)"
     untold = [one.title for one in cell.carriers if math.isinf(one.payload.kg)]
-    if untold and not told:
+    if untold and not text:
         return [Promise(WHAT, f"not checked: the file of {untold[0]} tells no payload; {weighed}", None, mass, "kg")]
     how = f"{weighed}, against what {least.title} carries"
     if not math.isinf(least.payload.from_axis):
         how = f"{weighed}, against what {least.title} carries, and its moment about the last axis, as it grows"
-    return [Promise(WHAT, how, not told, mass, "kg", least.payload.kg, issue_place(told))]
+    return [Promise(WHAT, how, not text, mass, "kg", least.payload.kg, issue_place(text))]

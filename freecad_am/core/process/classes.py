@@ -29,14 +29,17 @@ def of_wall(layer: int, closing: bool = False) -> str:
 
 def leaning(build: BuildDirectionParameters, process: ProcessParameters, name: str) -> BuildDirectionParameters:
     """The build direction with the lead and tilt of a class."""
-    own: dict[str, Any] = {key: value for key, value in process.of_class(name).told().items() if key in LEANS}
+    own: dict[str, Any] = {key: value for key, value in process.of_class(name).own_values().items() if key in LEANS}
     return replace(build, **own) if own else build
 
 
 def refuse_speeds(process: ProcessParameters) -> None:
     """InputError NOT_FOR_FAMILY where classes have travel speeds and a bead model sets these."""
     own = ("travel_speed", "start_travel_speed", "end_travel_speed")
-    named = [f"process.classes.{name}" for name in CLASSES if any(process.of_class(name).told().get(key) for key in own)]
+    named = [
+        f"process.classes.{name}" for name in CLASSES
+        if any(process.of_class(name).own_values().get(key) for key in own)
+    ]
     named += [f"process.{end}" for end in (START, END) if getattr(process, end).travel_speed is not None]
     if named and process.bead_model != "none":
         raise InputError(

@@ -18,7 +18,7 @@ from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array
 
 
-class Laid(NamedTuple):
+class RankedBead(NamedTuple):
     """A bead and where it belongs: group, solid (numbered around the axis), layer, ring counted from outside."""
 
     group: int
@@ -35,32 +35,32 @@ class Course(NamedTuple):
     solids: tuple[tuple[tuple[int, int], ...], ...]
 
 
-def ordered(beads: Sequence[Laid], order: str) -> Course:
+def ordered(beads: Sequence[RankedBead], order: str) -> Course:
     """Beads as layers: group by group, and in each around the axis layer by layer, or solid by solid ('feature')."""
-    def place(laid: Laid) -> tuple[int, ...]:
+    def place(ranked: RankedBead) -> tuple[int, ...]:
         if order == "feature":
-            return laid.group, laid.solid, laid.layer, -laid.ring
-        return laid.group, laid.layer, -laid.ring, laid.solid
+            return ranked.group, ranked.solid, ranked.layer, -ranked.ring
+        return ranked.group, ranked.layer, -ranked.ring, ranked.solid
 
-    def layer_of(laid: Laid) -> tuple[int, ...]:
-        return (laid.group, laid.solid if order == "feature" else 0, laid.layer)
+    def layer_of(ranked: RankedBead) -> tuple[int, ...]:
+        return (ranked.group, ranked.solid if order == "feature" else 0, ranked.layer)
 
-    layers: list[list[Laid]] = []
+    layers: list[list[RankedBead]] = []
     reached: dict[tuple[int, int], int] = {}  # the layer each solid has come to
-    for laid in sorted(beads, key=place):
-        solid = laid.group, laid.solid
-        if reached.get(solid, laid.layer) != laid.layer:
-            laid = laid._replace(bead=dataclasses.replace(laid.bead, returns=True))
-        reached[solid] = laid.layer
-        if not layers or layer_of(layers[-1][0]) != layer_of(laid):
+    for ranked in sorted(beads, key=place):
+        solid = ranked.group, ranked.solid
+        if reached.get(solid, ranked.layer) != ranked.layer:
+            ranked = ranked._replace(bead=dataclasses.replace(ranked.bead, returns=True))
+        reached[solid] = ranked.layer
+        if not layers or layer_of(layers[-1][0]) != layer_of(ranked):
             layers.append([])
-        layers[-1].append(laid)
+        layers[-1].append(ranked)
     made, before = [], None
     for layer in layers:
         one = layer_of(layer[0])[:2]
-        made.append(Layer(tuple(laid.bead for laid in layer), first=one != before))
+        made.append(Layer(tuple(ranked.bead for ranked in layer), first=one != before))
         before = one
-    return Course(tuple(made), tuple(tuple((laid.group, laid.solid) for laid in layer) for layer in layers))
+    return Course(tuple(made), tuple(tuple((ranked.group, ranked.solid) for ranked in layer) for layer in layers))
 
 
 def waited(course: Course, wait: float, rapid_speed: float, least: float = 0.0) -> tuple[Layer, ...]:
@@ -99,8 +99,8 @@ def no_shorter(toolpath: Toolpath, least: float, rapid_speed: float) -> Toolpath
     solids = tuple(((0, 0),) * len(layer.beads) for layer in toolpath.layers)
     layers = waited(Course(toolpath.layers, solids), 0.0, rapid_speed, least)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
-    told = [Issue(
+    text = [Issue(
         NOTE, "WAITS", f"the machine waits before {len(waits)} of {len(layers)} layers, up to {max(waits):.4g} s and "
         f"{sum(waits):.5g} s in all, so that no layer takes less than {least:g} s",
     )] if waits else []
-    return dataclasses.replace(toolpath, layers=layers, issues=(*toolpath.issues, *told))
+    return dataclasses.replace(toolpath, layers=layers, issues=(*toolpath.issues, *text))

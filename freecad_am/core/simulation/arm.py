@@ -16,7 +16,7 @@ from ..types import Array, Index, Mask
 
 # joints are looked at whenever the fastest of them has turned by so many rad, or moved by so many mm, at so many places at
 # most: of longer motions at fewer places of each turn
-STEP, SLIDE, MOST = float(np.radians(1.0)), 10.0, 40_000
+STEP, SLIDE, MAX_LOOKS = float(np.radians(1.0)), 10.0, 40_000
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class ArmTouches:
     links: tuple[str, ...]
 
 
-def laid(motion: Motion, width: float, height: float) -> Obstacles | None:
+def deposit_obstacles(motion: Motion, width: float, height: float) -> Obstacles | None:
     """The deposit of a motion as arms can touch it; width of beads where the motion does not tell it, and height, mm."""
     some = motion.deposit
     if not some.any():
@@ -79,7 +79,7 @@ def places(joints: Array, most: int | None = None, sliding: Mask | None = None) 
     moved = np.where(goes_on, far.max(axis=1, initial=0.0), 0.0)
     way = np.cumsum(moved)
     whole = float(way[-1]) if n else 0.0
-    step = max(STEP, whole / (MOST if most is None else most))
+    step = max(STEP, whole / (MAX_LOOKS if most is None else most))
     at = np.arange(step, whole, step)
     inner = np.searchsorted(way, at, side="left")  # rows that move, so that both of their ends are known
     share = (at - way[inner - 1]) / moved[inner]

@@ -21,8 +21,8 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     there it is `process.bead_width`.
     """
     length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[: len(motion)]
-    counted = process.bead_width if toolpath.bead_width is None else toolpath.bead_width
-    width = np.where(np.isfinite(motion.width), motion.width, counted)
+    nominal = process.bead_width if toolpath.bead_width is None else toolpath.bead_width
+    width = np.where(np.isfinite(motion.width), motion.width, nominal)
     # the width of a segment is the mean of those at its ends
     mean_width = 0.5 * (width + np.concatenate([width[:1], width[:-1]]))
     height: Array | float = toolpath.layer_height

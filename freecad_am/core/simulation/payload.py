@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry import frames
-from ..geometry.surroundings import enclosed
+from ..geometry.obstacles import enclosed
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
 from ..kinematics.machines.machine import Machine

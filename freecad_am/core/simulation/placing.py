@@ -18,7 +18,7 @@ from ..types import Array
 from .table_links import standing_link
 
 # rotations about the nozzle that are looked at for a robot at rest
-_SPINS = 24
+_ROTATIONS = 24
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Placing:
     part: Array
     nozzle: Array
     platform: Array
-    beside: Array
+    external_links: Array
 
 
 def placing(cell: Cell, joints: ArrayLike) -> Placing:
@@ -49,7 +49,7 @@ def placing(cell: Cell, joints: ArrayLike) -> Placing:
     to_world = frames.inverse(stands)
     return Placing(
         links=to_world @ links, part=to_world @ platform @ frames.inverse(cell.mount), nozzle=to_world @ nozzle,
-        platform=to_world @ platform, beside=to_world @ cell.beside_frames(values[None])[0],
+        platform=to_world @ platform, external_links=to_world @ cell.external_link_frames(values[None])[0],
     )
 
 
@@ -69,16 +69,17 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
         return zero
     arm = cell.robot.arm
     assert arm is not None  # a cell has no other robots
-    spins = np.linspace(0.0, 2.0 * np.pi, _SPINS, endpoint=False)
-    beside = np.zeros((_SPINS, chain.axes))
-    flange = cell.flange_poses(np.tile(place, (_SPINS, 1)), np.tile(cell.mount[:3, 2], (_SPINS, 1)), spins, beside)
+    rotations = np.linspace(0.0, 2.0 * np.pi, _ROTATIONS, endpoint=False)
+    external = np.zeros((_ROTATIONS, chain.axes))
+    places, axes = np.tile(place, (_ROTATIONS, 1)), np.tile(cell.mount[:3, 2], (_ROTATIONS, 1))
+    flange = cell.flange_poses(places, axes, rotations, external)
     branches = range(8) if cell.branch is None else (cell.branch,)
     found = np.concatenate([arm.inverse_branch(flange, branch) for branch in branches])
     found = np.arctan2(np.sin(found), np.cos(found))
     found = np.pad(found, ((0, 0), (0, chain.axes - found.shape[1])))
-    room = np.nan_to_num(cell.limits.smallest(found).margin, nan=-np.inf)
-    best = int(np.argmax(room))
-    return np.asarray(found[best]) if np.isfinite(room[best]) else np.zeros(chain.axes)
+    margin = np.nan_to_num(cell.limits.smallest(found).margin, nan=-np.inf)
+    best = int(np.argmax(margin))
+    return np.asarray(found[best]) if np.isfinite(margin[best]) else np.zeros(chain.axes)
 
 
 def _seen(cell: Cell, joints: Array, point: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..collision.bead_ends import Bead, BeadEnds, Beads, Size
 from ..collision.scene import scene
-from ..geometry.surroundings import Body, disc
+from ..geometry.obstacles import Body, disc
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..types import Index
@@ -65,13 +65,13 @@ def looked_at(
     platform = [disc(cell.platform_diameter, cell.mount)] if cell.platform_diameter > 0.0 else []
     reach = float(np.hypot(size.length, size.radius + size.slope * size.length))
     around = scene([*bodies, *platform, *cell.in_part()], np.concatenate(corners), reach, deposit) if len(rows) else None
-    laid = np.cumsum(motion.deposit)[rows]
+    deposited = np.cumsum(motion.deposit)[rows]
     met = np.zeros(len(rows), dtype=bool)
     for some in _pieces(len(move)):
         assert around is not None
         own = move[some]
         tip, axis = cell.tip_in_part(chain.forward(start[own] + share[some, None] * turned[own]))
-        hit = around.touched(ends.nozzle(tip, laid[own]), tip, axis, laid[own])
+        hit = around.touched(ends.nozzle(tip, deposited[own]), tip, axis, deposited[own])
         met[own[hit]] = True
     touched, place = rows[met], None
     if len(touched):

@@ -17,11 +17,11 @@ from ..kinematics.links.contact import LINKS_MORE
 from ..kinematics.links.rounds import NONE
 from ..motion import Motion
 from ..types import Array
+from .achievable_feed import AchievableFeed
 from .arm import ArmTouches
-from .pace import Pace
 
 # nearer to a limit than this many degrees or mm counts as near
-NEAR = 0.5
+CLOSE = 0.5
 # programs keep 0.05 deg; what rounding leaves is not a violation, degrees or mm
 _ROUNDING = 1e-6
 
@@ -92,7 +92,7 @@ def bad_links(
     """
     axes = len(cell.machine.axes)
     bad = np.zeros(axes + 1, dtype=bool)
-    close = np.asarray(margins, float) < NEAR
+    close = np.asarray(margins, float) < CLOSE
     bad[1:] = close[:axes] | (np.asarray(ratios, float) > 1.0 + _ROUNDING)
     for coefficients in cell.limits.coefficients[close[axes:]]:
         bad[1:] |= coefficients != 0.0
@@ -100,7 +100,7 @@ def bad_links(
     if touching != NONE:  # what is carried, part or nozzle, counts as what carries it
         own = cell.robot.chain.axes
         if touching >= own + LINKS_MORE:
-            bad[own + 1 + cell.beside[touching - own - LINKS_MORE].axis] = True
+            bad[own + 1 + cell.external_links[touching - own - LINKS_MORE].axis] = True
         else:
             on_positioner = touching == own + 1 and not cell.torch_stands
             bad[touching if touching <= own else -1 if on_positioner else own] = True
@@ -108,7 +108,7 @@ def bad_links(
 
 
 def watch(
-    motion: Motion, cell: Cell, kept: Pace, condition: Array, threshold: Array, issues: Sequence[Issue] = (),
+    motion: Motion, cell: Cell, kept: AchievableFeed, condition: Array, threshold: Array, issues: Sequence[Issue] = (),
     arm: ArmTouches | None = None,
 ) -> Watch:
     """What is to be seen in a motion; condition, threshold: (n,), NaN where not known. Notes are not findings. arm: what the
@@ -119,7 +119,7 @@ def watch(
     touching = np.full(len(motion), NONE, dtype=np.int64) if arm is None else arm.link
     seen = Watch(margin, limit, condition, threshold, (), touching, arm is not None)
     with np.errstate(invalid="ignore"):
-        near = (margin < NEAR) & ~seen.past
+        near = (margin < CLOSE) & ~seen.past
     labels, axes = cell.limits.labels, cell.machine.axes
     found = [Finding(row, UNREACHABLE) for row, _ in _runs(~motion.reachable, np.zeros(len(motion)))]
     for kind, mask in ((LIMIT, seen.past), (NEAR_LIMIT, near)):  # where it is worst, as errors of the plan say

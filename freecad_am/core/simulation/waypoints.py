@@ -29,13 +29,13 @@ def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()
     axis slides, 'deg' where it turns and where left out. Where the wire follows the travel speed, its own comes
     next. The last column is the class of the bead, empty where it is not known."""
     units = units or ("deg",) * len(axes)
-    last = [WIRE, CLASS] if told_of_wire(motion) else [CLASS]
+    last = [WIRE, CLASS] if has_wire(motion) else [CLASS]
     yield ",".join((HEADER, *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)), *last)) + "\n"
     for start in range(0, len(motion), _ROWS_AT_ONCE):
         yield _rows(motion, units, slice(start, start + _ROWS_AT_ONCE))
 
 
-def told_of_wire(motion: Motion) -> bool:
+def has_wire(motion: Motion) -> bool:
     """Whether the wire follows the travel speed anywhere."""
     return bool(np.isfinite(motion.wire).any())
 
@@ -44,15 +44,15 @@ def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
     """Rows as text, digit by digit for all at once: three times as fast as a formatting per row of Python's floats."""
     slides = np.array([unit == "mm" for unit in units])
     angles = np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows]))
-    told = [
+    cells = [
         *((column[rows], 0) for column in (motion.layer, motion.bead, motion.point)), None,
         *((column, _LENGTHS) for column in motion.position[rows].T),
         *((column, _DIRECTIONS) for vectors in (motion.build, motion.tool) for column in vectors[rows].T),
         *((column[rows], _LENGTHS) for column in (motion.speed, motion.width)), *((column, _ANGLES) for column in angles.T),
     ]
-    if told_of_wire(motion):
-        told.append((motion.wire[rows], _LENGTHS))
-    texts = [_KINDS[motion.deposit[rows].astype(np.intp)].T if entry is None else _digits(*entry) for entry in told]
+    if has_wire(motion):
+        cells.append((motion.wire[rows], _LENGTHS))
+    texts = [_KINDS[motion.deposit[rows].astype(np.intp)].T if entry is None else _digits(*entry) for entry in cells]
     texts.append(_CLASSES[motion.bead_class[rows]].T)  # of none the last one
     count = len(motion.deposit[rows])
     parts = [part for text in texts for part in (text, np.full((1, count), ord(","), dtype=np.uint8))]

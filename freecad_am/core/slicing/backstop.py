@@ -7,7 +7,7 @@ from ..issues import InputError
 from ..parameters.strategy import MOST_LAYERS
 
 
-def refuse_endless(layers: int, height: float, label: str) -> None:
+def refuse_too_many(layers: int, height: float, label: str) -> None:
     """InputError LAYER_HEIGHT once there are as many layers as may be."""
     if layers >= MOST_LAYERS:
         raise InputError(

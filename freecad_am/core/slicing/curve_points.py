@@ -83,9 +83,9 @@ def _piece(curve: SpaceCurve, nodes: Array, low: float, high: float, chord_error
     which that is taken."""
     w = np.r_[low, nodes[np.searchsorted(nodes, low, side="right") : np.searchsorted(nodes, high)], high]
     _, slope, bend = curve.at(0.5 * (w[1:] + w[:-1]))
-    pace = np.linalg.norm(slope, axis=1)
-    curvature = np.linalg.norm(np.cross(slope, bend), axis=1) / pace**3
-    length = pace * np.diff(w)
+    rate = np.linalg.norm(slope, axis=1)
+    curvature = np.linalg.norm(np.cross(slope, bend), axis=1) / rate**3
+    length = rate * np.diff(w)
     # where it hardly bends a share of the length still counts, so that segments do not get much longer than others
     wanted = length * np.maximum(np.sqrt(curvature / (8.0 * chord_error)), FEWEST / curve.length)
     total = np.r_[0.0, np.cumsum(wanted)]

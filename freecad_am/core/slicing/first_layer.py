@@ -55,8 +55,8 @@ def _crossing(
         points, along, _ = surface.derivatives(at, v)
         value, gradient = substrate.value(points)
         low, high = np.where(value > 0.0, low, at), np.where(value > 0.0, at, high)
-        pace = dot(gradient, along)
-        new = at - value / np.where(np.abs(pace) > 1e-12, pace, np.inf)
+        rate = dot(gradient, along)
+        new = at - value / np.where(np.abs(rate) > 1e-12, rate, np.inf)
         new = np.where((new < low) | (new > high), 0.5 * (low + high), new)
         still = np.abs(new - at).max() < 1e-15 * max(1.0, np.abs(new).max())
         at = new

@@ -17,18 +17,18 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.model.bead_model import BeadModel
-from ..process.order import Laid, ordered, waited
+from ..process.order import RankedBead, ordered, waited
 from ..toolpath import Toolpath
 from ..types import Array
 from .progress import Progress, silent
-from .solids.beads import Rolled, classed, reversed_curve
+from .solids.beads import Wrapped, classed, reversed_curve
 from .solids.filling import Filled, Pictures, bead_width, spaced
 from .solids.islands import island_by_island
 from .solids.lean_notes import lean_notes
 from .solids.notes import notes
 from .solids.volumes import of_layers, twice
 
-TOLD = 0.02  # distortion that is told
+REPORTED_DISTORTION = 0.02  # distortion that is told
 PART = Base("the part", Plane(), np.eye(4))  # charts are in its coordinates
 
 
@@ -42,11 +42,11 @@ def plan(
     InfeasibleError THIN_REGION.
     """
     strategy = spaced(strategy, process)
-    counted = bead_width(strategy, process, model)
-    pictures = Pictures(strategy, process, counted)
+    nominal = bead_width(strategy, process, model)
+    pictures = Pictures(strategy, process, nominal)
     found = [(sheet, piece) for sheet in given.sheets for piece in pieces(sheet, strategy)]
-    laid: list[Laid] = []
-    made: list[Rolled] = []
+    ranked: list[RankedBead] = []
+    made: list[Wrapped] = []
     mended: list[Issue] = []
     covers: list[Cover] = []
     stretch = 0.0
@@ -62,28 +62,28 @@ def plan(
             here = [_bead(curve, layer, strategy, build, process, model) for curve in beads.curves]
             order = island_by_island([one.bead for one in here], beads.islands, at)
             at = here[order[-1]].bead.points[-1] if order else at
-            laid += [Laid(0, number, layer.layer, -rank, here[k].bead) for rank, k in enumerate(order)]
+            ranked += [RankedBead(0, number, layer.layer, -rank, here[k].bead) for rank, k in enumerate(order)]
             made += here
-    if not laid:
+    if not ranked:
         raise InputError(
             "NOTHING_TO_DEPOSIT", given.label, f"no bead of {strategy.least_bead:g} mm or more finds room on its faces; "
             "use a smaller bead spacing, or thin = single",
         )
-    layers = waited(ordered(laid, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
-    told = notes(made, layers, mended, strategy, process, model)
+    layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
+    noted = notes(made, layers, mended, strategy, process, model)
     issues = (
-        *given.issues, *_stretched(stretch), *(one for one in told if one.code != "SINGLE_LAYER"),  # as many as asked for
+        *given.issues, *_stretched(stretch), *(one for one in noted if one.code != "SINGLE_LAYER"),  # as many as asked for
         *lean_notes(made, layers, build),
     )
     return Toolpath(
         layers, np.eye(4), strategy.layer_height, strategy.chord_error, issues, process.overlap, "cladding",
-        given.surroundings, None if model is None else model.law(process.acceleration), counted,
-        volumes=of_layers(strategy, covers), twice=twice(made, strategy, covers, counted),
+        given.surroundings, None if model is None else model.law(process.acceleration), nominal,
+        volumes=of_layers(strategy, covers), twice=twice(made, strategy, covers, nominal),
     )
 
 
 def _stretched(share: float) -> tuple[Issue, ...]:
-    if share <= TOLD:
+    if share <= REPORTED_DISTORTION:
         return ()
     return (Issue(
         NOTE, "DISTORTED", "faces that are bent both ways cannot be laid flat without distortion: beads are up to "
@@ -104,7 +104,7 @@ def _filled(pictures: Pictures, layer: Slice, label: str) -> Filled:
 def _bead(
     curve: PlaneCurve, layer: Slice, strategy: CladdingParameters, build: BuildDirectionParameters,
     process: ProcessParameters, model: BeadModel | None,
-) -> Rolled:
+) -> Wrapped:
     if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
         curve = reversed_curve(curve)
     return classed(curve, layer, PART, strategy, build, process, model)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.angles import TURN
 from ..geometry.curves.bead_curves import BeadCurve, Curves
-from ..geometry.told import place
+from ..geometry.formatting import place
 from ..issues import InputError
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters

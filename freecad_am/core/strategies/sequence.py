@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..geometry.surroundings import Body
+from ..geometry.obstacles import Body
 from ..issues import InputError, Issue
 from ..toolpath import Layer, Toolpath
 from ..types import Array, Index
@@ -32,11 +32,11 @@ def joined(toolpaths: Sequence[Toolpath], sequence: str, up: Array, bodies: Sequ
     for number, (k, i) in enumerate(order):
         numbers[k][i] = number
     first = toolpaths[0]
-    told = [_telling_widths(one, first) for one in toolpaths]
+    parts = [_telling_widths(one, first) for one in toolpaths]
     feeds = {one.wire_feed for one in toolpaths}
     return replace(
         first,
-        layers=tuple(replace(told[k].layers[i], feature=k, first=i == 0 or told[k].layers[i].first) for k, i in order),
+        layers=tuple(replace(parts[k].layers[i], feature=k, first=i == 0 or parts[k].layers[i].first) for k, i in order),
         chord_error=min(one.chord_error for one in toolpaths),
         issues=tuple(issue for one, some in zip(toolpaths, numbers) for issue in renumbered(one.issues, some)),
         surroundings=tuple(bodies), law=None, unsupported=None, on_part=None, volumes=None, twice=None,

@@ -14,9 +14,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
+from ..geometry.formatting import at_least, count
+from ..geometry.obstacles import Body
 from ..geometry.on_hub import SolidsOnHub
-from ..geometry.surroundings import Body
-from ..geometry.told import at_least, count
 from ..issues import NOTE, InputError, Issue
 from ..parameters.filled import CladdingParameters, FilledParameters
 from ..parameters.process import ProcessParameters

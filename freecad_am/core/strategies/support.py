@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..geometry.mesh.solid import Search, SolidMesh
+from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base
-from ..geometry.surroundings import Body
 from ..issues import WARNING, Issue
 from ..process.deposit import support
 from ..process.deposit.pieces import cut
@@ -25,7 +25,7 @@ OVER_PLATFORM = "OVER_PLATFORM"
 BY_ITSELF = ("surface", "curves", "cladding")  # families whose first layer lies where it begins by its making
 
 
-def told(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]) -> Toolpath:
+def with_support(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]) -> Toolpath:
     """The toolpath with how much of it lies over nothing, and issues where.
 
     planes: frames (4, 4) in part coordinates, what lies on the plane z = 0 of
@@ -41,7 +41,7 @@ def of_feature(
     toolpath: Toolpath, number: int, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
 ) -> tuple[dict[int, float], list[Issue]]:
     """How much of the layers of one of the features of a toolpath lies over nothing, mm by layer, and issues where; deposit
-    of the other features carries what comes after it. planes, bodies, bases: as of `told`."""
+    of the other features carries what comes after it. planes, bodies, bases: as of `with_support`."""
     part, numbers = toolpath.parts[number]
     ground = _Ground(part, planes, bodies, bases)
     whole = replace(toolpath, layer_height=part.layer_height)
@@ -98,16 +98,16 @@ class _Ground:
         found = np.zeros(len(points), dtype=bool)
         if not len(points):
             return found
-        reach, pace = support.REACH * self._height, support.REACH * self._height / (STEPS - 1)
+        reach, stride = support.REACH * self._height, support.REACH * self._height / (STEPS - 1)
         for search in self._searches:
             left = np.flatnonzero(~found)
             away = _away(search, points[left])
             found[left[away <= ON * self._height]] = True
-            left = left[(away > ON * self._height) & (away <= reach + pace)]
+            left = left[(away > ON * self._height) & (away <= reach + stride)]
             for step in range(1, STEPS):
                 left = left[~found[left]]
                 if len(left):
-                    found[left] = _away(search, points[left] - step * pace * build[left]) <= 0.5 * pace
+                    found[left] = _away(search, points[left] - step * stride * build[left]) <= 0.5 * stride
         return found
 
 

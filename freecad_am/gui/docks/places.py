@@ -13,7 +13,7 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from .room import Room
+from .dock_area import DockArea
 
 BELOW, RIGHT = QtCore.Qt.BottomDockWidgetArea, QtCore.Qt.RightDockWidgetArea
 _NOWHERE = QtCore.Qt.NoDockWidgetArea
@@ -49,14 +49,14 @@ class Dock(QtGui.QDockWidget):
             window.addDockWidget(self.area, self)
             self._join(window)
         opened = not self.isVisible()
-        room = _room(self)
-        if opened and room is not None:
-            room.enter(self, self.high)
+        area = _area(self)
+        if opened and area is not None:
+            area.enter(self, self.high)
         self.toggleViewAction().setVisible(True)
         self.show()
         self.raise_()
         if opened:
-            QtCore.QTimer.singleShot(0, self._settle)  # once it has its place among other docks
+            QtCore.QTimer.singleShot(0, self._fit_size)  # once it has its place among other docks
 
     def _join(self, window: Any) -> None:
         """Become a tab of one of ours that stands there, or would if it were open."""
@@ -65,16 +65,16 @@ class Dock(QtGui.QDockWidget):
         if there:
             window.tabifyDockWidget(max(there, key=lambda one: one.isVisible()), self)
 
-    def _settle(self) -> None:
+    def _fit_size(self) -> None:
         """The room it asks for."""
-        room = _room(self)
-        if not self.isVisible() or room is None:
+        area = _area(self)
+        if not self.isVisible() or area is None:
             return
         self.raise_()
-        if self.wide and not room.beside(self):
+        if self.wide and not area.has_another(self):
             window = Gui.getMainWindow()
             window.resizeDocks([self], [int(self.wide * window.width())], QtCore.Qt.Horizontal)
-        room.settle()
+        area.fit_size()
 
     def empty(self) -> None:
         """Close it, and hold nothing: it is not to be opened but by its tool."""
@@ -88,8 +88,8 @@ class Dock(QtGui.QDockWidget):
 
     def closeEvent(self, event: Any) -> None:
         """It is closed: the room it took is given back."""
-        for room in _rooms:
-            room.leave(self)
+        for area in _areas:
+            area.leave(self)
         super().closeEvent(event)
         if self.closed is not None:
             self.closed()
@@ -100,7 +100,7 @@ class Dock(QtGui.QDockWidget):
 
 
 _docks: dict[str, Dock] = {}  # Python must keep them
-_rooms: list[Room] = []
+_areas: list[DockArea] = []
 
 
 def dock(name: str, area: Any, wide: float = 0.0, high: int = 0) -> Dock:
@@ -110,13 +110,13 @@ def dock(name: str, area: Any, wide: float = 0.0, high: int = 0) -> Dock:
     return _docks[name]
 
 
-def _room(one: Dock) -> Room | None:
+def _area(one: Dock) -> DockArea | None:
     """The room of the area where a dock stands, or would; None of one that floats."""
     area = Gui.getMainWindow().dockWidgetArea(one)
     if one.isFloating() or area == _NOWHERE:
         return None
-    for room in _rooms:
-        if room.area == area:
-            return room
-    _rooms.append(Room(area))
-    return _rooms[-1]
+    for one_area in _areas:
+        if one_area.area == area:
+            return one_area
+    _areas.append(DockArea(area))
+    return _areas[-1]

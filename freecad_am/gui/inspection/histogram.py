@@ -72,6 +72,6 @@ class Histogram(QtGui.QWidget):
         for number in np.asarray(round_numbers(low, high, 0.0)).tolist():
             box = QtCore.QRectF(across(number) - 30.0, area.bottom() + 2.0, 60.0, line)
             painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
-        told = tr("deviation, mm (most: {} points)").format(int(self.spread.counts.max()))
+        text = tr("deviation, mm (most: {} points)").format(int(self.spread.counts.max()))
         box = QtCore.QRectF(0.0, self.height() - line - 1.0, self.width(), line)
-        painter.drawText(box, QtCore.Qt.AlignHCenter, told)
+        painter.drawText(box, QtCore.Qt.AlignHCenter, text)

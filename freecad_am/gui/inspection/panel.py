@@ -82,8 +82,8 @@ class InspectionPanel(StagePanel):
                 self._add_line(translated(row.place))
                 self.table.setSpan(self.table.rowCount() - 1, 0, 1, self.table.columnCount())
             place = row.place
-            told = translated(row.short)
-            self._add_line(f"{_INDENT}{told}" if place else told, row.text, row.unit, help=translated(row.name))
+            text = translated(row.short)
+            self._add_line(f"{_INDENT}{text}" if place else text, row.text, row.unit, help=translated(row.name))
         self.table.resizeColumnsToContents()
         self.table.horizontalHeader().setSectionResizeMode(0, QtGui.QHeaderView.Stretch)
         high = sum(self.table.rowHeight(number) for number in range(self.table.rowCount()))

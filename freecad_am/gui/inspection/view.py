@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from pivy import coin
 
-from ...core.inspection.bands import NOT_COUNTED, bands, colours
+from ...core.inspection.bands import PAST_EDGES, bands, colours
 from ...core.inspection.inspect import Inspected
 from ..nodes.lines import fill, unshaded
 from ..path import legend
@@ -59,5 +59,5 @@ def scale_of(value: Inspected) -> Scale:
     """The legend of an inspection: its bands, the most outside first."""
     classes = tuple((band.text, band.colour) for band in reversed(bands(value.tolerance)))
     if not value.counted.all():
-        classes += ((marked("past the edges"), NOT_COUNTED),)
+        classes += ((marked("past the edges"), PAST_EDGES),)
     return Scale(marked("deviation"), "mm", 0.0, 0.0, (), value.spread.least, value.spread.most, classes=classes)

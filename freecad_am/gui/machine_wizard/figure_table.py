@@ -15,7 +15,7 @@ from freecad_am.core.types import Array
 from ...core.issues import InputError
 from ..texts.translation import tr
 
-BESIDE = 12  # pixels in a cell beside its text
+CELL_PADDING = 12  # pixels in a cell beside its text
 ROW_HEIGHT = 24
 MOST_SHOWN = 9  # rows that are to be seen at once
 
@@ -56,10 +56,10 @@ class FigureTable:
 
     def widen(self, columns: Sequence[int], widest: str) -> None:
         """Let columns have room for such a figure; the others share what is left."""
-        header, room = self.widget.horizontalHeader(), self.widget.fontMetrics().boundingRect(widest).width() + BESIDE
+        header, width = self.widget.horizontalHeader(), self.widget.fontMetrics().boundingRect(widest).width() + CELL_PADDING
         for column in columns:
             header.setSectionResizeMode(column, QtGui.QHeaderView.Fixed)
-            header.resizeSection(column, room)
+            header.resizeSection(column, width)
 
     def lock(self, *columns: int) -> None:
         """Let columns be read only: what is shown there is computed."""

@@ -64,12 +64,12 @@ class Page(QtGui.QWizardPage):
         try:
             self.take()
         except InputError as error:
-            self.say(told(error))
+            self.say(error_text(error))
             return False
         return True
 
 
-def told(error: InputError) -> str:
+def error_text(error: InputError) -> str:
     """An error with its place, where that is a place a user knows."""
     return sentence(error.message) if error.where in ("geometry", "flange", "table") else translated_error(error)
 

@@ -21,7 +21,7 @@ from ..background.later import Later
 from ..colours import WRONG
 from ..texts.translation import tr
 from .figure_table import FigureTable, shown
-from .page import Page, axis_names, choice, heading, told
+from .page import Page, axis_names, choice, error_text, heading
 
 LEAST, FIRST = 3, 5  # poses that a machine needs, rows that are there at first
 RIGHT = "#1d7d32"
@@ -178,7 +178,7 @@ class PosesPage(Page):
         try:
             values, poses, rows = self._entered(whole=False)
         except InputError as error:
-            self._tell(told(error), WRONG)
+            self._tell(error_text(error), WRONG)
             return
         self.table.widget.blockSignals(True)
         for row in range(self.table.widget.rowCount()):

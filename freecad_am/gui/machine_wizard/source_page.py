@@ -25,7 +25,7 @@ from ...core.parameters.external import ROBOT
 from ...objects import user_machines
 from ..texts.translation import tr
 from .figure_table import FigureTable
-from .page import Page, choice, told
+from .page import Page, choice, error_text
 
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 MOST_AXES = 6
@@ -80,7 +80,7 @@ class SourcePage(Page):
         self.mechanism.setToolTip(tr("What the file has beside one another; each gets a machine file of its own"))
         rows.addRow(self.mechanism_row, self.mechanism)
         self.mechanism.currentIndexChanged.connect(self._choose_mechanism)
-        self.beside: list[tuple[str, Any, str]] = []
+        self.mechanisms: list[tuple[str, Any, str]] = []
         self.base, self.tip = choice("baseLink", []), choice("tipLink", [])
         self.base.setToolTip(tr("The link that stands still"))
         self.tip.setToolTip(tr("The link whose frame is the flange, with its Z out of it: tool0 in files of ROS-Industrial"))
@@ -163,36 +163,36 @@ class SourcePage(Page):
                 self.robot = Urdf(path)
                 self.base.addItems(self.robot.bases())
             except InputError as error:
-                self.say(told(error))
+                self.say(error_text(error))
         self._offer_mechanisms()
 
     def _offer_mechanisms(self) -> None:
         """Robot, track and positioner of a file that has more than a robot; the robot is proposed."""
-        self.beside = []
+        self.mechanisms = []
         if self.robot is not None:
             with contextlib.suppress(InputError):  # no whole cell: links are chosen one by one
                 cell = UrdfCell(self.robot.path)
-                self.beside = [(tr("Robot"), cell.machine(), "")] + [
+                self.mechanisms = [(tr("Robot"), cell.machine(), "")] + [
                     (tr("Track") if one.carries == ROBOT else tr("Positioner"), reference(one.machine),
                      f"{one.where()} carries {one.carries}") for one in cell.external()
                 ]
-        several = len(self.beside) > 1
+        several = len(self.mechanisms) > 1
         self.mechanism.clear()
-        self.mechanism.addItems([name for name, _, _ in self.beside] if several else [])
+        self.mechanism.addItems([name for name, _, _ in self.mechanisms] if several else [])
         for widget in (self.mechanism, self.mechanism_row):
             widget.setVisible(several)
 
     def _choose_mechanism(self, index: int) -> None:
         """The links of the mechanism that is chosen."""
         if index >= 0:
-            _, meant, _ = self.beside[index]
+            _, meant, _ = self.mechanisms[index]
             for box, link in ((self.base, meant.base), (self.tip, meant.tip)):
                 box.setCurrentIndex(box.findText(link))
 
     def _stands(self) -> str:
         """Where the mechanism of these links stands in the cell of the file; '' where nothing tells it."""
         links = self.base.currentText(), self.tip.currentText()
-        return next((where for _, meant, where in self.beside if (meant.base, meant.tip) == links), "")
+        return next((where for _, meant, where in self.mechanisms if (meant.base, meant.tip) == links), "")
 
     def _offer_tips(self, *_: Any) -> None:
         self.tip.clear()

@@ -12,7 +12,7 @@ from ... import api
 from ...objects.staleness import UP_TO_DATE
 from ..texts.translation import tr, translated
 
-TOLD = 15000  # ms that the next step is told on the status bar
+SHOWN_MS = 15000  # ms that the next step is told on the status bar
 
 
 def tell_next(stages: list[Any]) -> None:
@@ -28,7 +28,7 @@ def tell_next(stages: list[Any]) -> None:
             "The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export "
             "Path… writes its points as a table."
         )
-    Gui.getMainWindow().statusBar().showMessage(text, TOLD)
+    Gui.getMainWindow().statusBar().showMessage(text, SHOWN_MS)
     App.Console.PrintMessage(text + "\n")
     _show_whole()
 

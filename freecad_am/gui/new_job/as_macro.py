@@ -13,38 +13,38 @@ from .proposal import DEVELOPABLE, REVOLUTION, SOLID, JobProposal
 def arguments(found: JobProposal, machine: str) -> dict[str, str]:
     """Keywords and their values as text, of what was proposed for a machine."""
     first = found.parts[0]
-    told = {"source": recorded.reference(first.obj)}
+    given = {"source": recorded.reference(first.obj)}
     if found.kind != REVOLUTION:
-        told["kind"] = repr(found.kind)
+        given["kind"] = repr(found.kind)
     if found.layers == GEODESIC:
-        told["layers"] = repr(found.layers)
+        given["layers"] = repr(found.layers)
     if found.mend:
-        told["mend"] = repr(found.mend)
+        given["mend"] = repr(found.mend)
     if found.kind in (DEVELOPABLE, SOLID):
-        told.update(_of_solids(found))
+        given.update(_of_solids(found))
     else:
-        told["faces"] = repr(list(first.names))
+        given["faces"] = repr(list(first.names))
         if found.ground is not None:
-            told["substrate"] = recorded.reference(found.ground.obj)
+            given["substrate"] = recorded.reference(found.ground.obj)
     if machine != CellParameters().machine:
-        told["machine"] = repr(machine)
+        given["machine"] = repr(machine)
     if preferences.post():
-        told["post"] = repr(preferences.post())
+        given["post"] = repr(preferences.post())
     if preferences.process():
-        told["process"] = repr(preferences.process())
-    return told
+        given["process"] = repr(preferences.process())
+    return given
 
 
 def _of_solids(found: JobProposal) -> dict[str, str]:
     """Solids and what they stand on, which may be one with them, as a macro says it."""
     first, *further = (pick.obj for pick in found.parts)
-    told, ground = {}, found.ground
+    given, ground = {}, found.ground
     if further:
-        told["further"] = f"[{', '.join(recorded.reference(obj) for obj in further)}]"
+        given["further"] = f"[{', '.join(recorded.reference(obj) for obj in further)}]"
     if ground is not None and ground.obj == first:
-        told["faces"] = repr(list(ground.names))
+        given["faces"] = repr(list(ground.names))
     elif ground is not None:
-        told["substrate"] = recorded.reference(ground.obj)
+        given["substrate"] = recorded.reference(ground.obj)
         if ground.names:
-            told["base_faces"] = repr(list(ground.names))
-    return told
+            given["base_faces"] = repr(list(ground.names))
+    return given

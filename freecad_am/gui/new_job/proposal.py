@@ -100,8 +100,8 @@ def _of_one(pick: Pick, part: Taken, width: float) -> JobProposal:
     found = proposed(part, meant.names, None, False, width, True, clicked=() if meant.names else clicked)
     if found.kind == DEVELOPABLE:  # hub and solids are of one object
         ground = Pick(pick.obj, clicked) if clicked and part.shape is not None and len(part.shape.Solids) < 2 else None
-        return _as_told(found, (Pick(pick.obj),), ground)
-    return _as_told(found, (meant,), None)
+        return _as_proposed(found, (Pick(pick.obj),), ground)
+    return _as_proposed(found, (meant,), None)
 
 
 def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposal:
@@ -113,7 +113,7 @@ def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposa
         base = picking.with_faces(ground).names
         if all(not picking.with_faces(pick).names and stands_on_hub(part, hub, base) for pick, part in rest):
             found = proposed(rest[0][1], (), hub, False, width, True, base=base)
-            return _as_told(found, tuple(Pick(pick.obj) for pick, _ in rest), picking.with_faces(ground))
+            return _as_proposed(found, tuple(Pick(pick.obj) for pick, _ in rest), picking.with_faces(ground))
     if len(known) > 2:
         if all(part.shape is None or part.shape.Solids for _, part in known):
             reason = tr("{} solids are selected, which are filled").format(len(known))
@@ -124,10 +124,10 @@ def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposa
         wall, ground = picks
     part, under = (next(look for pick, look in known if pick.obj == one.obj) for one in (wall, ground))
     meant = _meant(next(pick for pick in picks if pick.obj == wall.obj), part)
-    return _as_told(proposed(part, meant.names, under, False, width, True), (meant,), Pick(ground.obj))
+    return _as_proposed(proposed(part, meant.names, under, False, width, True), (meant,), Pick(ground.obj))
 
 
-def _as_told(found: Proposal, parts: tuple[Pick, ...], ground: Pick | None) -> JobProposal:
+def _as_proposed(found: Proposal, parts: tuple[Pick, ...], ground: Pick | None) -> JobProposal:
     starts = found.stands and picking.is_alone(parts[0].obj)
     missing = _ground_missing(parts[0], ground) if found.kind == SURFACE and not starts else ""
     return JobProposal(found.kind, translated(found.reason), parts, ground, missing, found.layers, found.mend)

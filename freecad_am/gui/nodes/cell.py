@@ -18,8 +18,8 @@ from ...core.kinematics import cell as cells
 from ...core.kinematics.arrangement import of_setup
 from ...core.kinematics.cell import Cell
 from ...core.kinematics.limits import Limits
-from ...core.kinematics.links.beside import BesideLink, links_beside
-from ...core.kinematics.links.rods import Mesh
+from ...core.kinematics.links.cylinders import Mesh
+from ...core.kinematics.links.external_links import ExternalLink, external_links
 from ...core.kinematics.links.solids import capsule
 from ...core.kinematics.machines.machine import Machine
 from ...core.kinematics.torch import Torch
@@ -28,7 +28,7 @@ from ...core.simulation.placing import at_rest, placing
 from ...core.toolpath import Toolpath
 from ...objects.shapes.cell_obstacles import torch_of
 from ...objects.shapes.link_meshes import meshes_of, readable_mesh
-from .beside import BesideNodes
+from .external_links import ExternalLinkNodes
 from .lines import placed, turned
 from .machine_links import Links, MachineNodes, move, of_mesh, of_solid, plain_links
 from .wall import unpickable
@@ -53,7 +53,7 @@ class Rest:
     reached: bool
     limits: Limits
     joints: Array
-    beside: tuple[BesideLink, ...] = ()
+    external_links: tuple[ExternalLink, ...] = ()
     stands: Array = field(default_factory=lambda: np.zeros((0, 4, 4)))
 
 
@@ -91,7 +91,7 @@ def with_machine(parameters: CellParameters, toolpath: Toolpath | None, folders:
     `cell.resolve`."""
     frame, family = (np.eye(4), "revolution") if toolpath is None else (toolpath.frame, toolpath.family)
     cell = cells.resolve(parameters, frame, family, folders)
-    cell = replace(cell, beside=links_beside(cell.external, readable_mesh))
+    cell = replace(cell, external_links=external_links(cell.external, readable_mesh))
     point = resting_point(toolpath, cell.mount)
     joints = at_rest(cell, point)
     solids = plain_links(cell.robot, parameters.platform_diameter, parameters.nozzle.length)
@@ -105,7 +105,7 @@ def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[A
     reached = bool(np.linalg.norm(nozzle[:3, 3] - point) < _REACHED)
     machine = cell.robot
     return nozzle, Rest(machine, to_part @ place.links, solids, meshes_of(machine), reached, cell.limits, joints,
-                        cell.beside, to_part @ place.beside)
+                        cell.external_links, to_part @ place.external_links)
 
 
 def resting_point(toolpath: Toolpath | None, mount: Array) -> Array:
@@ -121,7 +121,7 @@ class CellNodes:
 
     def __init__(self, ghost: bool = False) -> None:
         self.machine: MachineNodes | None = None
-        self.beside: BesideNodes | None = None
+        self.external_links: ExternalLinkNodes | None = None
         self.standing: Any = None  # the transformation of the nozzle
         self.looks: tuple[Any, ...] = ()  # what the machine's nodes were made of
         self.platform, self.nozzle, self.links = coin.SoSeparator(), coin.SoSeparator(), coin.SoSeparator()
@@ -171,12 +171,13 @@ class CellNodes:
         if rest is None:
             return
         if self.machine is None:
-            self.machine, self.beside = MachineNodes(rest.machine, rest.solids, rest.meshes), BesideNodes(rest.beside)
+            self.machine = MachineNodes(rest.machine, rest.solids, rest.meshes)
+            self.external_links = ExternalLinkNodes(rest.external_links)
             self.links.addChild(self.machine.node)
-            self.links.addChild(self.beside.node)
+            self.links.addChild(self.external_links.node)
         self.machine.pose(rest.links)
-        if self.beside is not None:
-            self.beside.pose(rest.stands)
+        if self.external_links is not None:
+            self.external_links.pose(rest.stands)
 
 
 def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
@@ -187,7 +188,7 @@ def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
         rest.machine.id, chain.links(np.zeros(chain.axes)).tobytes(),
         () if of_setup(value.setup).links_known else (value.platform_diameter, value.nozzle.length),
         *(None if mesh is None else hash(mesh[0].tobytes()) for mesh in rest.meshes),
-        *((link.name, hash(link.body.vertices.tobytes())) for link in rest.beside),
+        *((link.name, hash(link.body.vertices.tobytes())) for link in rest.external_links),
     )
 
 

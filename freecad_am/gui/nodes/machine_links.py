@@ -16,7 +16,7 @@ from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.kinematics.links import robot as robot_links
-from ...core.kinematics.links.rods import Mesh
+from ...core.kinematics.links.cylinders import Mesh
 from ...core.kinematics.links.shape import LinkShape
 from ...core.kinematics.links.solids import BRIGHT, DARK, Solid
 from ...core.kinematics.machines.machine import Machine
@@ -128,8 +128,8 @@ def _drawn_mesh(shape: LinkShape) -> Mesh | None:
     try:
         return mesh_of(shape)
     except InputError as error:
-        told = InputError(error.code, shape.where, f"{error.message}; the link has its plain solid for now")
-        App.Console.PrintError(error_line(told))
+        reported = InputError(error.code, shape.where, f"{error.message}; the link has its plain solid for now")
+        App.Console.PrintError(error_line(reported))
         return None
 
 

@@ -14,10 +14,10 @@ def stands(rest: Rest) -> str:
     if not rest.machine.redundant:
         return tr("{} at rest, its turning axes at 0").format(rest.machine.title)
     if not rest.reached:
-        told = tr("{} does not reach the part with the nozzle upright: all its axes are drawn at 0")
-        return told.format(rest.machine.title)
+        text = tr("{} does not reach the part with the nozzle upright: all its axes are drawn at 0")
+        return text.format(rest.machine.title)
     margin, label = rest.limits.smallest(rest.joints)
     left, axis = float(np.degrees(margin)), rest.limits.labels[int(label)]
-    told = tr("{} with the nozzle upright: {} is {:.0f}° from its limit") if left >= 0.0 else tr(
+    text = tr("{} with the nozzle upright: {} is {:.0f}° from its limit") if left >= 0.0 else tr(
         "{} with the nozzle upright: {} is {:.0f}° past its limit")
-    return told.format(rest.machine.title, axis, abs(left))
+    return text.format(rest.machine.title, axis, abs(left))

@@ -191,11 +191,11 @@ class CellPanel(PreviewPanel):
             if self.enabled[place] and any(_alike(holds, one) for one in (self.put.get(place), *map(field.row.outer, was))):
                 field.show(shown)
                 self.put[place] = shown
-                told = tr("Proposed for {}; enter what yours really has.").format(title)
+                text = tr("Proposed for {}; enter what yours really has.").format(title)
             else:
-                told = tr("Left as it was entered; for {} it would be {}.").format(title, _told(shown))
+                text = tr("Left as it was entered; for {} it would be {}.").format(title, _value_text(shown))
             self.noted[place] = self._holds(place)
-            self.tell(place, told, wrong=False)
+            self.tell(place, text, wrong=False)
 
     def _holds(self, place: str) -> Any:
         """What a field holds, None where that cannot be read."""
@@ -231,9 +231,9 @@ class CellPanel(PreviewPanel):
 
     def _line(self, place: str) -> str:
         """A line of the report view about what the panel itself has entered at a place."""
-        label, value = self.places[place][0].label, _told(self.put[place])
-        told = tr("{}: {} is now {}. {}").format(self.form.windowTitle(), label, value, self.notes[place].text())
-        return f"{told}\n"
+        label, value = self.places[place][0].label, _value_text(self.put[place])
+        text = tr("{}: {} is now {}. {}").format(self.form.windowTitle(), label, value, self.notes[place].text())
+        return f"{text}\n"
 
     def close(self, *_: Any) -> None:
         """Take away the preview; once or more often."""
@@ -294,5 +294,5 @@ def _alike(one: Any, other: Any) -> bool:
     return isinstance(one, str) and isinstance(other, str) and one.replace(",", " ").split() == other.split()
 
 
-def _told(value: Any) -> str:
+def _value_text(value: Any) -> str:
     return value if isinstance(value, str) else " ".join(f"{number:g}" for number in value)

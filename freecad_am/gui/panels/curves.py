@@ -97,8 +97,8 @@ class CurvesPanel(PickPanel):
         curves = [one.points for one in made.value.curves]
         self.nodes.set_first(curves)
         length = sum(float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) for points in curves)
-        told = tr("{} curves, {:.4g} mm in all").format(len(curves), length)
-        return "\n".join([told, *(sentence(issue.message) for issue in made.issues)])
+        text = tr("{} curves, {:.4g} mm in all").format(len(curves), length)
+        return "\n".join([text, *(sentence(issue.message) for issue in made.issues)])
 
     def _draw_without(self) -> None:
         self.nodes.set_first([])

@@ -46,12 +46,12 @@ class FeaturePanel(PreviewPanel):
         strategy, slices, issues = drawing
         self.nodes.set_wall(made.value)
         self.nodes.set_layers(made.value, slices)
-        told = tr("About {} turns along {:.4g} mm of wall") if strategy.path == "spiral" else tr(
+        text = tr("About {} turns along {:.4g} mm of wall") if strategy.path == "spiral" else tr(
             "Layers: {}, along {:.4g} mm of wall"
         )
         count = int(slices.layer.max(initial=-1)) + 1
         found = (sentence(issue.message) for issue in (*deposit.expected(made.value, self.obj), *made.issues, *issues))
-        return "\n".join([told.format(count, made.value.meridian.length), *found])
+        return "\n".join([text.format(count, made.value.meridian.length), *found])
 
     def _draw_without(self) -> None:
         self.nodes.clear()

@@ -86,8 +86,8 @@ class HubPanel(PickPanel):
             self.solids.show()
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
-        told = tr("{} is another object; faces of a hub are of one object. Clear it first to start again.")
-        return told.format(pick.obj.Label)
+        text = tr("{} is another object; faces of a hub are of one object. Clear it first to start again.")
+        return text.format(pick.obj.Label)
 
     def _roles(self) -> tuple[list[Any], tuple[str, ...], Any, tuple[str, ...]]:
         """The objects to deposit, faces of the first one that are the base, the hub, and faces of it."""
@@ -158,7 +158,7 @@ class HubPanel(PickPanel):
 
     def _draw(self, made: Outcome, drawing: Drawing) -> str:
         self.nodes.set(drawing)
-        return _told(made, drawing.contours, (*deposit.expected(made.value, self.obj), *made.issues))
+        return _summary(made, drawing.contours, (*deposit.expected(made.value, self.obj), *made.issues))
 
     def _draw_without(self) -> None:
         self.nodes.set(NOTHING)
@@ -172,7 +172,7 @@ def _present(obj: Any) -> tuple[list[Any], Any, list[Any]]:
     return [*([] if source is None else [source]), *obj.Further], hub, obj.Fixtures
 
 
-def _told(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]], findings: Sequence[Issue]) -> str:
+def _summary(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]], findings: Sequence[Issue]) -> str:
     lines = []
     for group, solids in zip(made.value.groups, contours, strict=True):
         surface, count = group.base.surface, len(group.bodies)

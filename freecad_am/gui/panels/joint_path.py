@@ -28,10 +28,10 @@ from ..path.colouring import CONDITION, MARGIN, RATIO
 from ..picking import inputs
 from ..texts.translation import tr, translated
 from ..views.preview import Aside, Draft
-from .preview import PreviewPanel, told_stale
+from .preview import PreviewPanel, stale_lines
 
-MOST = 1000  # points that are planned for a preview, about: a second or two
-MOST_TOLD = 3  # findings
+MAX_POINTS = 1000  # points that are planned for a preview, about: a second or two
+MOST_SHOWN = 3  # findings
 METHOD = "joints_method"
 _ENDS = {"joints_rotation_range_low", "joints_rotation_range_high"}
 _OF_ROTARY_AXES = ("lock", "lock_at", "max_residual")
@@ -99,7 +99,7 @@ class JointPathPanel(PreviewPanel):
         values = {MARGIN: judgement.margin, CONDITION: judgement.condition, RATIO: judgement.ratio}[kind]
         self.nodes.set(drawing.planned.beads, values, kind, np.isnan(judgement.margin))
         self.aside.put(self.obj, drawing.toolpath)
-        return "\n".join([*_found(drawing), *_figures(judgement), *told_stale(drawing.stale), _looked_at(drawing.sample)])
+        return "\n".join([*_found(drawing), *_figures(judgement), *stale_lines(drawing.stale), _looked_at(drawing.sample)])
 
     def _colouring(self, judgement: Judgement) -> str:
         """What the object's own view tells by its colours, if that is of the machine and known."""
@@ -124,7 +124,7 @@ def _place(name: str) -> str:
 def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement]:
     """The plan of as many points as are soon planned, with external axes where optimising them, which takes long, begins.
     Raises what planning raises."""
-    sample = sampled(job.toolpath(), MOST)
+    sample = sampled(job.toolpath(), MAX_POINTS)
     toolpath = sample.toolpath
     cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
     parameters = replace(job.parameters, compare=(), given=sample.given(job.parameters.given), external_axes=LEVEL)
@@ -138,13 +138,13 @@ def _found(trial: Trial) -> list[str]:
     if not errors:
         return [tr("All deposit points can be carried out.") if trial.sample.whole else tr(
             "Nothing stands against it so far.")]
-    told = [tr("Cannot be carried out:"), *(_told(issue, trial.sample.whole) for issue in errors[:MOST_TOLD])]
-    if len(errors) > MOST_TOLD:
-        told.append(tr("and {} more").format(len(errors) - MOST_TOLD))
-    return told
+    lines = [tr("Cannot be carried out:"), *(_issue_text(issue, trial.sample.whole) for issue in errors[:MOST_SHOWN])]
+    if len(errors) > MOST_SHOWN:
+        lines.append(tr("and {} more").format(len(errors) - MOST_SHOWN))
+    return lines
 
 
-def _told(issue: Issue, whole: bool) -> str:
+def _issue_text(issue: Issue, whole: bool) -> str:
     """A finding with its place: of some points alone it is the layer, whose beads and points have other numbers."""
     placed = issue if whole else replace(issue, bead=None, point=None)
     return tr("{}: {}").format(translated(placed.where), translated(issue.message)) if placed.where else translated(
@@ -171,5 +171,5 @@ def _looked_at(sample: Sampled) -> str:
         return tr("Preview of one point in {}; OK looks at those between and at the rapid moves too.").format(sample.points)
     if sample.points == 1:
         return tr("Preview of one bead in {}; OK looks at those between and at the rapid moves too.").format(sample.beads)
-    told = tr("Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too.")
-    return told.format(sample.points, sample.beads)
+    text = tr("Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too.")
+    return text.format(sample.points, sample.beads)

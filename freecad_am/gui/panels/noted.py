@@ -35,7 +35,7 @@ class Noted:
     error: Any  # at the top
     heading: Any  # of the inputs
     marked: dict[str, str]  # places with an error of OK or Apply, and what was entered there
-    told: dict[str, str]  # those with what an expression gives or is wrong as typed, and that
+    remarks: dict[str, str]  # those with what an expression gives or is wrong as typed, and that
     notes: dict[str, Any]  # under the fields, by the label of an input or the place of a parameter
     places: dict[str, tuple[fields.Field, str, Fold]]  # by the name that errors give a parameter: field, how it is called
 
@@ -118,8 +118,8 @@ class Noted:
                 judged = self._judged(field)
                 if judged is not None:
                     self.tell(place, *judged)
-                    self.told[place] = judged[0]
-                elif self.told.pop(place, None) == self.notes[place].text():
+                    self.remarks[place] = judged[0]
+                elif self.remarks.pop(place, None) == self.notes[place].text():
                     self.tell(place, "")
 
     def _judged(self, field: fields.Field) -> tuple[str, bool] | None:

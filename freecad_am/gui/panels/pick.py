@@ -60,10 +60,10 @@ class PickPanel(PreviewPanel):
         lacking = self._lacking()
         if lacking is None:
             return ""
-        told = tr("{} are missing: click them in the tree or the 3D view.") if lacking.several else tr(
+        text = tr("{} are missing: click them in the tree or the 3D view.") if lacking.several else tr(
             "{} is missing: click it in the tree or the 3D view."
         )
-        return told.format(lacking.label)
+        return text.format(lacking.label)
 
     # ---- picking
 

@@ -24,7 +24,7 @@ from ..views.preview import Draft, Preview
 from .stage import CLOSED, StagePanel
 
 LOOK_EVERY = 200  # ms; what has not changed between two looks is previewed
-TOLD_AFTER = 400  # ms; when a preview takes longer, that is said
+SHOWN_AFTER_MS = 400  # ms; when a preview takes longer, that is said
 
 
 class PreviewPanel(StagePanel):
@@ -126,7 +126,7 @@ class PreviewPanel(StagePanel):
         refused = set(self.marked) if self.shown == self.refused else set()
         for place in (self.blamed | set(self.marked)) - refused:
             # what the entry itself is told stays; that may be of the entry before, while the next one is not judged yet
-            if self.told.get(place) != self.notes[place].text():
+            if self.remarks.get(place) != self.notes[place].text():
                 self.tell(place, "")
         self.blamed.clear()
         lacks = self._lacks()
@@ -136,12 +136,12 @@ class PreviewPanel(StagePanel):
             return
         try:
             draft = Draft(self.proxy, self.document, self.draft, self._links(), self._values())
-            self.background.start(draft.told(self._work(draft)), self._show_result)
+            self.background.start(draft.reporting(self._work(draft)), self._show_result)
         except AmError as error:
             self._refuse(error)
             return
         worker = self.background.worker
-        QtCore.QTimer.singleShot(TOLD_AFTER, lambda: self._say_waiting(worker))
+        QtCore.QTimer.singleShot(SHOWN_AFTER_MS, lambda: self._say_waiting(worker))
 
     def _say_waiting(self, worker: Worker | None) -> None:
         if worker is not None and self.background.worker is worker:
@@ -234,6 +234,6 @@ class PreviewPanel(StagePanel):
             self._show_own(True)
 
 
-def told_stale(labels: Sequence[str]) -> list[str]:
+def stale_lines(labels: Sequence[str]) -> list[str]:
     """What to say of inputs that were out of date when the preview was begun."""
     return [tr("{} is out of date; this is of what it was.").format(label) for label in labels]

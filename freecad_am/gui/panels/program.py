@@ -25,11 +25,11 @@ from ..picking import inputs
 from ..picking.selection import meant
 from ..program.listing import listing
 from ..program.preflight_list import PreflightList, summary
-from ..simulation import told
+from ..simulation import wording
 from ..texts.translation import tr, translated
 from ..views.preview import Draft
 from ..widgets import suggestions
-from .preview import PreviewPanel, told_stale
+from .preview import PreviewPanel, stale_lines
 
 FIRST = 40  # lines that are shown: controllers want a head of twenty
 HIGH = 14  # lines that are seen at once, about
@@ -121,7 +121,7 @@ class ProgramPanel(PreviewPanel):
             self.text.setPlainText(drawing.text)
         self.preflight.widget.show()
         self.preflight.show(drawing.promises)
-        return "\n".join([*_told(drawing), summary(drawing.promises), *told_stale(drawing.stale)])
+        return "\n".join([*_lines(drawing), summary(drawing.promises), *stale_lines(drawing.stale)])
 
     def _draw_without(self) -> None:
         self.preflight.clear()
@@ -148,12 +148,12 @@ def _begun(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginn
     )
 
 
-def _told(beginning: Beginning) -> list[str]:
+def _lines(beginning: Beginning) -> list[str]:
     sums = beginning.sums
     deposits = tr("dry run, nothing is deposited") if beginning.dry else tr("mass: {:.1f} g").format(sums.mass)
     return [
         tr("Begins with {}. Lines: {}, files: {}").format(beginning.name, beginning.lines, beginning.files),
-        tr("Time: {}, {}").format(told.clock(sums.time), deposits),
+        tr("Time: {}, {}").format(wording.clock(sums.time), deposits),
     ]
 
 

@@ -202,8 +202,8 @@ class SolidPanel(PickPanel):
         found = tr("1 solid, {:.4g} mm high").format(height) if len(group.bodies) == 1 else (
             tr("{} solids, {:.4g} mm high").format(len(group.bodies), height))
         first = tr("first layer: 1 contour") if contours == 1 else tr("first layer: {} contours").format(contours)
-        told = f"{found}; {first}"
-        return "\n".join([told, *(sentence(issue.message) for issue in made.issues)])
+        text = f"{found}; {first}"
+        return "\n".join([text, *(sentence(issue.message) for issue in made.issues)])
 
     def _draw_without(self) -> None:
         self.nodes.set(NOTHING)

@@ -34,7 +34,7 @@ from .noted import Noted, lines_of
 
 MOST_ISSUES = 6
 ADVANCED = marked("{}: advanced")
-ROOM_IN_BUTTON = 26  # pixels beside its text
+BUTTON_PADDING = 26  # pixels beside its text
 CLOSED = marked("The document or object of this panel is gone; cancel and open the panel again.")
 
 
@@ -62,7 +62,7 @@ class StagePanel(Noted):
         self.error = self.messages.add("error", WRONG)
         self.findings = self.messages.add("findings", "palette(text)")  # above all fields: some change what is deposited
         self.marked: dict[str, str] = {}  # places with an error of OK or Apply, and what was entered there
-        self.told: dict[str, str] = {}  # those with what an expression gives or is wrong as typed, and that
+        self.remarks: dict[str, str] = {}  # those with what an expression gives or is wrong as typed, and that
         self.heading: Any = None
         self.notes: dict[str, Any] = {}  # under the fields, by the label of an input or the place of a parameter
         if choices:
@@ -100,8 +100,8 @@ class StagePanel(Noted):
             title = group_of(row) if nested else section.group
             title = ADVANCED if row.spec.advanced else title
             if title not in folds:
-                told = tr(ADVANCED).format(translated(section.group)) if title == ADVANCED else translated(title)
-                folds[title] = Fold(told, title == section.group)
+                text = tr(ADVANCED).format(translated(section.group)) if title == ADVANCED else translated(title)
+                folds[title] = Fold(text, title == section.group)
             value = preferences.proposed(section.prefix, row) if current is None else current[row.key]
             follows = "" if self.obj is None else expressions.of(self.obj, row)
             field = fields.make(row, value, suggestions.of(section.prefix, row.key), follows, section.prefix)
@@ -231,7 +231,7 @@ def _narrow(box: Any) -> None:
     with contextlib.suppress(RuntimeError):  # the panel is closed again
         for button in box.buttons():
             button.setIcon(QtGui.QIcon())
-            button.setFixedWidth(button.fontMetrics().boundingRect(button.text()).width() + ROOM_IN_BUTTON)
+            button.setFixedWidth(button.fontMetrics().boundingRect(button.text()).width() + BUTTON_PADDING)
 
 
 def _number(button: Any) -> int:

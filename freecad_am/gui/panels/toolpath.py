@@ -18,7 +18,7 @@ from ..picking import inputs
 from ..signals import connect
 from ..texts.translation import tr, translated_error
 from ..widgets.feature_order import FeatureOrder
-from ..widgets.fit_plot import FitPlot, speeds_told, told
+from ..widgets.fit_plot import FitPlot, fits_text, speeds_text
 from .stage import StagePanel
 
 MODEL, WIDTH = "process_bead_model", "process_bead_width"
@@ -87,7 +87,7 @@ class ToolpathPanel(StagePanel):
             return
         width = self._width()
         self.plot.set(measured, model, width)
-        self.fit.setText(told(measured, model) + ("" if width is None else f"\n{speeds_told(model, width)}"))
+        self.fit.setText(fits_text(measured, model) + ("" if width is None else f"\n{speeds_text(model, width)}"))
         self.plot.show()
         self.fit.show()
         if self.to_be_seen:

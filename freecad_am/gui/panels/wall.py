@@ -73,8 +73,8 @@ class WallPanel(PickPanel):
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
         if field.element == picking.EDGE:
             return tr("Click edges of one object.")
-        told = tr("{} is another object; faces of a wall are of one object. Clear it first to start again.")
-        return told.format(pick.obj.Label)
+        text = tr("{} is another object; faces of a wall are of one object. Clear it first to start again.")
+        return text.format(pick.obj.Label)
 
     def _links(self) -> dict[str, Any]:
         return {field.link.name: field.value() for field in self.picks}
@@ -93,7 +93,7 @@ class WallPanel(PickPanel):
         self.nodes.set_first(curves)
         self.nodes.faces.show(True)
         self.nodes.faces.set(*drawing)
-        return _told(curves, (*deposit.expected(made.value, self.obj), *made.issues))
+        return _summary(curves, (*deposit.expected(made.value, self.obj), *made.issues))
 
     def _draw_without(self) -> None:
         wall = self._field("Source").picks
@@ -107,7 +107,7 @@ def _label(link: Any) -> str:
     return tr(_NAMES[link.name]) if link.name in _NAMES else translated(link.label)
 
 
-def _told(curves: list[Any], issues: tuple[Issue, ...]) -> str:
+def _summary(curves: list[Any], issues: tuple[Issue, ...]) -> str:
     lengths = [float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()) for curve in curves]
     parts = [
         (tr("closed, {:.1f} mm") if np.allclose(curve[0], curve[-1], atol=1e-9) else tr("open, {:.1f} mm")).format(length)

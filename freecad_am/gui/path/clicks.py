@@ -18,7 +18,7 @@ from PySide import QtCore, QtGui
 
 from freecad_am.core.types import Array
 
-NEAR = 8.0  # px from the mouse
+REACH_PX = 8.0  # px from the mouse
 STILL = 3  # px the mouse may move while the button is down
 LOOK_EVERY = 15  # ms, whether the button has been let go
 DEEP = 1.5  # widths of a bead, by how much points may lie behind the foremost
@@ -105,7 +105,7 @@ def nearest(points: Array, reach: float, width: float, sight: Sight, place: Arra
     away = np.linalg.norm(flat - place, axis=1)
     with np.errstate(divide="ignore"):
         size = reach * 0.5 * sight.size[1] * np.linalg.norm(sight.to_screen[:3, 1]) / shown[:, 3]
-    near = np.flatnonzero((away <= np.maximum(NEAR, size)) & (shown[:, 3] > 0.0))
+    near = np.flatnonzero((away <= np.maximum(REACH_PX, size)) & (shown[:, 3] > 0.0))
     if not len(near):
         return None
     depth = world[near] @ sight.toward

@@ -34,7 +34,7 @@ _CLASSES = {
 NO_WIDTH = (marked("no bead model"), NONE)
 FIRST = marked("first layer")
 TICKS = 5
-_ALIKE = 1e-9
+_TOLERANCE = 1e-9
 _ROUNDED = 1e-9  # shares that differ by less are alike
 
 
@@ -61,13 +61,13 @@ class Scale:
     classes: tuple[tuple[str, Colour], ...] = ()
     values: Array | None = field(default=None, compare=False, repr=False)
 
-    def told(self, row: int) -> str:
+    def text_at(self, row: int) -> str:
         """The value of a point, in words; '' where there is none to be told."""
         if self.values is None:
             return ""
         value = float(self.values[row])
-        told = f"{value:.3g} {self.unit}" if np.isfinite(value) else translated(self.without)
-        return f"{translated(self.title)} {told}".rstrip()
+        text = f"{value:.3g} {self.unit}" if np.isfinite(value) else translated(self.without)
+        return f"{translated(self.title)} {text}".rstrip()
 
     def share(self, values: Array) -> Array:
         """Places of values on the ramp, 0..1; the middle where low is high."""
@@ -127,7 +127,7 @@ def _classed(beads: list[Bead], classes: list[tuple[str, Colour]], title: str) -
 def automatic(values: Array, title: str, unit: str) -> Scale:
     """A scale from the least to the most value, with round numbers beside it."""
     low, high = float(values.min()), float(values.max())
-    if high - low <= _ALIKE * max(1.0, abs(high)):
+    if high - low <= _TOLERANCE * max(1.0, abs(high)):
         return Scale(title, unit, low, low, ((low, f"{low:.4g}"),), low, high)
     return Scale(title, unit, low, high, _texts(round_numbers(low, high, least=1.0 if title == LAYER else 0.0)), low, high)
 
@@ -164,20 +164,20 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
     known = np.isfinite(values)
     without = "" if known.all() else marked("unreachable")
     unit, factor = ("", 1.0) if kind == CONDITION else ("%", 100.0)
-    told = factor * values
+    shown = factor * values
     below = known & (values < -_ROUNDED) & (kind == MARGIN)
     above = known & (values > 1.0 + _ROUNDED) & (kind == RATIO)
     within = known & ~below & ~above
     beyond, faster = marked("beyond a limit") if below.any() else "", marked("faster than it can") if above.any() else ""
     if within.any():
-        scale = automatic(told[within], kind, unit)
+        scale = automatic(shown[within], kind, unit)
     else:
         only = ((faster, TOO_FAR), (beyond, TOO_NEAR), (without, UNREACHABLE))
         scale = Scale(kind, unit, 0.0, 0.0, (), 0.0, 0.0, classes=tuple(one for one in only if one[0]))
     scale = replace(
-        scale, below=beyond, above=faster, without=without, without_colour=UNREACHABLE, values=told,
+        scale, below=beyond, above=faster, without=without, without_colour=UNREACHABLE, values=shown,
     )
-    colours = ramp(scale.share(np.where(within, told, scale.low)))
+    colours = ramp(scale.share(np.where(within, shown, scale.low)))
     for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, UNREACHABLE)):
         colours[chosen] = colour
     return colours, scale
@@ -192,8 +192,8 @@ def round_numbers(low: float, high: float, least: float) -> Array:
     """About TICKS round numbers from low to high, apart by one, two or five times a power of ten, `least` or more."""
     apart = (high - low) / TICKS
     power = 10.0 ** np.floor(np.log10(apart))
-    step = max(least, next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= apart * (1.0 - _ALIKE)))
-    numbers = np.arange(np.ceil(low / step - _ALIKE), np.floor(high / step + _ALIKE) + 1.0)
+    step = max(least, next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= apart * (1.0 - _TOLERANCE)))
+    numbers = np.arange(np.ceil(low / step - _TOLERANCE), np.floor(high / step + _TOLERANCE) + 1.0)
     found: Array = numbers * step + 0.0  # no minus before zero
     return found
 
@@ -201,7 +201,7 @@ def round_numbers(low: float, high: float, least: float) -> Array:
 def _texts(ticks: Array) -> tuple[tuple[float, str], ...]:
     """Numbers with as many decimals as tell them apart."""
     step = float(ticks[1] - ticks[0]) if len(ticks) > 1 else 0.0
-    decimals = max(0, -int(np.floor(np.log10(step) + _ALIKE))) if step > 0.0 else 3
-    while not np.allclose(ticks, np.round(ticks, decimals), rtol=0.0, atol=1e-3 * step + _ALIKE):
+    decimals = max(0, -int(np.floor(np.log10(step) + _TOLERANCE))) if step > 0.0 else 3
+    while not np.allclose(ticks, np.round(ticks, decimals), rtol=0.0, atol=1e-3 * step + _TOLERANCE):
         decimals += 1
     return tuple((float(tick), f"{tick:.{decimals}f}") for tick in ticks)

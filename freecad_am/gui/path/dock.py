@@ -145,8 +145,8 @@ class PathDock(Follower):
         form.to.set(0, rows.layer_count - 1, last)
         row = max(low, (high if count is None else low + count) - 1)
         form.point.set(0, max(high - low - 1, 0), row - low)
-        told = "" if view.scale is None or view.scale.title == LAYER else view.scale.told(row)
-        form.facts.tell(" · ".join(filter(None, (told, facts(rows, row)))))
+        text = "" if view.scale is None or view.scale.title == LAYER else view.scale.text_at(row)
+        form.facts.tell(" · ".join(filter(None, (text, facts(rows, row)))))
 
     def _moved(self, row: Row) -> None:
         view, form = self.view(), self.form

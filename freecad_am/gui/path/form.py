@@ -73,12 +73,12 @@ class PathForm(QtGui.QWidget):
         return lines
 
 
-def offer(combo: Any, names: list[str], chosen: int, told: Callable[[str], str] = str) -> None:
+def offer(combo: Any, names: list[str], chosen: int, label: Callable[[str], str] = str) -> None:
     """Choices of a combo box, changed only where they differ."""
     if [combo.itemData(index) for index in range(combo.count())] != list(names):
         combo.clear()
         for name in names:
-            combo.addItem(told(name), name)
+            combo.addItem(label(name), name)
     combo.setCurrentIndex(chosen)
 
 

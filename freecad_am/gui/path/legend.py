@@ -131,8 +131,8 @@ def _wide(text: str) -> int:
 def _width(names: tuple[str, ...], scale: Scale) -> int:
     texts = [text for _, text in scale.ticks]
     texts += map(translated, [*(text for text, _ in scale.classes), scale.below, scale.above, scale.without])
-    beside = _BAR_WIDTH + 10 + max(map(_wide, texts))
-    return 2 * _PAD + max(beside, *map(_wide, [*_lines(names, scale), _foot(scale)]))
+    side = _BAR_WIDTH + 10 + max(map(_wide, texts))
+    return 2 * _PAD + max(side, *map(_wide, [*_lines(names, scale), _foot(scale)]))
 
 
 def _height(names: tuple[str, ...], scale: Scale) -> int:

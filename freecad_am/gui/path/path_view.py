@@ -44,7 +44,7 @@ class PathView(StageView):
     rows: Rows | None = None
     scale: Scale | None = None  # of the colours that are shown
     shown: tuple[int, int, int | None] | None = None
-    told: tuple[Any, ...] | None = None  # what the colours are of
+    coloured_by: tuple[Any, ...] | None = None  # what the colours are of
     waiting = False
 
     def __init__(self, vobj: Any) -> None:
@@ -90,7 +90,7 @@ class PathView(StageView):
                 self.refresh()
 
     def draw(self, obj: Any, value: Any) -> None:
-        self.rows, self.told = self.rows_of(obj, value), None
+        self.rows, self.coloured_by = self.rows_of(obj, value), None
         self.path.set(self.rows)
         self.show(self.shown)
 
@@ -121,13 +121,13 @@ class PathView(StageView):
         """Colour the beads anew where that would be other colours."""
         preferred = preferences.ramp(), preferences.speed_unit()
         wanted = (self.drawn, vobj.Colouring, *preferred, *self.colours_depend_on(vobj.Object))
-        if self.rows is not None and len(self.rows) and wanted != self.told:
+        if self.rows is not None and len(self.rows) and wanted != self.coloured_by:
             try:
                 colours, self.scale = self.coloured(vobj.Object, vobj.Colouring)
             except InputError:  # within undo; it is drawn once all is back
                 return
             self.path.paint(colours)
-            self.told = wanted
+            self.coloured_by = wanted
 
     def preferences_changed(self) -> None:
         self.style(self.obj.ViewObject)

@@ -107,7 +107,7 @@ class ShapeChoice(Input):
 
     def __init__(self, link: Link, present: Any, take_now: bool) -> None:
         self.link, self.label, self.present = link, translated(link.label), present
-        self.told = link.required or bool(present)  # whether a macro must say that there is none
+        self.explicit = link.required or bool(present)  # whether a macro must say that there is none
         self.document = App.ActiveDocument
         self.widget = QtGui.QWidget()
         self.widget.setToolTip(translated(link.help))
@@ -185,11 +185,11 @@ class ShapeChoice(Input):
         return tr("Select the shape to deposit, or its faces, and press Use selection.")
 
     def applied(self) -> None:
-        self.told = self.told or self.present is not None
+        self.explicit = self.explicit or self.present is not None
 
     def arguments(self) -> dict[str, str]:
         if self.present is None:
-            return {self.link.key: "None"} if self.told else {}
+            return {self.link.key: "None"} if self.explicit else {}
         obj, names = self.present
         if self.link.name == "Axis":
             return {"axis": f"({recorded.reference(obj)}, {(names or [''])[0]!r})"}
@@ -204,8 +204,8 @@ class ObjectChoice(ShapeChoice):
 
     @property
     def missing(self) -> str:
-        told = tr("{} is missing: select it and press its Use selection.")
-        return "" if self.present is not None else told.format(self.label)
+        text = tr("{} is missing: select it and press its Use selection.")
+        return "" if self.present is not None else text.format(self.label)
 
     def value(self) -> Any:
         return None if self.present is None else self.present[0]
@@ -220,7 +220,7 @@ class ObjectsChoice(ShapeChoice):
     def __init__(self, link: Link, present: Any) -> None:
         self.objects = list(present or ())
         super().__init__(link, None, take_now=False)
-        self.told = bool(present)
+        self.explicit = bool(present)
         self.text.setPlaceholderText(tr("none"))
 
     def take(self, *_: Any) -> None:
@@ -238,10 +238,10 @@ class ObjectsChoice(ShapeChoice):
         return self.objects
 
     def applied(self) -> None:
-        self.told = self.told or bool(self.objects)
+        self.explicit = self.explicit or bool(self.objects)
 
     def arguments(self) -> dict[str, str]:
-        if not self.objects and not self.told:
+        if not self.objects and not self.explicit:
             return {}
         return {self.link.key: f"[{', '.join(recorded.reference(obj) for obj in self.objects)}]"}
 

@@ -31,7 +31,7 @@ class PickField(Input):
         self.meshes = meshes or not element
         self.whole = whole or element != EDGE
         self.picks = self._present(present)
-        self.told = link.required or bool(self.picks)  # whether a macro must say that there is nothing
+        self.explicit = link.required or bool(self.picks)  # whether a macro must say that there is nothing
         self.widget = QtGui.QWidget()
         self.widget.setObjectName(f"Input{link.name}")
         self.widget.setToolTip(translated(link.help))
@@ -101,10 +101,10 @@ class PickField(Input):
         self.text.setToolTip(text or translated(self.link.help))
         if self.pick.isChecked():
             several = tr("click objects") if self.several else tr("click an object")
-            told = {FACE: tr("click faces or an object"), EDGE: tr("click edges")}.get(self.element, several)
+            asked = {FACE: tr("click faces or an object"), EDGE: tr("click edges")}.get(self.element, several)
         else:
-            told = tr("pick") if self.link.required else tr("none")
-        self.text.setPlaceholderText(told)
+            asked = tr("pick") if self.link.required else tr("none")
+        self.text.setPlaceholderText(asked)
         self.empty.setEnabled(bool(self.picks))
 
     # ---- for the panel
@@ -124,11 +124,11 @@ class PickField(Input):
         return (self.picks[0].obj, list(self.picks[0].names)) if self.element else self.picks[0].obj
 
     def applied(self) -> None:
-        self.told = self.told or bool(self.picks)
+        self.explicit = self.explicit or bool(self.picks)
 
     def arguments(self) -> dict[str, str]:
         references = [recorded.reference(pick.obj) for pick in self.picks]
-        if not references and not self.told:
+        if not references and not self.explicit:
             return {}
         if self.several:
             return {self.link.key: f"[{', '.join(references)}]"}

@@ -20,7 +20,7 @@ FACE, EDGE = "Face", "Edge"
 _GROUPS = ("App::Part", "App::DocumentObjectGroup")
 _LINES = ("App::Line", "PartDesign::Line")
 _SKETCH_AXES = ("V_Axis", "H_Axis", "N_Axis")
-_SAME = 1e-6  # mm; of two faces that are the same
+_TOLERANCE_MM = 1e-6  # mm; of two faces that are the same
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ def _own_name(obj: Any, picked: Any, element: str) -> str:
     elements = shape.Faces if kind == FACE else shape.Edges
     for number, one in enumerate(elements, start=1):
         apart = (one.CenterOfMass - picked.CenterOfMass).Length
-        if apart < _SAME and abs(one.Length - picked.Length) < _SAME * max(1.0, one.Length):
+        if apart < _TOLERANCE_MM and abs(one.Length - picked.Length) < _TOLERANCE_MM * max(1.0, one.Length):
             return f"{kind}{number}"
     return ""
 
@@ -167,10 +167,10 @@ def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
     faced = [pick for pick in walls if pick.names]
     if len(picks) > 2:
         wall = faced[0] if len(faced) == 1 else None
-        told = tr("{} objects are selected; pick the wall and the substrate") if wall is None else tr(
+        text = tr("{} objects are selected; pick the wall and the substrate") if wall is None else tr(
             "{} objects are selected; pick the substrate"
         )
-        return wall, None, told.format(len(picks))
+        return wall, None, text.format(len(picks))
     wall = (faced or walls or [None])[0]
     others = [pick for pick in picks if pick is not wall]
     return wall, Pick(others[0].obj) if len(others) == 1 else None, ""

@@ -51,11 +51,11 @@ def coloured(found: Placed, name: str) -> Coloured:
     _, first = np.unique(places, axis=0, return_index=True)
     shown = np.array(order)[np.sort(first)]
     values = np.array([figure(found, int(number), name) for number in shown])
-    told = np.isfinite(values) & (np.array([found.of_pose(int(k)).feasible for k in shown]) | (name == SHARE))
+    known = np.isfinite(values) & (np.array([found.of_pose(int(k)).feasible for k in shown]) | (name == SHARE))
     colours = np.tile(GREY, (len(shown), 1))
-    least, most = (float(values[told].min()), float(values[told].max())) if told.any() else (np.nan, np.nan)
-    if told.any():
-        colours[told] = ramp((values[told] - least) / (most - least) if most > least else np.ones(int(told.sum())))
+    least, most = (float(values[known].min()), float(values[known].max())) if known.any() else (np.nan, np.nan)
+    if known.any():
+        colours[known] = ramp((values[known] - least) / (most - least) if most > least else np.ones(int(known.sum())))
     return Coloured(shown, colours, least, most)
 
 
@@ -69,10 +69,10 @@ def texts(found: Placed, number: int) -> list[str]:
     """The cells of a row: the pose, its figures, and with how many points it was planned or why it fails."""
     pose = [f"{value:.6g}" for value in outer(found.pose(number))]
     values = [figure(found, number, name) for name in (MARGIN, TIME, CLEARANCE)]
-    told = [format(value, form) if np.isfinite(value) else "–" for value, form in zip(values, (".3g", ".0f", ".3g"))]
+    cells = [format(value, form) if np.isfinite(value) else "–" for value, form in zip(values, (".3g", ".0f", ".3g"))]
     one = found.of_pose(number)
     points = tr("all") if number in found.proven else f"{found.points}"
-    return [*pose, *told, points if one.feasible else f"{points}: {one.code}"]
+    return [*pose, *cells, points if one.feasible else f"{points}: {one.code}"]
 
 
 def heads() -> list[str]:

@@ -44,10 +44,10 @@ class Form(QtGui.QWidget):
         self.colour.setToolTip(tr("What the colours of the places tell"))
         for name, text in figures.NAMES.items():
             self.colour.addItem(translated(text), name)
-        self.key, self.told = QtGui.QLabel(), QtGui.QLabel()
+        self.key, self.summary = QtGui.QLabel(), QtGui.QLabel()
         self.key.setObjectName("key")
-        self.told.setObjectName("told")
-        for label, most in ((self.key, 1), (self.told, 2)):  # lines, with which what is below stays where it is
+        self.summary.setObjectName("told")
+        for label, most in ((self.key, 1), (self.summary, 2)):  # lines, with which what is below stays where it is
             label.setWordWrap(True)
             label.setMinimumHeight(most * label.fontMetrics().lineSpacing())
             label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
@@ -56,7 +56,7 @@ class Form(QtGui.QWidget):
         buttons.addWidget(self.compute)
         buttons.addWidget(self.use)
         column.addLayout(buttons)
-        for widget in (self.reach, self.told, self.colour, self.key, self.table):
+        for widget in (self.reach, self.summary, self.colour, self.key, self.table):
             column.addWidget(widget)
         column.addStretch(1)
 
@@ -66,8 +66,8 @@ class Form(QtGui.QWidget):
 
     def tell(self, text: str, wrong: bool = False) -> None:
         """Say what goes on, or what came of it."""
-        self.told.setText(text)
-        self.told.setStyleSheet(f"QLabel {{ color: {WRONG}; }}" if wrong else "")
+        self.summary.setText(text)
+        self.summary.setStyleSheet(f"QLabel {{ color: {WRONG}; }}" if wrong else "")
 
     def tell_colours(self, shown: figures.Coloured | None) -> None:
         """What the colours mean."""

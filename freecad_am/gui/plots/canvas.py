@@ -15,7 +15,7 @@ from ...plots.chart import Chart, Picture
 from ...plots.look import DARK, LIGHT, Look
 from ..background.worker import Worker
 from ..texts.translation import tr
-from .reading import Range, moved, told, zoomed
+from .reading import Range, moved, text_at, zoomed
 from .words import of_frames
 
 if TYPE_CHECKING:
@@ -274,7 +274,7 @@ class Canvas(QtGui.QWidget):
         number = self._at(self._pointer)
         place = self.drawn.places[number]
         inside = place.left <= self._pointer.x() <= place.left + place.width
-        self.say(told(self.drawn.charts[number], self._x(place, self._pointer.x())) if inside else "")
+        self.say(text_at(self.drawn.charts[number], self._x(place, self._pointer.x())) if inside else "")
 
 
 def look_of(palette: Any) -> Look:

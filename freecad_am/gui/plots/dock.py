@@ -81,8 +81,8 @@ class PlotsDock(Follower):
         for combo in (self.which, self.over):
             combo.currentIndexChanged.connect(lambda *_: self.fill())
         self.choice.activated.connect(self._chosen)
-        for spin in (self.first, self.last):
-            spin.valueChanged.connect(lambda *_: self.soon.ask())
+        for box in (self.first, self.last):
+            box.valueChanged.connect(lambda *_: self.soon.ask())
         self.dock.hold(tr("Plots"), form)
 
     def _speak(self) -> None:
@@ -97,11 +97,11 @@ class PlotsDock(Follower):
             combo.setCurrentIndex(index)
             combo.blockSignals(blocked)
         for name, most, value in layers:
-            spin = getattr(self, name)
-            blocked = spin.blockSignals(True)
-            spin.setMaximum(most)
-            spin.setValue(value)
-            spin.blockSignals(blocked)
+            box = getattr(self, name)
+            blocked = box.blockSignals(True)
+            box.setMaximum(most)
+            box.setValue(value)
+            box.blockSignals(blocked)
         self.buttons["rectangle"].setChecked(rectangle)
         self.fill()
 
@@ -115,11 +115,11 @@ class PlotsDock(Follower):
         return combo
 
     def _layer(self, name: str, help: str) -> Any:
-        spin = QtGui.QSpinBox()
-        spin.setObjectName(name)
-        spin.setToolTip(help)
-        spin.setRange(0, 0)
-        return spin
+        box = QtGui.QSpinBox()
+        box.setObjectName(name)
+        box.setToolTip(help)
+        box.setRange(0, 0)
+        return box
 
     def _fill(self, form: Any) -> None:
         column, line = QtGui.QVBoxLayout(form), QtGui.QHBoxLayout()
@@ -225,12 +225,12 @@ class PlotsDock(Follower):
         most = max(len(toolpath.Proxy.value(toolpath).layers) - 1, 0)
         other, self.layers_of = self.layers_of != _identity(obj), _identity(obj)
         anew = other or self.last.value() == self.last.maximum()
-        for spin, value in ((self.first, 0 if other else self.first.value()),
+        for box, value in ((self.first, 0 if other else self.first.value()),
                             (self.last, most if anew else self.last.value())):
-            blocked = spin.blockSignals(True)
-            spin.setRange(0, most)
-            spin.setValue(value)
-            spin.blockSignals(blocked)
+            blocked = box.blockSignals(True)
+            box.setRange(0, most)
+            box.setValue(value)
+            box.blockSignals(blocked)
 
     def _built(self, worker: Worker, key: Any, shown: tuple[Any, ...]) -> None:
         if self.note.text() == tr("Computing…"):

@@ -12,7 +12,7 @@ Range = tuple[float, float]
 NARROWEST = 1e-6  # of all there is
 
 
-def told(chart: Chart, x: float) -> str:
+def text_at(chart: Chart, x: float) -> str:
     """The place x and the values there: of curves those of the point that is nearest, of steps that of the way."""
     texts = [f"{chart.x.name} {x:.5g} {chart.x.unit}".rstrip()]
     if chart.bars is not None:

@@ -45,7 +45,7 @@ class Located:
         away = np.linalg.norm(motion.position[rows[mine]] - position, axis=1)
         return self.lines.of(int(mine[int(away.argmin())]))
 
-    def told(self, row: int) -> str:
+    def text_at(self, row: int) -> str:
         """A row of the motion in words."""
         motion = self.motion
         place = tr("layer {} bead {}").format(int(motion.layer[row]), int(motion.bead[row]))

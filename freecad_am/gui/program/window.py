@@ -19,7 +19,7 @@ from ...objects.staleness import UP_TO_DATE
 from .. import icons
 from ..colours import WRONG
 from ..path import path_view
-from ..simulation import told
+from ..simulation import wording
 from ..simulation.run import run_of
 from ..texts.translation import error_line, tr, translated, translated_error
 from .listing import listing, mark
@@ -83,7 +83,7 @@ class ProgramWindow:
         self.place.clear()
         try:
             run = run_of(self.obj)
-            self.sums.setText("  ·  ".join(tr("{}: {}").format(name, value) for name, value in told.totals(run)))
+            self.sums.setText("  ·  ".join(tr("{}: {}").format(name, value) for name, value in wording.totals(run)))
             if fits and names:
                 self.located = Located.of(self.obj.Post, self.files, run.motion)
         except (AmError, AttributeError):  # its joint path is gone, or undo has not yet brought all of it back
@@ -138,7 +138,7 @@ class ProgramWindow:
 
     def _tell(self, line: int, row: int) -> None:
         if self.located is not None:
-            self.place.setText(tr("Line {}: {}").format(line + 1, self.located.told(row)))
+            self.place.setText(tr("Line {}: {}").format(line + 1, self.located.text_at(row)))
 
     def _export(self, *_: Any) -> None:
         try:

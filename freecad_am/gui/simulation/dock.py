@@ -74,11 +74,11 @@ class Simulation:
         }
         self.fields = Fields(self.run, self.player, self._slid, acts)
         self.scroll.setWidget(self.fields)  # what was there goes
-        self._make_room()
+        self._reserve_width()
         self.fields.tell_finding(None)
 
-    def _make_room(self) -> None:
-        self.fields.make_room()
+    def _reserve_width(self) -> None:
+        self.fields.reserve_width()
         bar = self.scroll.verticalScrollBar().sizeHint().width()
         self.scroll.setMinimumWidth(max(WIDE, self.fields.minimumSizeHint().width() + bar))
 
@@ -123,7 +123,7 @@ class Simulation:
     def _fit(self) -> None:
         if self.scene is not None:
             with contextlib.suppress(RuntimeError, ReferenceError):  # the view was closed
-                self._make_room()  # the fields are wider with what is told by now
+                self._reserve_width()  # the fields are wider with what is told by now
                 self.scene.view.fitAll()
 
     # ---- what is shown
@@ -147,7 +147,7 @@ class Simulation:
         if self.scene is not None:
             self.scene.machine.renew_colours()
             self.show()
-            self._make_room()
+            self._reserve_width()
             findings = self.run.watch.findings
             self.fields.tell_finding(None if self.player.finding is None else findings[self.player.finding])
 

@@ -12,7 +12,7 @@ from PySide import QtCore, QtGui
 from ..colours import WRONG
 from ..texts.translation import tr
 from ..widgets.steady import SteadyLabel
-from . import told
+from . import wording
 from .bars import JointBars
 from .player import Moment, Player
 from .run import Run
@@ -36,7 +36,7 @@ class Fields(QtGui.QWidget):
         units, axes = machine.unit_values, len(machine.axes)
         self.bars = JointBars(machine.axes, machine.units, limits.lower[:axes] / units, limits.upper[:axes] / units)
         self.slider = self._slider(slid)
-        self.told = {name: SteadyLabel(name) for name in ("clock", "place", "doing", "speed", "condition")}
+        self.labels = {name: SteadyLabel(name) for name in ("clock", "place", "doing", "speed", "condition")}
         self.finding = _label("finding")
         self.finding.setWordWrap(True)
         self.finding.setMinimumHeight(2 * self.finding.fontMetrics().height() + 4)
@@ -68,9 +68,9 @@ class Fields(QtGui.QWidget):
 
     def _moment(self) -> Any:
         line = QtGui.QHBoxLayout()
-        line.addWidget(self.told["clock"])
+        line.addWidget(self.labels["clock"])
         line.addStretch(1)
-        line.addWidget(self.told["place"])
+        line.addWidget(self.labels["place"])
         return line
 
     def _buttons(self, acts: dict[str, Callable[[], None]]) -> Any:
@@ -114,14 +114,14 @@ class Fields(QtGui.QWidget):
         names = (("doing", tr("Machine")), ("speed", tr("Speed")), ("condition", tr("Condition")))
         for row, (name, text) in enumerate(names):
             grid.addWidget(QtGui.QLabel(text), row, 0)
-            grid.addWidget(self.told[name], row, 1, QtCore.Qt.AlignLeft)
+            grid.addWidget(self.labels[name], row, 1, QtCore.Qt.AlignLeft)
         grid.setColumnStretch(1, 1)
         return grid
 
-    def make_room(self) -> None:
+    def reserve_width(self) -> None:
         """As wide as what is told becomes, in the language and the units of now."""
-        for name, texts in told.widest(self.run).items():
-            self.told[name].make_room(texts)
+        for name, texts in wording.widest(self.run).items():
+            self.labels[name].reserve_width(texts)
 
     # ---- what is shown
 
@@ -135,15 +135,15 @@ class Fields(QtGui.QWidget):
         self.filling = True
         self.slider.setValue(round(self.player.time / max(self.run.times.total, 1e-9) * STEPS))
         self.filling = False
-        self.told["clock"].tell(told.times(self.run, self.player.time))
-        self.told["place"].tell(told.place(self.run, moment))
+        self.labels["clock"].tell(wording.times(self.run, self.player.time))
+        self.labels["place"].tell(wording.place(self.run, moment))
         self.bars.set(moment.values, moment.margins, moment.ratios, moment.bad)
-        speed, kept = told.speed(moment)
+        speed, kept = wording.speed(moment)
         for name, text, good in (
-            ("doing", told.doing(self.run, moment), bool(np.isfinite(moment.state.joints).all())), ("speed", speed, kept),
-            ("condition", told.condition(moment), not moment.singular),
+            ("doing", wording.doing(self.run, moment), bool(np.isfinite(moment.state.joints).all())), ("speed", speed, kept),
+            ("condition", wording.condition(moment), not moment.singular),
         ):
-            label = self.told[name]
+            label = self.labels[name]
             label.tell(text)
             sheet = "" if good else _WRONG
             if label.styleSheet() != sheet:
@@ -153,11 +153,11 @@ class Fields(QtGui.QWidget):
         """Tell of a finding, or how many there are."""
         count = len(self.run.watch.findings)
         if found is None:
-            text = tr("{count} findings").format(count=count) if count else told.nothing(self.run)
+            text = tr("{count} findings").format(count=count) if count else wording.nothing(self.run)
         else:
             limit = found.label in self.run.cell.machine.axes
             unit = self.run.cell.machine.units[self.run.cell.machine.axes.index(found.label)] if limit else "deg"
-            text = f"{(self.player.finding or 0) + 1}/{count}: {told.finding(found, unit)}"
+            text = f"{(self.player.finding or 0) + 1}/{count}: {wording.finding(found, unit)}"
         self.finding.setText(text)
         self.finding.setStyleSheet(_WRONG if found is not None else "")
 
@@ -173,7 +173,7 @@ def _totals(run: Run) -> Any:
     box.setObjectName("totals")
     grid = QtGui.QGridLayout(box)
     grid.setVerticalSpacing(1)
-    for row, (name, value) in enumerate(told.totals(run)):
+    for row, (name, value) in enumerate(wording.totals(run)):
         grid.addWidget(QtGui.QLabel(name), row, 0)
         grid.addWidget(QtGui.QLabel(value), row, 1)
     grid.setColumnStretch(1, 1)

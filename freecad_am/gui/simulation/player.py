@@ -15,7 +15,7 @@ from ...core.simulation.timeline import State
 from ...core.simulation.watch import Finding, bad_links, shown_margins
 from .run import Run
 
-_SAME = 1e-9  # s
+_TOLERANCE_S = 1e-9  # s
 
 
 @dataclass(frozen=True)
@@ -64,21 +64,21 @@ class Player:
         """To the next point, or to the one before."""
         arrive = self.run.times.arrive
         if by > 0:
-            row = int(np.searchsorted(arrive, self.time + _SAME, side="right"))
+            row = int(np.searchsorted(arrive, self.time + _TOLERANCE_S, side="right"))
         else:
-            row = int(np.searchsorted(arrive, self.time - _SAME, side="left")) - 1
+            row = int(np.searchsorted(arrive, self.time - _TOLERANCE_S, side="left")) - 1
         self.go_to_row(int(np.clip(row, 0, len(arrive) - 1)))
 
     def step_layer(self, by: int) -> None:
         """To the start of the next layer, or of this one, or of the one before when it is there."""
         starts = self.run.times.arrive[self.run.times.layer_rows]
         if by > 0:
-            index = int(np.searchsorted(starts, self.time + _SAME, side="right"))
+            index = int(np.searchsorted(starts, self.time + _TOLERANCE_S, side="right"))
             if index == len(starts):
                 self.go(self.run.times.total)
                 return
         else:
-            index = max(int(np.searchsorted(starts, self.time - _SAME, side="left")) - 1, 0)
+            index = max(int(np.searchsorted(starts, self.time - _TOLERANCE_S, side="left")) - 1, 0)
         self.go_to_row(int(self.run.times.layer_rows[index]))
 
     def next_finding(self) -> Finding | None:
@@ -113,6 +113,6 @@ class Player:
         axes = len(machine.axes)
         return Moment(
             state=state, row=row, values=state.joints / machine.unit_values, margins=margins[:axes], ratios=ratios,
-            bad=alone[1:], links=links, asked=float(run.pace.asked[row]), achieved=float(run.pace.achieved[row]),
+            bad=alone[1:], links=links, asked=float(run.feed.asked[row]), achieved=float(run.feed.achieved[row]),
             condition=condition, threshold=threshold, singular=singular,
         )

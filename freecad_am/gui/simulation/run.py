@@ -13,7 +13,7 @@ from ...core.motion import Motion
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
-from ...core.simulation.pace import Pace, pace
+from ...core.simulation.achievable_feed import AchievableFeed, achievable_feed
 from ...core.simulation.timeline import Timeline, timeline
 from ...core.simulation.totals import Totals, totals
 from ...core.simulation.watch import Watch, watch
@@ -45,11 +45,11 @@ class Run:
     width: float
     motion: Motion
     times: Timeline
-    pace: Pace
+    feed: AchievableFeed
     watch: Watch
     totals: Totals
     stale: bool = False
-    laid: Array | None = None
+    deposit: Array | None = None
 
 
 def run_of(obj: Any) -> Run:
@@ -70,7 +70,7 @@ def prepared(obj: Any) -> Callable[[], Run]:
     if not len(planned.motion):
         raise InputError("NO_RESULT", path.Label, "it has no points; there is nothing to play")
     issues, stale, label = issues_of(path), path.Status == STALE, obj.Label
-    laid = _predicted(path.Toolpath)
+    deposited = _predicted(path.Toolpath)
     names = tuple(dict.fromkeys((obj.Name, path.Name, path.Toolpath.Name, path.Cell.Name)))
     document = obj.Document.Name
     settings = obj.Proxy.parameters(obj, ProgramParameters) if stage.kind == "program" else None
@@ -81,15 +81,15 @@ def prepared(obj: Any) -> Callable[[], Run]:
         run = as_run(planned, cell, toolpath.chord_error, settings, issues)
         motion = run.motion
         times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
-        kept = pace(motion, cell.machine.max_speed, cell.machine.max_acceleration)
+        kept = achievable_feed(motion, cell.machine.max_speed, cell.machine.max_acceleration)
         return Run(
             document=document, title=label, objects=names, cell=cell, looks=looks, toolpath=toolpath,
-            width=process.bead_width, motion=motion, times=times, pace=kept,
+            width=process.bead_width, motion=motion, times=times, feed=kept,
             watch=watch(
                 motion, cell, kept, run.condition, run.threshold, run.issues,
                 arm_of(motion, cell, toolpath, process, shapes),
             ),
-            totals=totals(motion, times, process, toolpath), stale=stale, laid=laid,
+            totals=totals(motion, times, process, toolpath), stale=stale, deposit=deposited,
         )
 
     return work

@@ -24,8 +24,8 @@ from ...core.simulation.grown import heights
 from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
-from ..nodes.beside import BesideNodes
 from ..nodes.cell import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
+from ..nodes.external_links import ExternalLinkNodes
 from ..nodes.lines import Lines, fill
 from ..nodes.machine_links import MachineNodes, move, plain_links
 from ..path.pieces import PathNodes
@@ -48,7 +48,7 @@ class Scene:
         looks = run.looks
         self.machine = MachineNodes(
             cell.robot, plain_links(cell.robot, looks.platform_diameter, looks.nozzle.length))
-        self.beside = BesideNodes(cell.beside)
+        self.external_links = ExternalLinkNodes(cell.external_links)
         self.part, self.nozzle = coin.SoMatrixTransform(), coin.SoMatrixTransform()
         self.part_matrix, self.nozzle_matrix = self.part.matrix, self.nozzle.matrix
         self.deposit, self.to_come = PathNodes(), PathNodes()
@@ -68,7 +68,7 @@ class Scene:
             platform.addChild(child)
         for child in (self.deposit.node, self.last.node, self.to_come.node, coloured(PLATFORM, platform)):
             part.addChild(child)
-        for child in (self.machine.node, self.beside.node, nozzle, part):
+        for child in (self.machine.node, self.external_links.node, nozzle, part):
             self.root.addChild(child)
         self._place(rest)  # where the machine stays as long as no point is reached
         self._fill()
@@ -87,7 +87,7 @@ class Scene:
         beads = _beads(self.run)
         rows = Rows.of(beads, _layers(self.run), self.run.width, lambda: self.run.toolpath.layer_height)
         colours = np.tile(METAL, (len(rows), 1))
-        slowed, wrong = self.run.pace.slowed[deposit], _wrong(self.run)[deposit]
+        slowed, wrong = self.run.feed.slowed[deposit], _wrong(self.run)[deposit]
         colours[slowed], colours[wrong] = SLOW, WRONG
         self.deposit.set(rows)
         self.deposit.paint(colours)
@@ -105,7 +105,7 @@ class Scene:
             self._place(placing(self.run.cell, joints))
         own = len(self.machine.bad)
         self.machine.paint(bad[:own])
-        self.beside.paint(bad[own:])
+        self.external_links.paint(bad[own:])
         done = int(self.rows_before[row if running else row + 1])
         if done != self.deposit.end:
             self.deposit.show(0, done)
@@ -122,7 +122,7 @@ class Scene:
 
     def _place(self, place: Placing) -> None:
         self.machine.pose(self.to_view @ place.links)
-        self.beside.pose(self.to_view @ place.beside)
+        self.external_links.pose(self.to_view @ place.external_links)
         move(self.part_matrix, self.to_view @ place.part)
         move(self.nozzle_matrix, self.to_view @ place.nozzle)
 
@@ -157,7 +157,7 @@ def _beads(run: Run) -> list[Bead]:
     """The beads as they are run, a bead for every stretch of deposit rows; their points are those rows. As high as they are
     predicted to end, where that is known."""
     motion = run.motion
-    height = None if run.laid is None else heights(run.laid, motion.position, motion.layer)
+    height = None if run.deposit is None else heights(run.deposit, motion.position, motion.layer)
     rows = np.flatnonzero(motion.deposit)
     pieces = np.split(rows, np.flatnonzero(motion.point[rows] == 0)[1:])
     return [

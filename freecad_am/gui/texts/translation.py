@@ -60,14 +60,14 @@ def error_line(error: AmError) -> str:
 def sentence(text: str) -> str:
     """A text that begins small, such as a finding, as a sentence of its own, in the language of the window. One that begins
     with the name of a part or file keeps that as it is."""
-    told = translated(text)
-    return told if _phrases().names_first(text) else told[:1].upper() + told[1:]
+    worded = translated(text)
+    return worded if _phrases().names_first(text) else worded[:1].upper() + worded[1:]
 
 
 @lru_cache(maxsize=4096)
 def _translated(text: str, language: str, quoted: str) -> str:
-    told = text if language == "en" else _phrases().translated(text, tr)
-    return as_in_panels(told, tr if language == "en" else translated, quoted)
+    worded = text if language == "en" else _phrases().translated(text, tr)
+    return as_in_panels(worded, tr if language == "en" else translated, quoted)
 
 
 @lru_cache(maxsize=1)

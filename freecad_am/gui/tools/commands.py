@@ -64,7 +64,7 @@ TOOLS = {
     ),
     "SpinMap": Tool(
         "spin_map", marked("Free Rotation Map…"),
-        marked("Shows the path against the rotation about the tool; the curve can be drawn by hand"), openers.spin_map,
+        marked("Shows the path against the rotation about the tool; the curve can be drawn by hand"), openers.redundancy_map,
         needs.joint_path, True,
     ),
     "Placement": Tool(

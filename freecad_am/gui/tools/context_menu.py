@@ -78,10 +78,10 @@ def of_job(menu: Any, group: Any) -> None:
 
 def renew(obj: Any, force: bool = False) -> None:
     """Renew a stage and what it is made from; what is wrong is told in the report view and in its status."""
-    told = ", force=True" if force else ""
+    text = ", force=True" if force else ""
     Gui.doCommand(recorded.IMPORT)
     try:
-        Gui.doCommand(f"am.recompute({recorded.reference(obj)}{told})")
+        Gui.doCommand(f"am.recompute({recorded.reference(obj)}{text})")
     except AmError as error:
         App.Console.PrintError(error_line(error))
     except Cancelled:

@@ -99,11 +99,11 @@ def joint_path() -> None:
     show(JointPathPanel())
 
 
-def spin_map() -> None:
+def redundancy_map() -> None:
     """The map of a joint path."""
-    from ..spin_map import tool
+    from ..redundancy_map import tool
 
-    tool.spin_map()
+    tool.redundancy_map()
 
 
 def placement() -> None:

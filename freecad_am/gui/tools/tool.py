@@ -18,17 +18,18 @@ PREFIX = "RoboticAM_"
 
 class Tool:
     """One command. `icon` is also the object it makes; `action` opens what the tool opens; `need` tells what a document
-    lacks for it; `beside`: whether it acts beside a task panel that is open."""
+    lacks for it; `with_dialog`: whether it acts beside a task panel that is open."""
 
     name = ""  # without prefix
-    told = ""  # in its tooltip now, below its name
+    hint = ""  # in its tooltip now, below its name
 
     def __init__(
         self, icon: str, text: str, help: str, action: Callable[[], None], need: needs.Need = needs.document,
-        beside: bool = False,
+        with_dialog: bool = False,
     ) -> None:
         # as written: FreeCAD translates them by the name of the command, and again when the language changes
-        self.icon, self.text, self.help, self.action, self.need, self.beside = icon, text, help, action, need, beside
+        self.icon, self.text, self.help, self.action, self.need = icon, text, help, action, need
+        self.with_dialog = with_dialog
 
     def GetResources(self) -> dict[str, str]:
         """Texts and icon; the macro interface makes the step of undo, not the command.
@@ -44,15 +45,15 @@ class Tool:
         """Whether it can act; the tooltip says what is missing when it cannot."""
         lacking = self.missing()
         help = tr(self.help)
-        told = tr("{}. {}").format(help, lacking) if lacking else help
-        if told != self.told and self._explain(told):
-            self.told = told
+        hint = tr("{}. {}").format(help, lacking) if lacking else help
+        if hint != self.hint and self._explain(hint):
+            self.hint = hint
         return not lacking
 
     def missing(self) -> str:
         """What to do first, '' when it can act now."""
         try:
-            if App.ActiveDocument is not None and not self.beside and Gui.Control.activeDialog():
+            if App.ActiveDocument is not None and not self.with_dialog and Gui.Control.activeDialog():
                 return tr("First close the task panel that is open.")
             return self.need(App.ActiveDocument)
         except (ReferenceError, RuntimeError):  # the document is being closed

@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 
-class _Room(QtCore.QObject):
+class _BarWidth(QtCore.QObject):
     """Looks at the bar whenever its room changes, as with the width of the window."""
 
     def __init__(self, bar: Any) -> None:
@@ -42,5 +42,5 @@ def keep_whole(title: str) -> None:
 def _watch(title: str) -> None:
     with contextlib.suppress(RuntimeError):
         for bar in Gui.getMainWindow().findChildren(QtGui.QToolBar):
-            if bar.windowTitle() == title and not bar.findChildren(_Room):
-                _Room(bar).give()
+            if bar.windowTitle() == title and not bar.findChildren(_BarWidth):
+                _BarWidth(bar).give()

@@ -40,7 +40,7 @@ class Draft:
         """The work that computes what the stage would, without the document. Raises what it raises, as does the work."""
         return self.stage.prepare(self.obj)
 
-    def told(self, work: Callable[[], T]) -> Callable[[], T]:
+    def reporting(self, work: Callable[[], T]) -> Callable[[], T]:
         """Work of a preview that tells a lack of memory and faults of the geometry kernel as the stage itself does."""
 
         def within() -> T:

@@ -26,7 +26,7 @@ class FeatureOrder(Input):
 
     def __init__(self, link: Link, first: StageChoice, present: Any, sequence: str) -> None:
         self.link, self.label, self.first = link, translated(link.label), first
-        self.told = bool(present)
+        self.explicit = bool(present)
         self.document = first.document
         self.widget = QtGui.QWidget()
         self.widget.setToolTip(translated(link.help))
@@ -100,11 +100,11 @@ class FeatureOrder(Input):
         self._show()
 
     def applied(self) -> None:
-        self.told = self.told or bool(self.names())
+        self.explicit = self.explicit or bool(self.names())
 
     def arguments(self) -> dict[str, str]:
         names = [name for name in self.names() if name != self.first.widget.currentData()]
-        if not names and not self.told:
+        if not names and not self.explicit:
             return {}
         references = ", ".join(recorded.reference(self.document.getObject(name)) for name in names)
         return {self.link.key: f"[{references}]", "sequence": repr(self.sequence.currentData())}

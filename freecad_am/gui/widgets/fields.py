@@ -126,10 +126,10 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
         check.setChecked(shown)
         return Field(row, check, check.isChecked)
     if row.form == f.COUNT:
-        spin = QtGui.QSpinBox()
-        spin.setRange(-_LARGEST, _LARGEST)  # what is out of range is told by the core, not cut off here
-        spin.setValue(shown)
-        return Field(row, spin, spin.value) if not expression else _text(row, value, expression)
+        box = QtGui.QSpinBox()
+        box.setRange(-_LARGEST, _LARGEST)  # what is out of range is told by the core, not cut off here
+        box.setValue(shown)
+        return Field(row, box, box.value) if not expression else _text(row, value, expression)
     if suggestions is not None:
         return _suggested(row, shown, suggestions())
     return _text(row, value, expression)

@@ -36,7 +36,7 @@ class FitPlot(Canvas):
         return QtCore.QSize(240, HEIGHT)
 
 
-def told(measured: Measured, model: BeadModel) -> str:
+def fits_text(measured: Measured, model: BeadModel) -> str:
     """The fits in words."""
     lines = []
     for name, found in ((tr("Width"), model.width), (tr("Height"), model.height)):
@@ -53,7 +53,7 @@ def told(measured: Measured, model: BeadModel) -> str:
     return "\n".join(lines)
 
 
-def speeds_told(model: BeadModel, width: float) -> str:
+def speeds_text(model: BeadModel, width: float) -> str:
     """What speeds a width asks for, and whether the table has such."""
     asked = model.speed_for(width, np.array([model.radii[0], np.inf]))
     ends = np.select(

@@ -8,7 +8,7 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 MARGIN = 2  # pixels
-NARROW, MOST = 30, 12  # letters of a line in a panel as FreeCAD opens it, and lines that are held
+NARROW, MAX_LINES = 30, 12  # letters of a line in a panel as FreeCAD opens it, and lines that are held
 
 
 class Messages(QtGui.QScrollArea):
@@ -43,12 +43,12 @@ class Messages(QtGui.QScrollArea):
         return label
 
     def hold(self, label: Any) -> None:
-        """Room for all of a label in a narrow panel, up to MOST lines, and no less than there is. Before the panel is seen:
-        then fields are to stay in place."""
+        """Room for all of a label in a narrow panel, up to MAX_LINES lines, and no less than there is. Before the panel is
+        seen: then fields are to stay in place."""
         metrics = self.fontMetrics()
         needed = label.heightForWidth(NARROW * metrics.averageCharWidth())
         if needed + 2 * MARGIN > self.height():
-            self._hold(min(-(-needed // metrics.lineSpacing()), MOST))
+            self._hold(min(-(-needed // metrics.lineSpacing()), MAX_LINES))
 
     def _hold(self, lines: int) -> None:
         self.setFixedHeight(lines * self.fontMetrics().lineSpacing() + 2 * MARGIN)

@@ -20,7 +20,7 @@ class SteadyLabel(QtGui.QLabel):
         super().__init__()
         self.setObjectName(name)
 
-    def make_room(self, texts: Iterable[str]) -> None:
+    def reserve_width(self, texts: Iterable[str]) -> None:
         """For these, and for what is shown now."""
         shown = self.text()
         sizes = [self._size(text) for text in (*texts, shown)]

@@ -45,16 +45,16 @@ def _branches() -> list[str]:
 def no_post(name: str) -> str:
     """What to say of a machine that no post writes a new job for; '' for others, and for one that cannot be read."""
     try:
-        told = machine.load(name, user_machines.folders())
+        loaded = machine.load(name, user_machines.folders())
     except InputError:
         return ""
-    posts, setup = written_by(told), told.arrangements[0].setup
+    posts, setup = written_by(loaded), loaded.arrangements[0].setup
     if posts is None or catalogue.fitting(posts, ProgramParameters().motion, setup):
         return ""
     if posts:
         return tr("Programs for this machine's controller need the tool on the robot and cartesian motion. A new job is "
                   "planned, checked and simulated, but no program is written with it.")
-    if told.posts:
+    if loaded.posts:
         return tr("Programs for this machine need what only its controller tells, its pulses per degree, in a machine file "
                   "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.")
     return tr("There is no post for this machine's controller yet: all is planned, checked and simulated, but no program is "

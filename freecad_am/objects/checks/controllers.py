@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.issues import InputError
 from ...core.kinematics.cell import Cell
-from ...core.kinematics.machines.machine import NOT_TOLD, Machine
+from ...core.kinematics.machines.machine import UNKNOWN_REMARK, Machine
 from ...core.parameters.program import ProgramParameters
 from ...core.toolpath import Toolpath
 from ...posts.catalogue import NAMES, controller
@@ -26,7 +26,7 @@ def check_controller(machine: Machine, post: str) -> None:
     """InputError WRONG_CONTROLLER when the machine file says that its controller does not read that post's programs."""
     if machine.posts is None or post in machine.posts:
         return
-    if machine.controller_remark == NOT_TOLD:
+    if machine.controller_remark == UNKNOWN_REMARK:
         raise InputError("WRONG_CONTROLLER", "program.post", f"{machine.title} is a URDF, which does not tell what the "
                          "controller shows; plan without a program, or make a machine file of it with New Machine…")
     known = f"use one of {', '.join(machine.posts)}" if machine.posts else (

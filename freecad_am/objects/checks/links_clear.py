@@ -10,22 +10,22 @@ import numpy as np
 
 from ...core.issues import Issue
 from ...core.kinematics.cell import Cell
-from ...core.kinematics.links import rods as link_rods
+from ...core.kinematics.links import cylinders as link_cylinders
 from ...core.kinematics.links.contact import ArmContact
-from ...core.kinematics.links.rods import Mesh
+from ...core.kinematics.links.cylinders import Mesh
 from ...core.kinematics.links.rounds import NONE
 from ...core.motion import Motion
 from ...core.parameters.process import ProcessParameters
 from ...core.planning.arm import kept as arm_kept
-from ...core.simulation.arm import ArmTouches, arm_touches, laid
+from ...core.simulation.arm import ArmTouches, arm_touches, deposit_obstacles
 from ...core.toolpath import Toolpath
 from ..shapes.link_meshes import meshes_of
 
 
-def rods_of(cell: Cell) -> arm_kept.Rods:
+def cylinders_of(cell: Cell) -> arm_kept.Cylinders:
     """The rods of each link of the robot; none of machines with rotary axes, of whose links no file tells enough."""
     known = cell.arrangement.links_known
-    return link_rods.of_robot(cell.robot.chain, meshes_of(cell.machine)) if known else ()
+    return link_cylinders.of_robot(cell.robot.chain, meshes_of(cell.machine)) if known else ()
 
 
 def arm_of(
@@ -36,9 +36,9 @@ def arm_of(
     machines with rotary axes, of whose links no file tells enough."""
     if not cell.arrangement.links_known:
         return None
-    rods = link_rods.of_robot(cell.robot.chain, shapes)
-    deposited = laid(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
-    return arm_touches(motion, ArmContact(cell, rods, toolpath.surroundings, deposited, clearance), most)
+    cylinders = link_cylinders.of_robot(cell.robot.chain, shapes)
+    deposited = deposit_obstacles(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
+    return arm_touches(motion, ArmContact(cell, cylinders, toolpath.surroundings, deposited, clearance), most)
 
 
 def arm_issues(

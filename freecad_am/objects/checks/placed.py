@@ -12,7 +12,7 @@ from ...core.parameters.cell import CellParameters
 from ...core.parameters.joints import JointParameters
 from ...core.parameters.place import PlaceParameters
 from ...core.parameters.process import ProcessParameters
-from ...core.placement.judge import Job, Rods
+from ...core.placement.judge import Cylinders, Job
 from ...core.placement.place import Placed, placed
 from ...core.toolpath import Toolpath
 from .. import user_machines
@@ -20,7 +20,7 @@ from ..fields import rows
 from ..shapes import cell_obstacles
 from ..stage import stage_of
 from ..work import progress
-from .links_clear import rods_of
+from .links_clear import cylinders_of
 
 
 class Placing(NamedTuple):
@@ -80,7 +80,7 @@ def _job(toolpath: Toolpath, folders: tuple[str, ...], process: ProcessParameter
     def cell(settings: CellParameters) -> Cell:
         return cell_obstacles.resolved(settings, toolpath, folders)
 
-    def rods(of: Cell) -> Rods:
-        return tuple(tuple(link) for link in rods_of(of))
+    def cylinders(of: Cell) -> Cylinders:
+        return tuple(tuple(link) for link in cylinders_of(of))
 
-    return Job(toolpath, cell, rods, process, joints)
+    return Job(toolpath, cell, cylinders, process, joints)

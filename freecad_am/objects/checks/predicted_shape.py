@@ -19,7 +19,7 @@ from ...core.parameters.process import ProcessParameters
 from ...core.process.shape import compare
 from ...core.process.shape.compare import Compared
 from ...core.process.shape.faces import BOTH, OUTSIDE, Faces, faces, thinned, together
-from ...core.process.shape.laying import Laid, laid, parts_of
+from ...core.process.shape.laying import PredictedDeposit, parts_of, predicted_deposit
 from ...core.strategies.families import family_of
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..planned.toolpaths import Given
@@ -50,7 +50,7 @@ class Target:
         return family_of(self.given.strategy).kind
 
 
-def told(toolpath: CoreToolpath, targets: Sequence[Target], allowance: float) -> CoreToolpath:
+def with_shape_issues(toolpath: CoreToolpath, targets: Sequence[Target], allowance: float) -> CoreToolpath:
     """The toolpath with what its predicted deposit comes to, and a warning where the part is not inside of it by the
     allowance, mm, or where nobody can know."""
     try:
@@ -70,7 +70,7 @@ def issues(toolpath: CoreToolpath, targets: Sequence[Target], shape: PredictedSh
     return compare.issues(shape, toolpath.layer_heights, first, remedy(targets))
 
 
-def predicted(toolpath: CoreToolpath, targets: Sequence[Target], report: Report) -> tuple[Laid, Compared]:
+def predicted(toolpath: CoreToolpath, targets: Sequence[Target], report: Report) -> tuple[PredictedDeposit, Compared]:
     """The deposit of a toolpath, and the faces of its features against it. InputError NO_PREDICTION."""
     processes: list[ProcessParameters] = [target.given.process for target in targets]
     parts = parts_of(toolpath, processes)
@@ -80,7 +80,7 @@ def predicted(toolpath: CoreToolpath, targets: Sequence[Target], report: Report)
     if not asked:
         raise InputError(NOTHING, "toolpath", "curves have no faces that a deposit could be held against; leave out "
                          "process.machining_allowance")
-    deposit = laid(parts, lambda share, text: report(0.8 * share, f"predicting the deposit, {text}"))
+    deposit = predicted_deposit(parts, lambda share, text: report(0.8 * share, f"predicting the deposit, {text}"))
     report(0.8, "comparing the predicted deposit with the part")
     found = compare.compared(deposit, together(asked))
     if not len(found.faces):

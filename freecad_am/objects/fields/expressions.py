@@ -63,8 +63,8 @@ def _bare(value: str) -> str:
 
 
 def _wrong(value: str, where: str, error: Exception) -> InputError:
-    told = error.args[0] if error.args else error
-    reason = str(told.get("sErrMsg", "") if isinstance(told, dict) else told).strip().rstrip(".")
+    cause = error.args[0] if error.args else error
+    reason = str(cause.get("sErrMsg", "") if isinstance(cause, dict) else cause).strip().rstrip(".")
     return InputError(
         "BAD_EXPRESSION", where, f"{value!r} is not understood ({reason}); write it as in {MARK}Spreadsheet.height / 2"
     )

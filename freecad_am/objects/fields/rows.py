@@ -256,8 +256,8 @@ def _quantity(value: Any, where: str, example: str) -> Any:
             raise ValueError
         return quantity(value) if isinstance(value, str) else App.Units.Quantity(value)
     except (ValueError, TypeError, ArithmeticError, OSError):
-        told = plain_blanks(value) if isinstance(value, str) else value
-        raise InputError("BAD_VALUE", where, f"{told!r} is not understood; give {example}") from None
+        plain = plain_blanks(value) if isinstance(value, str) else value
+        raise InputError("BAD_VALUE", where, f"{plain!r} is not understood; give {example}") from None
 
 
 def _pose(value: Any, where: str) -> tuple[float, ...]:

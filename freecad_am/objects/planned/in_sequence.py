@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...brep.shapes.overlap import common_volume, volume
-from ...core.geometry.surroundings import Body
+from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ...core.kinematics.cell import mounted
 from ...core.parameters.cell import CellParameters
@@ -29,7 +29,7 @@ from .toolpaths import CHECKED, STRATEGY, Given, bases_of, kept_clear, layers_of
 
 OVERLAP = 0.01  # of the smaller part
 MM3 = 1000.0  # in a cm3
-ALIKE = 1e-9  # mm
+TOLERANCE_MM = 1e-9  # mm
 
 
 @dataclass(frozen=True)
@@ -41,14 +41,14 @@ class Member:
     given: Given
     sources: tuple[Taken, ...]
     on: tuple[str, ...] = ()
-    beside: tuple[Taken, ...] = ()
+    neighbours: tuple[Taken, ...] = ()
     whole: bool = True
 
     def around(self) -> tuple[Body, ...]:
         """What stands around it from the beginning: no parts of other features, which are deposited by and by."""
         if not self.on:
             return tuple(self.given.wall.surroundings)
-        return (*bodies(self.beside), *self.given.wall.surroundings[1:])
+        return (*bodies(self.neighbours), *self.given.wall.surroundings[1:])
 
 
 def member(feature: Any, given: Given, all_features: Sequence[Any]) -> Member:
@@ -60,9 +60,9 @@ def member(feature: Any, given: Given, all_features: Sequence[Any]) -> Member:
     substrate = getattr(feature, "Substrate", None)
     stands_on = [] if substrate is None else _leaves(substrate)
     on = tuple(one.Name for one in stands_on if one in others)
-    beside = tuple(taken(one) for one in stands_on if one not in others) if on else ()
+    neighbours = tuple(taken(one) for one in stands_on if one not in others) if on else ()
     whole = not any(feature.Source[1])
-    return Member(feature.Label, given, tuple(taken(one) for one in own), on, beside, whole)
+    return Member(feature.Label, given, tuple(taken(one) for one in own), on, neighbours, whole)
 
 
 def _leaves(obj: Any) -> list[Any]:
@@ -103,11 +103,11 @@ def planned_in_sequence(
     for number, one in enumerate(members):
         toolpath = _judged(toolpath, number, one, plates, stands)
     parts = toolpath.features
-    told = [part.on_part for part in parts if part.on_part is not None]
-    worst = max(told, key=lambda one: one[1] / one[2], default=None)
+    on_parts = [part.on_part for part in parts if part.on_part is not None]
+    worst = max(on_parts, key=lambda one: one[1] / one[2], default=None)
     return dataclasses.replace(
         toolpath, unsupported=math.fsum(part.unsupported or 0.0 for part in parts),
-        on_part=None if worst is None else (sum(one[0] for one in told), *worst[1:]),
+        on_part=None if worst is None else (sum(one[0] for one in on_parts), *worst[1:]),
     )
 
 
@@ -163,7 +163,7 @@ def _distinct(all_bodies: Sequence[Body]) -> tuple[Body, ...]:
     kept: list[Body] = []
     for body in all_bodies:
         if not any(
-            body.vertices.shape == other.vertices.shape and np.abs(body.vertices - other.vertices).max() <= ALIKE
+            body.vertices.shape == other.vertices.shape and np.abs(body.vertices - other.vertices).max() <= TOLERANCE_MM
             for other in kept
         ):
             kept.append(body)

@@ -18,18 +18,18 @@ from ...brep.shapes import part_depths
 from ...brep.walls.standing import stand
 from ...brep.walls.wall_on import named_faces
 from ...core.geometry.curves.profile import RevolvedWall
+from ...core.geometry.formatting import at_least, place
 from ...core.geometry.mesh.crossing import crossings
-from ...core.geometry.mesh.manifold import holes, told_apart
+from ...core.geometry.mesh.manifold import holes, separated
 from ...core.geometry.mesh.repair import WELDS, connected_triangles
 from ...core.geometry.mesh.uncrossed import uncrossed
-from ...core.geometry.surroundings import Body
-from ...core.geometry.told import at_least, place
+from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ...core.layers.curved.field import STANDING
 from ...core.layers.planes.stacking import best, facets, judged
 from ...core.parameters.filled import GEODESIC, PLANES, DevelopableParameters, SolidParameters
 from ...core.parameters.strategy import SurfaceParameters
-from ...core.process.deposit.balance import LITTLE, MM3, of_wall
+from ...core.process.deposit.balance import MM3, NEGLIGIBLE, of_wall
 from ..developable_feature import found_in
 from ..shapes.bodies import Taken
 from .on_bends import carried, on_bend
@@ -38,7 +38,7 @@ COARSE = 0.3  # mm; of triangles that a look at solids is content with
 TOUCHING = 0.05  # mm from the surface of a hub
 LEAST = 3  # corners of a solid that lie on what it stands on
 OVER = 0.1  # of the surface; parts of which more hangs over get layers that need no support
-HARDLY = 0.005  # of the surface; what rounds to nothing
+ROUNDED_OFF = 0.005  # of the surface; what rounds to nothing
 STEEP, LEVEL = float(np.radians(45.0)), float(np.cos(np.radians(1.0)))
 FLAT = 0.01  # of the height, above the lowest point; what lies there stands on something
 OPEN = 0.1  # of its size; a mesh with a wider hole is a wall
@@ -60,7 +60,7 @@ class Proposal:
     mend: float = 0.0
     stands: bool = False
 
-    def told(self) -> str:
+    def text(self) -> str:
         """What is proposed, in one sentence."""
         layers = f", layers: {self.layers}" if self.layers else ""
         return f"kind: {self.kind}{layers}: {self.reason}"
@@ -111,7 +111,7 @@ def proposed(
         deep = part_depths.of_revolved(shape, wall, part.label)
         balance = None if deep is None else of_wall(deep, width)
         out = 0.0 if balance is None else balance.left_out or 0.0
-        if balance is None or out <= LITTLE * (balance.part or 0.0):
+        if balance is None or out <= NEGLIGIBLE * (balance.part or 0.0):
             why = f"{part.label} turns about one axis, and its wall is one bead of {width:.4g} mm"
             return Proposal("revolution", "", why)
         left = (
@@ -147,7 +147,7 @@ def _of_mesh(part: Taken, substrate: Taken | None, edges: bool, tilts: bool, pla
     into one another do: no wall of one bead is that."""
     body = part.body()
     found = connected_triangles(body.vertices, body.triangles, part.label, 0.0)
-    open_ = holes(told_apart(found.vertices, found.triangles))
+    open_ = holes(separated(found.vertices, found.triangles))
     opening = max((hole.size for hole in open_), default=0.0)
     if opening <= OPEN * float(np.linalg.norm(np.ptp(body.vertices, axis=0))):
         return _solid(part, f"{part.label} is a mesh, which is filled", tilts, planes)
@@ -206,14 +206,14 @@ def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
     least = best(bodies, SolidParameters(max_overhang=STEEP, layer_height=planes.apart))[0].way
     way = least if planes.way is None else np.array(planes.way) / np.linalg.norm(planes.way)
     over = _overhang(bodies[0], way)
-    along = "" if np.array_equal(way, UP) else f", stacked along {_told(way)}"
-    if over < HARDLY:
+    along = "" if np.array_equal(way, UP) else f", stacked along {_direction_text(way)}"
+    if over < ROUNDED_OFF:
         return Proposal("solid", PLANES, f"{reason}, and less than 1% of its surface hangs over by more than 45 deg{along}")
     why = f"{reason}, and {over:.0%} of its surface hangs over by more than 45 deg{along}"
     if over <= OVER:
         return Proposal("solid", PLANES, why)
     other = _overhang(bodies[0], least)
-    hint = f"; stacked along {_told(least)} it would be {other:.0%}" if other <= OVER else ""
+    hint = f"; stacked along {_direction_text(least)} it would be {other:.0%}" if other <= OVER else ""
     if not _stands(bodies[0], way, planes.apart):
         return Proposal("solid", PLANES, f"{why}; curved layers need a flat face that it stands on, which it has not{hint}")
     if tilts:
@@ -240,7 +240,7 @@ def _stands(body: Body, way: Array, layer_height: float) -> bool:
     return bool(low.any())
 
 
-def _told(way: Array) -> str:
+def _direction_text(way: Array) -> str:
     x, y, z = (round(float(value), 3) + 0.0 for value in way)
     return f"({x:g}, {y:g}, {z:g})"
 
@@ -248,7 +248,7 @@ def _told(way: Array) -> str:
 def _turned(part: Taken, faces: Sequence[str]) -> RevolvedWall | None:
     """The wall of revolution of a shape, None where it is of none."""
     try:
-        with kernel.told(part.label):
+        with kernel.reported(part.label):
             return find_wall(part.shape.copy(False), tuple(faces), label=part.label)
     except InputError as error:
         if error.code == kernel.FAULTY:
@@ -264,8 +264,8 @@ def _thin(part: Taken, width: float, chosen: Sequence[str] = ()) -> bool:
     except (InputError, *kernel.FAULTS):
         return False
     balance = None if deep is None else of_wall(deep, width)
-    return balance is not None and (balance.left_out or 0.0) <= LITTLE * (balance.part or 0.0) and (
-        bool(chosen) or (balance.beads or 0.0) - (balance.beside or 0.0) <= TWOFOLD * (balance.part or 0.0))
+    return balance is not None and (balance.left_out or 0.0) <= NEGLIGIBLE * (balance.part or 0.0) and (
+        bool(chosen) or (balance.beads or 0.0) - (balance.outside or 0.0) <= TWOFOLD * (balance.part or 0.0))
 
 
 def _own_hub(part: Taken, faces: Sequence[str] = ()) -> bool:

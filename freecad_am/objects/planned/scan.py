@@ -19,7 +19,7 @@ from ...core.toolpath import Toolpath
 from ..shapes.bodies import taken
 from ..stage import stage_of
 
-TOLD = ("POINTS_READ", "FREE_MOTION")  # of what an inspection finds: how the scan was understood
+UNDERSTANDING = ("POINTS_READ", "FREE_MOTION")  # of what an inspection finds: how the scan was understood
 Fit = Callable[[Toolpath], Toolpath]
 
 
@@ -64,8 +64,8 @@ def fitted(toolpath: Toolpath, inspected: Inspected, body: Any, parameters: Scan
         points = points[scanned_body.facing(points, body, ways)]
     scan = Scan(points, inspected.file, parameters.scan_within)
     made = fit_layers.fitted(toolpath, scan, parameters, len(inspected.points) - len(points), inspected.motion)
-    told = [issue for issue in inspected.issues if issue.code in TOLD]
-    made = dataclasses.replace(made, issues=(*told, *made.issues))
+    notes = [issue for issue in inspected.issues if issue.code in UNDERSTANDING]
+    made = dataclasses.replace(made, issues=(*notes, *made.issues))
     if body is None:
         return made
     around = tuple(scanned_body.scanned(one, scan, ways) if one.name == body.name else one for one in made.surroundings)

@@ -15,17 +15,17 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.geometry.surroundings import Body
+from ...core.geometry.obstacles import Body
 from ...core.issues import InputError, Issue
 from ...core.kinematics.cell import mounted
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.cell import CellParameters, NozzleParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.process import classes
-from ...core.process.deposit.twice import laid_twice
+from ...core.process.deposit.twice import deposited_twice
 from ...core.process.model import bead_table, held_width
 from ...core.process.model.bead_model import BeadModel
-from ...core.process.model.material import speeds_told
+from ...core.process.model.material import with_speed_issues
 from ...core.process.model.wire import fed
 from ...core.process.order import no_shorter
 from ...core.strategies import support
@@ -74,8 +74,8 @@ def planned(of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made
     plates = platforms(of.cell, made)
     if made.family == "revolution":
         stands = mounted(of.cell, made.frame, made.family) if of.cell is not None and plates else made.frame
-        return support.told(made, (stands,), made.surroundings, ())
-    return over_edge(support.told(made, (), (*made.surroundings, *plates), bases_of(of)), of)
+        return support.with_support(made, (stands,), made.surroundings, ())
+    return over_edge(support.with_support(made, (), (*made.surroundings, *plates), bases_of(of)), of)
 
 
 def over_edge(made: CoreToolpath, of: Given) -> CoreToolpath:
@@ -98,13 +98,13 @@ def layers_of(of: Given) -> CoreToolpath:
         )
     classes.refuse_speeds(process)
     family = family_of(of.strategy)
-    laid, model = _PLANNERS[family.kind].layers(of), of.model
+    layers, model = _PLANNERS[family.kind].layers(of), of.model
     if model is not None and not family.filled:
-        laid = held_width.held(laid, process, model)
-    made = classes.with_ends(laid, process)
+        layers = held_width.held(layers, process, model)
+    made = classes.with_ends(layers, process)
     if not family.filled:
         made = no_shorter(made, getattr(of.strategy, "min_layer_time", 0.0), process.rapid_speed)
-    twice = made.twice if family.filled else laid_twice(made)
+    twice = made.twice if family.filled else deposited_twice(made)
     return dataclasses.replace(made, max_from_vertical=of.build.max_from_vertical, twice=twice, retreat=process.retreat)
 
 
@@ -118,7 +118,7 @@ def kept_clear(
 
 def with_wire(toolpath: CoreToolpath, of: Given) -> CoreToolpath:
     """The toolpath with the speed of its wire, and whether its beads are laid as their material is."""
-    return speeds_told(fed(toolpath, of.process, of.model), of.process)
+    return with_speed_issues(fed(toolpath, of.process, of.model), of.process)
 
 
 def bases_of(of: Given) -> list[Any]:
@@ -202,11 +202,11 @@ def _tell_tilting() -> Callable[[int, int], None]:
     """What tells, once, where tilts are searched for at so many points, so many times, that it takes long."""
     from ...core.strategies import size
 
-    told: list[Issue] = []
+    issues: list[Issue] = []
 
     def tell(points: int, times: int) -> None:
-        for issue in () if told else size.of_tilting(points, times):
-            told.append(issue)
+        for issue in () if issues else size.of_tilting(points, times):
+            issues.append(issue)
             progress.tell(issue)
 
     return tell

@@ -24,11 +24,11 @@ def with_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
         return toolpath
     from ...core.planning.remedies import NO_REMEDY, REMEDY
 
-    progress.report(1.0, f"looking for what would clear the nozzle: {fixed.told}")
+    progress.report(1.0, f"looking for what would clear the nozzle: {fixed.remedy}")
     try:
         clear = not has_errors(list(fixed.make().issues))
     except AmError:  # what cannot be asked for is not a remedy
         clear = False
-    note = Issue(NOTE, REMEDY, f"with {fixed.told} the nozzle is clear; the toolpath was planned so, joints were not") if (
-        clear) else Issue(NOTE, NO_REMEDY, f"the nozzle is not clear with {fixed.told} either, which was tried")
+    note = Issue(NOTE, REMEDY, f"with {fixed.remedy} the nozzle is clear; the toolpath was planned so, joints were not") if (
+        clear) else Issue(NOTE, NO_REMEDY, f"the nozzle is not clear with {fixed.remedy} either, which was tried")
     return dataclasses.replace(toolpath, issues=(note, *toolpath.issues))

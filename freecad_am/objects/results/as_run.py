@@ -45,11 +45,11 @@ def as_run(
     if straight and cell.arrangement.holds_part:
         origin = moving_tool.origins(motion, cell, chord_error)
         beads = [path.bead for path in planned.joint_path.beads]
-        motion = moving_tool.kept_straight(motion, cell, chord_error, beads)
+        motion = moving_tool.refined_to_chord_error(motion, cell, chord_error, beads)
         condition, threshold = condition[origin], threshold[origin]
         issues = tuple(_renumbered(issue, planned.motion, motion, origin) for issue in issues)
     whole = motion
-    motion, kept = steps.told(motion, controller, chord_error, settings.blend)
+    motion, kept = steps.programmed(motion, controller, chord_error, settings.blend)
     if len(motion) < len(whole):
         condition, threshold = condition[kept], threshold[kept]
         issues = tuple(_renumbered(issue, whole, motion, kept) for issue in issues)

@@ -18,4 +18,5 @@ MOVED = {
     ".core.geometry.strip": ".core.geometry.regions.strip",
     ".core.geometry.surface": ".core.geometry.walls.surface",
     ".core.geometry.surface_wall": ".core.geometry.walls.surface_wall",
+    ".core.geometry.surroundings": ".core.geometry.obstacles",
 }

@@ -35,7 +35,7 @@ Place = tuple[str | int, ...]
 _DTYPES = ("float64", "int64", "bool")
 # of files that are much alike: hash chains of which but the first place is looked at find them in half the time that the
 # library's own presets take, and better
-_ALIKE = [{
+_FILTERS = [{
     "id": lzma.FILTER_LZMA2, "preset": 1, "dict_size": 1 << 20, "mode": lzma.MODE_FAST, "mf": lzma.MF_HC3, "depth": 1,
     "nice_len": 32,
 }]
@@ -53,7 +53,7 @@ def pack(value: Any, key: str) -> tuple[list[float], str]:
     indices = np.concatenate([copies.ravel(), runs.ravel()]).astype(np.float64)
     pieces, where = differences.packed(rest), differences.packed(indices)
     data = packer.bytes()
-    layout = {"n": sizes, "p": [len(data), [*map(len, pieces)], [*map(len, where)]], "t": packer.told(), "v": tree}
+    layout = {"n": sizes, "p": [len(data), [*map(len, pieces)], [*map(len, where)]], "t": packer.table_shapes(), "v": tree}
     floats = np.concatenate([[_mark(key)], floats_of(b"".join([data, *pieces, *where]))])
     return floats.tolist(), f"{key} {json.dumps(layout, separators=(',', ':'))}"
 
@@ -147,7 +147,7 @@ class _Packer:
         self.tables: list[list[NDArray[Any]]] = []
         self.rows: list[int] = []  # of each table
         # the files of a program are much alike, and far apart for zlib; one by one, for together they take much memory
-        self.compressor = lzma.LZMACompressor(filters=_ALIKE)
+        self.compressor = lzma.LZMACompressor(filters=_FILTERS)
         self.compressed: list[bytes] = []
         self.size = 0  # of all bytes
 
@@ -195,7 +195,7 @@ class _Packer:
         self.rows[number] += len(value)
         return [number, first, len(value)]
 
-    def told(self) -> list[list[int]]:
+    def table_shapes(self) -> list[list[int]]:
         """Of each table dtype, rows, and the shape of a row."""
         return [[dtype, rows, *shape] for (_, dtype, shape), rows in zip(self.kinds, self.rows, strict=True)]
 

@@ -12,7 +12,7 @@ import FreeCAD as App
 import numpy as np
 
 from ...brep.shapes import tessellate
-from ...core.geometry.surroundings import Body
+from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ..stage_parts import Link
 

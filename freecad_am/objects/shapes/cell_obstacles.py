@@ -19,12 +19,12 @@ from ...core.geometry import frames
 from ...core.geometry.file_content import digest
 from ...core.geometry.located import is_there, located
 from ...core.geometry.mesh.file_unit import MESHES
-from ...core.geometry.surroundings import Body, box
+from ...core.geometry.obstacles import Body, box
 from ...core.issues import InputError
 from ...core.kinematics import cell as cells
 from ...core.kinematics import torch
 from ...core.kinematics.cell import Cell
-from ...core.kinematics.links.beside import links_beside
+from ...core.kinematics.links.external_links import external_links
 from ...core.parameters.cell import NO_SHAPE, CellParameters, NozzleParameters
 from ...core.parameters.obstacles import WHERE, Obstacle, obstacles
 from ...core.toolpath import Toolpath
@@ -43,7 +43,7 @@ def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str
     if not cell.arrangement.links_known:
         return cell
     cell = dataclasses.replace(
-        cell, obstacles=bodies, torch=torch_of(settings), beside=links_beside(cell.external, readable_mesh))
+        cell, obstacles=bodies, torch=torch_of(settings), external_links=external_links(cell.external, readable_mesh))
     if bodies:
         _refuse_at_start(cell, toolpath)
     return cell

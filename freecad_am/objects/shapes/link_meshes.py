@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...brep.files import looks
 from ...core.issues import InputError
-from ...core.kinematics.links.rods import Mesh
+from ...core.kinematics.links.cylinders import Mesh
 from ...core.kinematics.links.shape import LinkShape
 from ...core.kinematics.machines.machine import Machine
 

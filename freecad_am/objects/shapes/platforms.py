@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...core.geometry.surroundings import Body, disc
+from ...core.geometry.obstacles import Body, disc
 from ...core.kinematics.cell import mounted
 from ...core.parameters.cell import CellParameters
 from ...core.toolpath import Toolpath

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from ...brep.kernel.limits import told
+from ...brep.kernel.limits import reported
 from ...core.issues import InputError
 
 
@@ -27,5 +27,5 @@ def memory(label: str) -> Iterator[None]:
 def kernel(obj: Any) -> Iterator[None]:
     """Faults of the geometry kernel within, as an InputError BAD_SHAPE that names what the stage `obj` is made from."""
     source = getattr(obj, "Source", None)
-    with told(str(source[0].Label if source else obj.Label)):
+    with reported(str(source[0].Label if source else obj.Label)):
         yield

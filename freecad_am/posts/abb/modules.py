@@ -95,15 +95,15 @@ def _module(file: str, lines: list[str]) -> Module:
 
 
 def _declare(module: Module, line: str, where: str) -> None:
-    told = _DECLARED.match(line)
+    declared = _DECLARED.match(line)
     names = {*module.tools, *module.objects, *module.speeds, *module.zones}
-    if told is None or told[3] in names:
+    if declared is None or declared[3] in names:
         raise unreadable(where, f"{line!r} is not understood, or declares a name again")
     try:
-        value = json.loads(told[4].replace("TRUE", "true").replace("FALSE", "false"))
-        _keep(module, told[1] or told[2], told[3], value)
+        value = json.loads(declared[4].replace("TRUE", "true").replace("FALSE", "false"))
+        _keep(module, declared[1] or declared[2], declared[3], value)
     except (ValueError, TypeError):
-        raise unreadable(where, f"the value of {told[3]} is not understood") from None
+        raise unreadable(where, f"the value of {declared[3]} is not understood") from None
 
 
 def _keep(module: Module, kind: str, name: str, value: Any) -> None:

@@ -31,11 +31,11 @@ from ...core.program import (
 )
 from ..names import Naming
 from ..on_controller import on_controller
-from ..parts import Piece, Run, grouped, packed, size, unbroken, withdrawn
+from ..parts import Piece, Run, grouped, packed, size, unbroken, with_retracts
 from ..refusals import (
     refuse_calls_of_own,
+    refuse_continuous,
     refuse_cooling,
-    refuse_endless,
     refuse_external,
     refuse_incomplete,
     refuse_schedules,
@@ -101,7 +101,7 @@ def write(program: Program) -> dict[str, bytes]:
         refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.mod": _module(program, words, name, text.MAIN, remarks, pieces)}
     # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
-    parts = withdrawn(packed(groups, program.max_points - 1, _NO_END, unbroken))
+    parts = with_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(parts))
     refuse_calls_of_own(program, {name, *names, *map(text.routine_of, names)}, program_name)
     files = {}
@@ -134,7 +134,7 @@ def _refuse(program: Program) -> None:
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
-    refuse_endless(program)
+    refuse_continuous(program)
     refuse_without_positions(program, straight=True)
     for block in program.blocks:
         if isinstance(block, Call):

@@ -49,15 +49,15 @@ class _Run:
     of which those `used` have values, `unit` theirs, and `slides` those that a remark calls the track; active: the
     mechanical unit that the module has activated.
 
-    told: s of joint moves, mm/s of linear ones, half: of its last digit. rounding: mm, NaN of moves that stop. joints,
-    places, turns: the numbers of a move as they stand. nearest: ConfL is off, and positions are taken as the arm reaches
-    them best.
+    time_or_speed: s of joint moves, mm/s of linear ones, half: of its last digit. rounding: mm, NaN of moves that stop.
+    joints, places, turns: the numbers of a move as they stand. nearest: ConfL is off, and positions are taken as the arm
+    reaches them best.
     """
 
     found: dict[str, Module]
     linear: bytearray = field(default_factory=bytearray)
     deposit: bytearray = field(default_factory=bytearray)
-    told: array[float] = field(default_factory=_floats)
+    time_or_speed: array[float] = field(default_factory=_floats)
     half: array[float] = field(default_factory=_floats)
     rounding: array[float] = field(default_factory=_floats)
     joints: list[str] = field(default_factory=list)
@@ -66,7 +66,7 @@ class _Run:
     events: list[Event] = field(default_factory=list)
     followed: list[str] = field(default_factory=list)
     frames: Frames | None = None
-    beside: list[str] = field(default_factory=list)
+    external: list[str] = field(default_factory=list)
     used: tuple[int, ...] | None = None
     unit: str = ""
     slides: tuple[int, ...] = ()
@@ -78,11 +78,11 @@ class _Run:
     @property
     def moving(self) -> bool:
         """Whether the last move passes through its end."""
-        return bool(self.told) and not np.isnan(self.rounding[-1])
+        return bool(self.time_or_speed) and not np.isnan(self.rounding[-1])
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
         """Something happens before the next move."""
-        self.events.append(Event(len(self.told), kind, value, digits))
+        self.events.append(Event(len(self.time_or_speed), kind, value, digits))
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
@@ -96,7 +96,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         raise unreadable("program", f"{len(first)} modules have a routine main, expected one")
     run = _Run(found, slides=first[0].slides)
     _follow(first[0], run)
-    if not run.told:
+    if not run.time_or_speed:
         raise unreadable("program", "there are no moves")
     if len(run.followed) != len(found):
         raise unreadable("program", "there are modules that are never run, or run twice")
@@ -166,7 +166,7 @@ def _other(line: str, run: _Run, where: str) -> None:
 
 def _move(module: Module, move: re.Match[str], run: _Run, where: str) -> None:
     linear = move.re is _LINEAR
-    *values, speed, letter, told, decimals, zone, tool, work_object = move.groups()
+    *values, speed, letter, amount, decimals, zone, tool, work_object = move.groups()
     if linear and not run.nearest:
         raise unreadable(where, "the configurations that its positions name are supervised, and are none")
     if speed not in module.speeds or (letter == "V") != linear:
@@ -178,17 +178,17 @@ def _move(module: Module, move: re.Match[str], run: _Run, where: str) -> None:
         run.frames = frames
     elif frames is not run.frames and not frames.same(run.frames):
         raise unreadable(where, "moves of more than one tool or work object are mixed")
-    _beside(values.pop().split(","), frames, run, where)
+    _external_axes(values.pop().split(","), frames, run, where)
     for column, value in zip((*((run.places, run.turns) if linear else (run.joints,)),), values, strict=True):
         column.append(value)
     run.linear.append(linear)
     run.deposit.append(run.on)
-    run.told.append(float(told))
+    run.time_or_speed.append(float(amount))
     run.half.append(0.5 * 10.0 ** -len(decimals))
     run.rounding.append(np.nan if zone == "fine" else module.zones[zone])
 
 
-def _beside(texts: list[str], frames: Frames, run: _Run, where: str) -> None:
+def _external_axes(texts: list[str], frames: Frames, run: _Run, where: str) -> None:
     """Keep the values of the axes beside the robot: of the same ones in all moves, those of the unit that the work object is
     on, which is active, and the track. Where the work object stands, the track is the only one."""
     used = tuple(number for number, text in enumerate(texts, 1) if text != "9E9")
@@ -202,26 +202,26 @@ def _beside(texts: list[str], frames: Frames, run: _Run, where: str) -> None:
     if run.used is not None and run.unit != run.active:
         raise unreadable(where, "another unit is active than in moves before")
     run.used, run.unit = used, run.active
-    run.beside += [",".join(texts[number - 1] for number in used)] if used else []
+    run.external += [",".join(texts[number - 1] for number in used)] if used else []
 
 
 def _moves(run: _Run) -> ReadMoves:
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
-    told, half, rounding = np.array(run.told), np.array(run.half), np.array(run.rounding)
+    time_or_speed, half, rounding = np.array(run.time_or_speed), np.array(run.half), np.array(run.rounding)
     used = run.used or ()
-    joints = np.full((len(told), 6 + len(used)), np.nan)
+    joints = np.full((len(time_or_speed), 6 + len(used)), np.nan)
     joints[~linear, :6] = np.radians(_numbers(run.joints, 6))
     if used:
-        beside = _numbers(run.beside, len(used))
-        joints[:, 6:] = np.where(np.isin(used, run.slides), beside, np.radians(beside))
-    turning = run.joints if used == run.slides else run.joints + run.beside
+        external = _numbers(run.external, len(used))
+        joints[:, 6:] = np.where(np.isin(used, run.slides), external, np.radians(external))
+    turning = run.joints if used == run.slides else run.joints + run.external
     read_moves = ReadMoves(
         None if np.isnan(joints).all() else joints, float(np.radians(_half_digit(turning))),
-        np.where(linear, np.nan, told),
-        deposit, linear, np.isnan(rounding), tuple(run.events), speed=np.where(linear, told, np.nan),
+        np.where(linear, np.nan, time_or_speed),
+        deposit, linear, np.isnan(rounding), tuple(run.events), speed=np.where(linear, time_or_speed, np.nan),
         speed_digits=float(half[linear].max(initial=0.0)), duration_digits=half, rounding=rounding,
         unit=run.unit if used else "", first_external=used[0] if used else 1,
-        linear_digits=_half_digit(run.beside) if run.slides else 0.0,
+        linear_digits=_half_digit(run.external) if run.slides else 0.0,
     )
     return _seen(read_moves, run) if linear.any() else read_moves
 

@@ -71,17 +71,17 @@ def joint_moves(degrees: Array, words: Sequence[str], first: int = 1) -> list[st
     return [line % (*row, word) for row, word in zip(degrees.tolist(), words, strict=True)]
 
 
-def linear_moves(position: Array, quaternion: Array, beside: Array, words: Sequence[str], first: int = 1) -> list[str]:
+def linear_moves(position: Array, quaternion: Array, external: Array, words: Sequence[str], first: int = 1) -> list[str]:
     """Moves straight in space to positions (n, 3), quaternions (n, 4) and axes beside the robot (n, k), rounded already."""
-    line = _POSITION.replace("<axes>", _axes(beside.shape[1], first))
-    values = np.hstack((position, quaternion, beside)).tolist()
+    line = _POSITION.replace("<axes>", _axes(external.shape[1], first))
+    values = np.hstack((position, quaternion, external)).tolist()
     return [line % (*row, word) for row, word in zip(values, words, strict=True)]
 
 
 def _axes(count: int, first: int) -> str:
     """The axes beside the robot: so many of them, from that number on."""
-    told = [_NO_AXIS] * (first - 1) + [f"%.{ANGLE_DECIMALS}f"] * count if count else []
-    return f"[{','.join(told + [_NO_AXIS] * (MOST_AXES - len(told)))}]"
+    formats = [_NO_AXIS] * (first - 1) + [f"%.{ANGLE_DECIMALS}f"] * count if count else []
+    return f"[{','.join(formats + [_NO_AXIS] * (MOST_AXES - len(formats)))}]"
 
 
 def activated(unit: str) -> list[str]:

@@ -107,14 +107,14 @@ def arc(word: str, schedule: int) -> str:
     return f"  Arc {word}[{schedule}]    ;"
 
 
-def joint_records(degrees: Array, track: Array, beside: Array, user_frame: int, tool_frame: int, group: int = 1) -> str:
+def joint_records(degrees: Array, track: Array, external: Array, user_frame: int, tool_frame: int, group: int = 1) -> str:
     """Records P[1].. of joint values (n, 6), of the track (n, 0 or 1) and of another group (n, k), degrees and mm already
     rounded to 3 decimals."""
-    values = ",".join(f"\tJ{axis}=%10.3f deg" for axis in range(1, beside.shape[1] + 1))
+    values = ",".join(f"\tJ{axis}=%10.3f deg" for axis in range(1, external.shape[1] + 1))
     more = f"   GP{group}:\r\n\t<frame>\t\r\n{values}\r\n}};" if values else "};"
     extended = "deg,\r\n\tE1=%10.3f  mm\r\n};" if track.shape[1] else "deg\r\n};"
     record = _JOINT_RECORD.replace("deg\r\n};", extended).replace("};", more)
-    return _records(record, user_frame, tool_frame, [*degrees.T, *track.T, *beside.T])
+    return _records(record, user_frame, tool_frame, [*degrees.T, *track.T, *external.T])
 
 
 def pose_records(pose: Array, configuration: Sequence[str], user_frame: int, tool_frame: int) -> str:

@@ -78,7 +78,7 @@ def poses(position: Array, rotation: Array) -> Array:
     return np.hstack((np.round(position, 3), angles)) + 0.0
 
 
-def configurations(moves: Moves, endless: tuple[bool, ...]) -> list[str]:
+def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
     """CONFIG of each point, such as 'N U T, 0, 0, 0'. Raises InputError
     NO_POSITIONS, ARM_BACKWARDS, TURN_NUMBER.
 
@@ -96,7 +96,7 @@ def configurations(moves: Moves, endless: tuple[bool, ...]) -> list[str]:
         )
     degrees = np.degrees(moves.joints)
     turns = np.sign(degrees) * np.floor((np.abs(degrees) + 180.0 + _TURN_TOLERANCE) / 360.0)
-    turns[:, np.array(endless)] = 0.0
+    turns[:, np.array(continuous)] = 0.0
     untold = (turns != 0.0) & np.array([True, False, False, True, True, False]) | (np.abs(turns) > 9.0)
     if untold.any():
         point, axis = np.argwhere(untold)[0]

@@ -107,11 +107,11 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
             continue
         moving[some] = True
         spans = [move.span(group) for group in (2, 3, 6) if move[group]]
-        told = alike.numbers([lines[row] for row in some], shape, spans)
-        moves.point[some], moves.value[some] = told[:, 0], told[:, 1]
+        values = alike.numbers([lines[row] for row in some], shape, spans)
+        moves.point[some], moves.value[some] = values[:, 0], values[:, 1]
         moves.unit[some], moves.straight[some] = UNITS.index(move[4]), move[1] == "L"
         if move[6]:
-            moves.corner[some] = told[:, 2]
+            moves.corner[some] = values[:, 2]
     before = np.cumsum(moving)  # how many moves there are up to a line
     instructions, done = [], 0
     for row in [*sorted(row for row in others if lines[row].strip()), count]:

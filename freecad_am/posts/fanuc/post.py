@@ -157,12 +157,12 @@ def _refuse(program: Program) -> None:
                 "ANALOGUE_INPUT", "process.cooling",
                 f"analogue inputs are whole numbers, not {block.below:.9g}; change below, gain or zero so that it is one",
             )
-    _refuse_endless_steps(program)
+    _refuse_continuous_steps(program)
 
 
-def _refuse_endless_steps(program: Program) -> None:
+def _refuse_continuous_steps(program: Program) -> None:
     """An axis set to turn without end takes the shorter way, so a move of half a turn or more would go wrong."""
-    axes = np.flatnonzero(program.endless)
+    axes = np.flatnonzero(program.continuous)
     joints = np.concatenate([run.joints for run in program.moves])[:, axes]
     places = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
     large = np.abs(np.diff(joints, axis=0)) > math.radians(180.0 - 0.001)
@@ -180,7 +180,7 @@ def _refuse_endless_steps(program: Program) -> None:
 def _own_remarks(program: Program) -> Iterator[str]:
     for axis in np.flatnonzero(program.slides).tolist():
         yield f"E1 is the track e{axis - AXES + 1}"
-    for axis in np.flatnonzero(program.endless):
+    for axis in np.flatnonzero(program.continuous):
         yield f"axis {axis + 1} turns without end: set it up for Continuous Turn (option)"
     if program.dry_run:
         yield "dry run: no deposit"
@@ -255,12 +255,12 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
         return ""
     if program.motion == "joint":
         joints = np.concatenate([run.moves.joints[run.start : run.stop] for run in runs])
-        slides, endless = program.slides, np.array(program.endless)
-        told = np.round(np.where(slides, joints, np.degrees(joints)), 3)
-        told[:, endless] = numbers.within_half_turn(told[:, endless])
-        told += 0.0
+        slides, continuous = program.slides, np.array(program.continuous)
+        shown = np.round(np.where(slides, joints, np.degrees(joints)), 3)
+        shown[:, continuous] = numbers.within_half_turn(shown[:, continuous])
+        shown += 0.0
         return text.joint_records(
-            told[:, :AXES], told[:, slides], told[:, AXES:][:, ~slides[AXES:]], program.user_frame, program.tool_frame,
+            shown[:, :AXES], shown[:, slides], shown[:, AXES:][:, ~slides[AXES:]], program.user_frame, program.tool_frame,
             _group(program),
         )
     poses, configuration = [], []
@@ -269,5 +269,5 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
         if moves.position is None or moves.rotation is None:
             raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
         poses.append(numbers.poses(moves.position[part], moves.rotation[part]))
-        configuration += numbers.configurations(moves, program.endless)[part]
+        configuration += numbers.configurations(moves, program.continuous)[part]
     return text.pose_records(np.concatenate(poses), configuration, program.user_frame, program.tool_frame)

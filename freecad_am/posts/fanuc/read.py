@@ -20,7 +20,7 @@ from ...core.read_moves import ARC, Configuration, Event, ReadMoves
 from .parsed import UNITS, Listing, listing_of, name_of
 from .records import unreadable
 
-_TOLD = np.array([(1.0, np.nan, np.nan), (0.001, np.nan, np.nan), (np.nan, 1.0, np.nan), (np.nan, np.nan, 0.01)])
+_FACTORS = np.array([(1.0, np.nan, np.nan), (0.001, np.nan, np.nan), (np.nan, 1.0, np.nan), (np.nan, np.nan, 0.01)])
 _SPEED, _SHARE = UNITS.index("mm/sec"), UNITS.index("%")
 _MOST_CNT, _OWN = 100.0, 6
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
@@ -87,14 +87,14 @@ class _Run:
     def take(self, listing: Listing) -> None:
         """Take over the records that are pending."""
         if self.pending:
-            rows, told = np.concatenate(self.pending), listing.records
-            if self.values and (self.group, self.values[0].shape[1]) != (told.group, told.values.shape[1]):
+            rows, records = np.concatenate(self.pending), listing.records
+            if self.values and (self.group, self.values[0].shape[1]) != (records.group, records.values.shape[1]):
                 raise unreadable(listing.file, "it moves other groups than those before")
-            self.group, self.track = told.group, (self.track[0], told.track)
-            self.values.append(told.values[rows])
-            self.digits = max(self.digits, told.digits)
+            self.group, self.track = records.group, (self.track[0], records.track)
+            self.values.append(records.values[rows])
+            self.digits = max(self.digits, records.digits)
             if self.cartesian:
-                self.configuration += [told.configuration[row] for row in rows]
+                self.configuration += [records.configuration[row] for row in rows]
             self.pending = []
 
 
@@ -123,17 +123,17 @@ def _moves(run: _Run) -> ReadMoves:
     joints, half_turn = (None, 0.0) if cartesian else (_joints(run, values), float(np.radians(digits)))
     deposit, linear = (np.array(column, dtype=np.bool_) for column in (run.deposit, run.linear))
     blend = np.array(run.blend)
-    told = ReadMoves(
+    found = ReadMoves(
         joints, half_turn, np.array(run.duration), deposit, linear, np.isnan(blend), tuple(run.events),
         speed=np.array(run.speed), share=np.array(run.share), share_digits=0.005, blend=blend,
         user_frame=np.array(run.user_frame), tool_frame=np.array(run.tool_frame), unit=run.group or "",
         linear_digits=digits if run.track[1] else 0.0,
     )
     if not cartesian:
-        return told
+        return found
     words = np.array(run.configuration)
     return dataclasses.replace(
-        told, position=values[:, :3], rotation=_rotation(np.radians(values[:, 3:])), position_digits=digits,
+        found, position=values[:, :3], rotation=_rotation(np.radians(values[:, 3:])), position_digits=digits,
         rotation_digits=float(np.radians(digits)),
         configuration=Configuration(
             words[:, 0] == "F", words[:, 1] == "U", words[:, 2] == "T", words[:, 3:].astype(np.float64)
@@ -143,10 +143,10 @@ def _moves(run: _Run) -> ReadMoves:
 
 def _joints(run: _Run, values: Array) -> Array:
     """(n, axes) rad and mm of the values of records, the track where a remark says that it is among the axes beside."""
-    number, told = run.track
-    if told != bool(number) or number > values.shape[1] - _OWN:
+    number, track = run.track
+    if track != bool(number) or number > values.shape[1] - _OWN:
         raise unreadable("program", "positions have a track and no remark says which axis it is, or the other way round")
-    if not told:
+    if not track:
         return np.asarray(np.radians(values))
     rest = np.radians(np.delete(values, _OWN, axis=1))
     return np.asarray(np.insert(rest, _OWN + number - 1, values[:, _OWN], axis=1))
@@ -247,8 +247,8 @@ def _move(listing: Listing, some: slice, run: _Run) -> None:
         run.user_frame.extend([run.numbers[0]] * (end - first))
         run.tool_frame.extend([run.numbers[1]] * (end - first))
     run.pending.append(rows)
-    told = moves.value[some, None] * _TOLD[unit]
-    for column, numbered in zip((run.duration, run.speed, run.share, run.blend), (*told.T, corner)):
+    value = moves.value[some, None] * _FACTORS[unit]
+    for column, numbered in zip((run.duration, run.speed, run.share, run.blend), (*value.T, corner)):
         column.frombytes(numbered.tobytes())
     run.deposit += bytes([run.on]) * len(rows)
     run.linear += straight.tobytes()

@@ -76,8 +76,9 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
 
 def _groups_of(lines: list[str]) -> frozenset[str]:
     """The motion groups that a program moves, by its header."""
-    told = next((line.partition("=")[2].strip(" ;").split(",") for line in lines if line.startswith("DEFAULT_GROUP")), ["1"])
-    return frozenset(str(number) for number, word in enumerate(told, 1) if word == "1")
+    given = (line.partition("=")[2].strip(" ;").split(",") for line in lines if line.startswith("DEFAULT_GROUP"))
+    flags = next(given, ["1"])
+    return frozenset(str(number) for number, word in enumerate(flags, 1) if word == "1")
 
 
 def _check_groups(file: str, lines: list[str], found: Records) -> None:
@@ -92,12 +93,12 @@ def _with_more(file: str, text: str) -> Records:
     values, frames, groups, decimals, points = [], [], set(), 99, []
     for record in _MORE.finditer(text):
         point, user, tool, *own, track, group, other_user, other_tool, rest = record.groups()
-        beside = _AXIS.findall(rest or "")
-        count = len(beside)
+        external = _AXIS.findall(rest or "")
+        count = len(external)
         due = [(str(axis), "," if axis < count else "") for axis in range(1, count + 1)]
-        if [(axis, comma) for axis, _, comma in beside] != due or (group and (user, tool) != (other_user, other_tool)):
+        if [(axis, comma) for axis, _, comma in external] != due or (group and (user, tool) != (other_user, other_tool)):
             raise unreadable(file, f"the second group of P[{point}] is not understood")
-        texts = [*own, *([track] if track else []), *(value for _, value, _ in beside)]
+        texts = [*own, *([track] if track else []), *(value for _, value, _ in external)]
         points.append(int(point))
         values.append([float(value) for value in texts])
         frames.append((user, tool))
@@ -105,9 +106,9 @@ def _with_more(file: str, text: str) -> Records:
         decimals = min(decimals, *(len(value.partition(".")[2]) for value in texts))
     if len(points) != len(_RECORD_START.findall(text)) or len(groups) != 1:
         raise unreadable(file, "its positions are not all of the same motion groups, or one is not understood")
-    (number, _, track_told), half = groups.pop(), 0.5 * 10.0**-decimals
+    (number, _, track_values), half = groups.pop(), 0.5 * 10.0**-decimals
     return Records(
-        np.array(points, dtype=np.intp), np.array(values), [()] * len(points), frames, half, False, number, track_told,
+        np.array(points, dtype=np.intp), np.array(values), [()] * len(points), frames, half, False, number, track_values,
     )
 
 
@@ -123,10 +124,10 @@ def _joint_records(text: str) -> Records | None:
         if found is None:
             return None
         mine = [records[row] for row in some]
-        told = alike.numbers(mine, shape, [found.span(group) for group in (_NUMBERED, _GROUP, *_NAMES, *_VALUES)])
-        if (told[:, 1:8] != [1, 1, 2, 3, 4, 5, 6]).any():
+        numbers = alike.numbers(mine, shape, [found.span(group) for group in (_NUMBERED, _GROUP, *_NAMES, *_VALUES)])
+        if (numbers[:, 1:8] != [1, 1, 2, 3, 4, 5, 6]).any():
             return None
-        point[some], values[some] = told[:, 0], told[:, 8:]
+        point[some], values[some] = numbers[:, 0], numbers[:, 8:]
         decimals = min(decimals, *(len(found[group].partition(".")[2]) for group in _VALUES))
         (a, b), (c, d) = found.span(3), found.span(4)
         for row, record in zip(some, mine):

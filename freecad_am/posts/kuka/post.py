@@ -20,8 +20,8 @@ from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, packed, whole
 from ..refusals import (
     refuse_calls_of_own,
+    refuse_continuous,
     refuse_cooling,
-    refuse_endless,
     refuse_external,
     refuse_incomplete,
     refuse_named_track,
@@ -133,7 +133,7 @@ def _refuse(program: Program) -> None:
                 "UNSUPPORTED_FRAME", f"program.{what}",
                 f"the controller has numbers up to {last}, not {number}; use one of these",
             )
-    refuse_endless(program)
+    refuse_continuous(program)
     refuse_without_speeds(program, axes)
     refuse_without_positions(program, straight=True)
     for block in program.blocks:

@@ -20,9 +20,9 @@ from ...core.read_moves import Event, ReadMoves
 
 _N = r"(-?\d+\.\d+)"
 _AXES, _PLACES = (",".join(f"{name} {_N}" for name in names.split()) for names in ("A1 A2 A3 A4 A5 A6", "X Y Z A B C"))
-_BESIDE = rf"((?:,E[1-6] {_N[1:-1]})*)"  # axes beside the robot
-_TO_AXES = re.compile(rf"PTP \{{{_AXES}{_BESIDE}\}}$")
-_STRAIGHT = re.compile(rf"LIN \{{{_PLACES}{_BESIDE}\}}( C_DIS)?$")
+_EXTERNAL_WORDS = rf"((?:,E[1-6] {_N[1:-1]})*)"  # axes beside the robot
+_TO_AXES = re.compile(rf"PTP \{{{_AXES}{_EXTERNAL_WORDS}\}}$")
+_STRAIGHT = re.compile(rf"LIN \{{{_PLACES}{_EXTERNAL_WORDS}\}}( C_DIS)?$")
 _EXTERNAL, _SHARED = re.compile(rf",E(\d) {_N}"), re.compile(r"\$VEL_EXTAX\[([1-6])\]=(\d+)$")
 _COUPLED = re.compile(r"\$BASE=EK\(MACHINE_DEF\[(\d+)\]\.ROOT,MACHINE_DEF\[(\d+)\]\.MECH_TYPE,BASE_DATA\[(\d+)\]\)$")
 _PERCENT = re.compile(r"BAS\(#VEL_PTP,(\d+)\)$")
@@ -63,7 +63,7 @@ class _Run:
     followed: list[str] = field(default_factory=list)
     state: dict[str, float] = field(default_factory=dict)
     half_digits: dict[str, float] = field(default_factory=dict)
-    beside: list[Array] = field(default_factory=list)
+    external: list[Array] = field(default_factory=list)
     signals: dict[str, tuple[int, int]] = field(default_factory=dict)
     unit: str | None = None
     numbers: tuple[int, ...] = ()
@@ -76,7 +76,7 @@ class _Run:
         """Something happens before the next move."""
         self.events.append(Event(len(self.speed), kind, value, digits))
 
-    def counted(self, what: str, texts: tuple[str, ...]) -> None:
+    def note_digits(self, what: str, texts: tuple[str, ...]) -> None:
         """Keep half of the last digit of numbers of a kind."""
         half = 0.5 * 10.0 ** -min(len(text.partition(".")[2]) for text in texts)
         self.half_digits[what] = max(half, self.half_digits.get(what, 0.0))
@@ -104,7 +104,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         raise _not_read("program", "there are no moves")
     if len(run.followed) != len(found):
         raise _not_read("program", "there are modules that are never run, or run twice")
-    return _told(run)
+    return _read_moves(run)
 
 
 def _go(name: str, run: _Run) -> None:
@@ -218,16 +218,16 @@ def _moved(line: str, run: _Run, where: str) -> None:
     assert match is not None
     texts = match.groups()[:6]
     run.values.append(np.array(texts, dtype=np.float64))
-    beside = _EXTERNAL.findall(match[7])
-    _beside(tuple(int(number) for number, _ in beside), 100.0 if straight else state["percent"], run, where)
-    run.beside.append(np.array([value for _, value in beside], dtype=np.float64))
-    for number, value in beside:
-        run.counted("slides" if int(number) in run.slides else "joints", (value,))
+    external = _EXTERNAL.findall(match[7])
+    _external_axes(tuple(int(number) for number, _ in external), 100.0 if straight else state["percent"], run, where)
+    run.external.append(np.array([value for _, value in external], dtype=np.float64))
+    for number, value in external:
+        run.note_digits("slides" if int(number) in run.slides else "joints", (value,))
     if straight:
-        run.counted("places", texts[:3])
-        run.counted("turns", texts[3:])
+        run.note_digits("places", texts[:3])
+        run.note_digits("turns", texts[3:])
     else:
-        run.counted("joints", texts)
+        run.note_digits("joints", texts)
     run.linear.append(straight is not None)
     run.deposit.append(run.on)
     run.speed.append(state["speed"] if straight else np.nan)
@@ -238,7 +238,7 @@ def _moved(line: str, run: _Run, where: str) -> None:
     run.standing = False
 
 
-def _beside(numbers: tuple[int, ...], share: float, run: _Run, where: str) -> None:
+def _external_axes(numbers: tuple[int, ...], share: float, run: _Run, where: str) -> None:
     """Look at the axes beside the robot of a move: the same ones in all of them, coupled, and as fast as the move needs, in
     percent: a linear one goes at its own speed only where they may be as fast as they can."""
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
@@ -253,15 +253,15 @@ def _beside(numbers: tuple[int, ...], share: float, run: _Run, where: str) -> No
     run.unit, run.numbers = unit, numbers
 
 
-def _told(run: _Run) -> ReadMoves:
+def _read_moves(run: _Run) -> ReadMoves:
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
     values, rounding = np.array(run.values), np.array(run.rounding)
     half, seen = run.half_digits, linear[:, None]
     a, b, c = np.radians(np.where(seen, values[:, 3:], np.nan)).T
     any_line = bool(linear.any())
-    beside = np.array(run.beside)
-    joints = np.radians(np.hstack((np.where(seen, np.nan, values), beside)))
-    joints[:, 6:] = np.where(np.isin(run.numbers, run.slides), beside, joints[:, 6:])
+    external = np.array(run.external)
+    joints = np.radians(np.hstack((np.where(seen, np.nan, values), external)))
+    joints[:, 6:] = np.where(np.isin(run.numbers, run.slides), external, joints[:, 6:])
     return ReadMoves(
         None if np.isnan(joints).all() else joints, float(np.radians(half.get("joints", 0.0))),
         np.full(len(linear), np.nan), deposit, linear, np.isnan(rounding), tuple(run.events),

@@ -94,12 +94,12 @@ class Lines:
         self._before: Array | None = None
         self._own = program.own_axes
         numbers = [program.first_external + k for k in range(len(program.external_kinds))]
-        beside = [f"E{number} %.{ANGLE_DECIMALS}f" for number in numbers]
-        self._ptp, self._lin = (f"{word} {{{','.join([*values, *beside])}}}" for word, values in (
+        external = [f"E{number} %.{ANGLE_DECIMALS}f" for number in numbers]
+        self._ptp, self._lin = (f"{word} {{{','.join([*values, *external])}}}" for word, values in (
             ("PTP", _AXES), ("LIN", _PLACE)))
         # shares of the speeds of axes beside the robot hold for linear moves too, which they must not slow down
         self._shares = "".join(f"$VEL_EXTAX[{number}]=%d|" for number in numbers)
-        self._unhindered = self._beside(100)
+        self._unhindered = self._external_speeds(100)
 
     def __call__(self, moves: Moves) -> Sequence[str]:
         """`settings|move` of each move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
@@ -112,16 +112,18 @@ class Lines:
             rows = np.hstack((frames(moves.position, moves.rotation), values[:, self._own :])).tolist()
             lines = [f"{self._unhindered}{speed}|{self._lin % tuple(row)}{corner}"
                      for speed, row, corner in zip(speeds, rows, corners, strict=True)]
-            told = [f"$APO.CDIS={size:.3f}|{line}" if corner else line for line, corner in zip(lines, corners, strict=True)]
+            marked = [
+                f"$APO.CDIS={size:.3f}|{line}" if corner else line for line, corner in zip(lines, corners, strict=True)
+            ]
         else:
             percent = self._percent(moves, values)
             rows = values.tolist()
-            told = [f"BAS(#VEL_PTP,{share:d})|{self._beside(share)}{self._ptp % tuple(row)}"
+            marked = [f"BAS(#VEL_PTP,{share:d})|{self._external_speeds(share)}{self._ptp % tuple(row)}"
                     for share, row in zip(percent, rows, strict=True)]
         self._before = values[-1]
-        return told
+        return marked
 
-    def _beside(self, share: int) -> str:
+    def _external_speeds(self, share: int) -> str:
         """Settings of a share, percent, of the speeds of the axes beside the robot; none where there are none."""
         return self._shares % ((share,) * self._shares.count("%"))
 

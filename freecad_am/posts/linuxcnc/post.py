@@ -179,8 +179,8 @@ def _own_remarks(program: Program) -> Iterator[str]:
         if program.carried is not None:
             x, y, z, _, _, turned = program.carried
             yield f"X {x:.4f} Y {y:.4f} Z {z:.4f} R {math.degrees(turned) + 0.0:.4f}"
-    for name, endless in zip(program.axis_names, program.endless, strict=True):
-        if endless:
+    for name, continuous in zip(program.axis_names, program.continuous, strict=True):
+        if continuous:
             yield f"axis {name} turns without end: not WRAPPED_ROTARY, limits wide enough for all turns"
     if program.dry_run:
         yield "dry run: no deposit"
@@ -271,8 +271,8 @@ def _motion(program: Program, run: Run) -> list[str]:
     for row in np.flatnonzero(moves.halt[part]).tolist():
         blocks[ahead + row] = f"{EXACT_STOP}\n{blocks[ahead + row]}\n{_through(program)}"
     # queued: it takes effect where the next move begins, and corners are rounded all the same
-    told = numbers.told_of_wire(program, moves, blocks, f"M67 {_wire(program)}")
-    return [line for block in told for line in block.split("\n")]
+    text = numbers.with_wire(program, moves, blocks, f"M67 {_wire(program)}")
+    return [line for block in text for line in block.split("\n")]
 
 
 def _file(lines: list[str]) -> bytes:

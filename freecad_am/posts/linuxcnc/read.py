@@ -110,8 +110,8 @@ def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tup
             _call(where, sub[1], state, (*callers, name))
         elif _ZERO.match(text):
             state.zeroed = {word[0] for word in text.split()[3:]}
-        elif (told := _SCHEDULE.match(text)) and _tells_schedule(told, state):
-            state.track.happens("schedule", float(told[2]) + 1.0, float(told[3]))
+        elif (schedule := _SCHEDULE.match(text)) and _tells_schedule(schedule, state):
+            state.track.happens("schedule", float(schedule[2]) + 1.0, float(schedule[3]))
         elif wire := _WIRE.match(text):
             if wire[1] == "8" and state.track.on:
                 raise unreadable(where, "the analogue output stops the machine within a bead")
@@ -120,7 +120,7 @@ def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tup
                 state.track.rests()
         elif layer := _LAYER.match(text):
             state.track.happens("layer", float(layer[1]))
-        elif _settled(text, state):
+        elif _sets_mode(text, state):
             continue
         elif output := _OUTPUT.match(text):
             _switch(where, text, output, state)
@@ -128,17 +128,17 @@ def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tup
             _line(where, text, state)
 
 
-def _tells_schedule(told: re.Match[str], state: _State) -> bool:
+def _tells_schedule(schedule: re.Match[str], state: _State) -> bool:
     """Whether an analogue output is that of schedules: it is set at rest before corners are rounded, as the wire's is not;
     within beads it is known by then."""
-    if told[1] == "8" and state.track.exact:
-        state.schedules.add(told[2])
+    if schedule[1] == "8" and state.track.exact:
+        state.schedules.add(schedule[2])
         state.track.rests()
         return True
-    return told[1] == "7" and state.track.on and told[2] in state.schedules
+    return schedule[1] == "7" and state.track.on and schedule[2] in state.schedules
 
 
-def _settled(text: str, state: _State) -> bool:
+def _sets_mode(text: str, state: _State) -> bool:
     """Whether a line sets how corners are passed or which tool counts, or waits; it is done then."""
     if corners := _CORNERS.match(text):
         state.track.exact = text == "G61.1"

@@ -63,7 +63,7 @@ def wire(program: Program, speeds: Sequence[float]) -> list[str]:
     return [_significant(value, WIRE_DIGITS) if value > 1e-9 else "0" for value in values]
 
 
-def told_of_wire(program: Program, moves: Moves, lines: Sequence[str], statement: str) -> list[str]:
+def with_wire(program: Program, moves: Moves, lines: Sequence[str], statement: str) -> list[str]:
     """The lines of a run of moves, the last ones one per move, with the statement that sets the analogue output in front of
     each move at which its value changes. The first value was told before the run."""
     if moves.wire is None:
@@ -71,8 +71,8 @@ def told_of_wire(program: Program, moves: Moves, lines: Sequence[str], statement
     values = wire(program, moves.wire.tolist())
     changed = [value != before for before, value in zip(values, values[1:])]
     rest = len(lines) - len(values) + 1
-    told = [[statement.format(value)] if new else [] for new, value in zip(changed, values[1:], strict=True)]
-    return [*lines[:rest], *(line for words, move in zip(told, lines[rest:], strict=True) for line in (*words, move))]
+    statements = [[statement.format(value)] if new else [] for new, value in zip(changed, values[1:], strict=True)]
+    return [*lines[:rest], *(line for words, move in zip(statements, lines[rest:], strict=True) for line in (*words, move))]
 
 
 class Feeds:

@@ -101,10 +101,10 @@ class Track:
         """A move with these words, F among them, that may stop by itself. Raises InputError UNREADABLE_PROGRAM."""
         if float(words.get("F", "0")) <= 0.0:
             raise unreadable(where, "a move without a feed of its own")
-        told = sort, tuple(words)
-        if told not in self.known:
+        row = sort, tuple(words)
+        if row not in self.known:
             self._check_words(sort, tuple(name for name in words if name != "F"), where)
-            self.known.add(told)
+            self.known.add(row)
         if sort in (SLIDES, AXES) and (not self.rows or self.rows[-1][0] == TIP):
             raise unreadable(where, "the way of the move, and so its time, is not known")
         self.rows.append((sort, words))
@@ -131,8 +131,8 @@ class Track:
         sorts = np.array([sort for sort, _ in self.rows])
         tips = sorts == TIP
         linear = np.array([name in _LINEAR for name in self.axes])
-        told = np.where(tips[:, None], [name in self.rows[_first(tips)][1] for name in self.axes] & ~linear, True)
-        joints, digits = self._values(self.axes, told)
+        given = np.where(tips[:, None], [name in self.rows[_first(tips)][1] for name in self.axes] & ~linear, True)
+        joints, digits = self._values(self.axes, given)
         feeds, feed_digits = self._values(("F",), np.ones((len(self.rows), 1), bool), each=True)
         duration, duration_digits = _durations(sorts, joints, linear, feeds[:, 0], feed_digits[:, 0])
         joints[:, ~linear] = np.radians(joints[:, ~linear])
@@ -160,8 +160,8 @@ class Track:
     def _numbers(self, tips: NDArray[np.bool_]) -> dict[str, object]:
         corners, numbers = np.array(self.corners), np.array(self.numbers)
         read: dict[str, object] = {"tool_frame": numbers[:, 1], "user_frame": numbers[:, 0] if tips.any() else None}
-        told = ~np.isnan(corners).all()
-        return {**read, "rounding": corners} if told else read
+        given = ~np.isnan(corners).all()
+        return {**read, "rounding": corners} if given else read
 
     def _wire(self) -> dict[str, object]:
         if not self.output:
@@ -169,12 +169,12 @@ class Track:
         values = np.array([float(text or "nan") for text in self.wires])
         return {"wire": values, "wire_digits": _half_digits(self.wires), "wire_output": self.output}
 
-    def _values(self, names: Sequence[str], told: NDArray[np.bool_], each: bool = False) -> tuple[Array, Array]:
+    def _values(self, names: Sequence[str], given: NDArray[np.bool_], each: bool = False) -> tuple[Array, Array]:
         """Values (n, names) of the rows told, else NaN, and half of the last digit of each name, or of each value."""
-        values = np.full(told.shape, np.nan)
-        halves = np.zeros(told.shape)
+        values = np.full(given.shape, np.nan)
+        halves = np.zeros(given.shape)
         for column, name in enumerate(names):
-            rows = np.flatnonzero(told[:, column])
+            rows = np.flatnonzero(given[:, column])
             texts = [self.rows[row][1][name] for row in rows.tolist()]
             values[rows, column] = np.array(texts, dtype=np.float64)
             halves[rows, column] = _half_digits(texts)

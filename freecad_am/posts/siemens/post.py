@@ -133,7 +133,7 @@ def _refuse(program: Program) -> None:
                 f"the controller's program reads inputs 1 to {LAST_INPUT}, not {block.number}; use one of these",
             )
     refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
-    _refuse_endless_steps(program)
+    _refuse_continuous_steps(program)
 
 
 def _refuse_schedules(program: Program) -> None:
@@ -146,9 +146,9 @@ def _refuse_schedules(program: Program) -> None:
         )
 
 
-def _refuse_endless_steps(program: Program) -> None:
+def _refuse_continuous_steps(program: Program) -> None:
     """C=DC(...) takes the shorter way, so a move of half a turn or more would go wrong."""
-    axes = np.flatnonzero(program.endless)
+    axes = np.flatnonzero(program.continuous)
     degrees = np.degrees(np.concatenate([run.joints for run in program.moves])[:, axes])
     steps = np.abs(np.diff(degrees, axis=0))
     if (steps > LARGEST_TURN).any():
@@ -167,8 +167,8 @@ def _own_remarks(program: Program) -> Iterator[str]:
         if program.carried is not None:
             x, y, z, *angles = program.carried
             yield f"X {x:.4f} Y {y:.4f} Z {z:.4f}, then Z {{}} Y {{}} X {{}} deg (RPY)".format(*_rpy(angles))
-    for name, endless in zip(program.axis_names, program.endless, strict=True):
-        if endless:
+    for name, continuous in zip(program.axis_names, program.continuous, strict=True):
+        if continuous:
             yield f"axis {name} turns without end: a modulo rotary axis"
     if program.dry_run:
         yield "dry run: no deposit"
@@ -256,22 +256,22 @@ def _motion(program: Program, run: Run) -> list[str]:
     for row in np.flatnonzero(moves.stops[part]).tolist():
         blocks[ahead + row] = f"G9 {blocks[ahead + row]}"
     # a synchronized action of one block: it takes effect where that begins, without a stop
-    told = numbers.told_of_wire(program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}"))
+    worded = numbers.with_wire(program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}"))
     # the time of one block would be that of all those compressed into one, and so would the wire's speed
     by_speed = all(feed.startswith(numbers.PATH) for feed in run.words[part])
-    if program.nc.compress and by_speed and len(told) == len(blocks):
+    if program.nc.compress and by_speed and len(worded) == len(blocks):
         return [blocks[0], "COMPCAD", *blocks[1:], "COMPOF"]
-    return told
+    return worded
 
 
 def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:
     """The template and the values of the axes; one without end in [0, 360), by the shorter way."""
     values = numbers.shown(joints, program.axis_kinds)
-    endless = np.array(program.endless)
-    values[:, endless] = np.round(values[:, endless] % 360.0, numbers.DECIMALS) % 360.0
+    continuous = np.array(program.continuous)
+    values[:, continuous] = np.round(values[:, continuous] % 360.0, numbers.DECIMALS) % 360.0
     words = [
         f"{name}=DC(%.{numbers.DECIMALS}f)" if end and kind == ROTARY else numbers.template([name])
-        for name, kind, end in zip(program.axis_names, program.axis_kinds, program.endless, strict=True)
+        for name, kind, end in zip(program.axis_names, program.axis_kinds, program.continuous, strict=True)
     ]
     return " ".join(words), values
 

@@ -18,10 +18,10 @@ from ...core.issues import InputError
 from ...core.program import JOINT_MOVE, Block, Call, DepositOff, DepositOn, LayerStart, Program, Six, Wait, WaitInput
 from ..names import Naming
 from ..on_controller import on_controller
-from ..parts import Piece, Run, grouped, packed, size, unbroken, withdrawn
+from ..parts import Piece, Run, grouped, packed, size, unbroken, with_retracts
 from ..refusals import (
+    refuse_continuous,
     refuse_cooling,
-    refuse_endless,
     refuse_incomplete,
     refuse_wire,
     refuse_without_positions,
@@ -86,7 +86,7 @@ def write(program: Program) -> dict[str, bytes]:
         (pieces,) = packed(groups, program.max_points, _NO_END, unbroken)
         return _application(program, name, name, remarks, pieces)
     # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
-    parts = withdrawn(packed(groups, program.max_points - 1, _NO_END, unbroken))
+    parts = with_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(parts))
     load = [line for part in names for line in _LOAD.format(alias=PART, part=part).split("\n")]
     files = _files(program, name, name, [*remarks, *load], {}, {PART: f"./{names[0]}/{names[0]}.pjx"})
@@ -117,7 +117,7 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "staubli", AXES)
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
-    refuse_endless(program)
+    refuse_continuous(program)
     refuse_without_speeds(program, AXES)
     refuse_without_positions(program)
     for block in program.blocks:

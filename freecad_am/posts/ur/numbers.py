@@ -39,10 +39,10 @@ class Words:
     def __call__(self, moves: Moves) -> list[str]:
         """`t=..., r=...` of joint moves, `v=..., r=...` of straight ones."""
         if moves.interpolation == LINEAR_MOVE:
-            told = [f"v={speed:.6f}" for speed in (_speeds(moves) * 0.001).tolist()]
+            texts = [f"v={speed:.6f}" for speed in (_speeds(moves) * 0.001).tolist()]
         else:
-            told = [f"t={seconds:.6f}" for seconds in _times(moves).tolist()]
-        return [f"{word}, r={radius:.6f}" for word, radius in zip(told, self.radii[id(moves)].tolist())]
+            texts = [f"t={seconds:.6f}" for seconds in _times(moves).tolist()]
+        return [f"{word}, r={radius:.6f}" for word, radius in zip(texts, self.radii[id(moves)].tolist())]
 
 
 def _ways(program: Program) -> tuple[Array | None, Array]:
@@ -63,8 +63,8 @@ def _radii(program: Program, ways: Array) -> Array:
     """(n,) m: the blend at the end of each move, 0 where it stops. A share of the shorter way beside the point."""
     moves = program.moves
     stops = np.concatenate([run.stops for run in moves])
-    beside = np.minimum(ways, np.append(ways[1:], 0.0))
-    microns = np.floor(LARGEST_SHARE * 0.01 * program.blend * beside * 0.001 / MICRON + 1e-6)
+    adjacent = np.minimum(ways, np.append(ways[1:], 0.0))
+    microns = np.floor(LARGEST_SHARE * 0.01 * program.blend * adjacent * 0.001 / MICRON + 1e-6)
     radii: Array = np.where(stops, 0.0, microns * MICRON)
     short = ~stops & (radii < MICRON)
     if program.blend and short.any():
@@ -72,9 +72,9 @@ def _radii(program: Program, ways: Array) -> Array:
         run = moves[int(np.searchsorted(np.cumsum([len(run) for run in moves]), first, side="right"))]
         raise InputError(
             "BLEND_RADIUS", place(run),
-            f"the tool goes {beside[first]:.3g} mm beside a point that is not stopped at, too little for a blend radius, and"
-            " the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to"
-            " stop at every point",
+            f"the tool goes {adjacent[first]:.3g} mm beside a point that is not stopped at, too little for a blend "
+            "radius, and the robot would stop there with the deposit on; use a larger strategy.chord_error, or "
+            "`program.blend: 0` to stop at every point",
         )
     return radii
 

@@ -38,8 +38,8 @@ from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, lines_of, packed, whole
 from ..refusals import (
     refuse_calls_of_own,
+    refuse_continuous,
     refuse_cooling,
-    refuse_endless,
     refuse_incomplete,
     refuse_schedules,
     refuse_wire,
@@ -136,7 +136,7 @@ def _refuse(program: Program) -> None:
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
     refuse_schedules(program, LAST_REGISTER, LAST_SCHEDULE)
-    refuse_endless(program)
+    refuse_continuous(program)
     refuse_without_positions(program)
     if program.setup == "part-on-robot" and any(run.flange is None for run in program.moves):
         raise InputError("NO_POSITIONS", "program", "the program does not tell where the flange is, which blends count on")

@@ -213,14 +213,14 @@ def _move(text: str, run: _Run, where: str) -> bool:
 
 
 def _moves(run: _Run) -> ReadMoves:
-    told = np.array(run.numbers).reshape(-1, _WIDTH)
+    values = np.array(run.numbers).reshape(-1, _WIDTH)
     half = {name: 0.5 * 10.0**-decimals for name, decimals in run.decimals.items()}
-    pose, joints, (duration, speed, radius) = told[:, :6], told[:, 6:12], told[:, 12:].T
-    tool = np.broadcast_to(_poses(np.array([run.tcp], dtype=np.float64))[0], (len(told), 4, 4))
+    pose, joints, (duration, speed, radius) = values[:, :6], values[:, 6:12], values[:, 12:].T
+    tool = np.broadcast_to(_poses(np.array([run.tcp], dtype=np.float64))[0], (len(values), 4, 4))
     moves = ReadMoves(
         joints, half["joints"], duration, np.array(run.deposit, dtype=np.bool_), np.isfinite(speed), radius == 0.0,
         tuple(run.events), speed=1000.0 * speed, speed_digits=1000.0 * half["speed"],
-        duration_digits=np.full(len(told), half["time"]), blend_radius=1000.0 * radius, tool=tool,
+        duration_digits=np.full(len(values), half["time"]), blend_radius=1000.0 * radius, tool=tool,
     )
     if not run.platform:
         return moves

@@ -40,8 +40,8 @@ from ..on_controller import on_controller
 from ..parts import continued, grouped, packed, place
 from ..refusals import (
     refuse_calls_of_own,
+    refuse_continuous,
     refuse_cooling,
-    refuse_endless,
     refuse_external,
     refuse_incomplete,
     refuse_named_track,
@@ -98,15 +98,15 @@ def write(program: Program) -> dict[str, bytes]:
     groups = list(grouped(program, words, lambda block: _instructions(program, block)))
     remarks = [line for text in (*program.remarks, *_own_remarks(program, words.off)) for line in _remark(text)]
     meaning = [line for text in _meaning(program) for line in _remark(text)]
-    room = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
-    parts = packed(groups, min(program.max_points, room), room, continued(_remark))
+    most = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
+    parts = packed(groups, min(program.max_points, most), most, continued(_remark))
     if len(parts) == 1:
         refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.JBI": job(program, name, [*remarks, *meaning], parts[0])}
     names = NAMING.parts(name, len(parts))
     refuse_calls_of_own(program, {name, *names}, program_name)
-    told = [*remarks, *_remark(f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts")]
-    files = {f"{name}.JBI": job(program, name, [*told, *(f"CALL JOB:{part}" for part in names)], [])}
+    header = [*remarks, *_remark(f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts")]
+    files = {f"{name}.JBI": job(program, name, [*header, *(f"CALL JOB:{part}" for part in names)], [])}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         head = [*_remark(f"part {number} of {len(parts)}"), *meaning]
         files[f"{part}.JBI"] = job(program, part, head, pieces)
@@ -161,7 +161,7 @@ def _refuse(program: Program) -> None:
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE, LAST_FILE)
-    refuse_endless(program)
+    refuse_continuous(program)
     if len(program.pulses_per_degree) != axes:
         raise InputError("NO_PULSES", "cell.machine", "the machine file has no controller.pulses_per_degree; add them")
     if program.motion == "cartesian" and program.speed_unit not in UNITS:
@@ -183,8 +183,8 @@ def _own_remarks(program: Program, off: float) -> Iterator[str]:
 
 def _meaning(program: Program) -> Iterator[str]:
     """What the numbers of a job mean, which its own words do not tell."""
-    beside = [f"E{number + 1}" for number in range(len(program.external_kinds))]
-    for axis, slides, count in zip([*AXES, *beside], program.slides.tolist(), program.pulses_per_degree, strict=True):
+    external = [f"E{number + 1}" for number in range(len(program.external_kinds))]
+    for axis, slides, count in zip([*AXES, *external], program.slides.tolist(), program.pulses_per_degree, strict=True):
         yield f"pulses/{'mm' if slides else 'deg'} {axis} {count!r}"
     if program.motion == "cartesian":
         yield f"V in {program.speed_unit}"

@@ -23,7 +23,7 @@ _NAME = re.compile(r"//NAME ([A-Z][A-Z0-9_]{0,31})$")
 _COUNT = re.compile(r"///NPOS (\d+),(\d+),(\d+),0,0,0$")
 _TOOL = re.compile(r"///TOOL (\d+)$")
 _POINT = re.compile(r"C(\d{5})=" + ",".join([r"(-?\d+)"] * 6) + "$")
-_BESIDE = {"BC": re.compile(r"BC(\d{5})=(-?\d+)$"), "EC": re.compile(r"EC(\d{5})=(-?\d+(?:,-?\d+){0,5})$")}
+_EXTERNAL = {"BC": re.compile(r"BC(\d{5})=(-?\d+)$"), "EC": re.compile(r"EC(\d{5})=(-?\d+(?:,-?\d+){0,5})$")}
 _GROUP = re.compile(r"///GROUP1 RB1(,BS1)?(?:,(ST\d+))?$")
 _INST: tuple[str | re.Pattern[str], ...] = (
     r"//INST", r"///DATE \d{4}/\d\d/\d\d \d\d:\d\d", r"///COMM [ -~]{0,32}", r"///ATTR SC,RW", _GROUP, r"NOP",
@@ -72,7 +72,7 @@ class _Run:
     unit: str = ""
     axes: int = 0
     decimals: list[int] = field(default_factory=lambda: [99, 99])  # the fewest of VJ and of V
-    beside: tuple[bool, str] | None = None
+    external: tuple[bool, str] | None = None
     output: str = ""
     on: bool = False
 
@@ -112,23 +112,23 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _moves(run: _Run) -> ReadMoves:
-    told = np.array(run.moves).reshape(-1, _WORDS + run.axes)
+    table = np.array(run.moves).reshape(-1, _WORDS + run.axes)
     names = _axes(run.axes)
     per_unit, slides = np.array([run.per_unit[axis] for axis in names]), np.array([axis in run.slides for axis in names])
-    pulses = told[:, _WORDS:]
+    pulses = table[:, _WORDS:]
     if slides.any():  # the track stands before the station in a job, wherever its axis is among them
         track, at = pulses[:, _OWN], int(np.argmax(slides))
         pulses = np.insert(np.delete(pulses, _OWN, axis=1), at, track, axis=1)
     values, per_mm = pulses / per_unit, float(np.abs(per_unit[slides]).min(initial=np.inf))
-    share, path, level, tool = told[:, :_WORDS].T
+    share, path, level, tool = table[:, :_WORDS].T
     linear = np.isfinite(path)
     unit = _MM_PER_S.get(run.unit, np.nan)
     half = [0.5 * 10.0**-decimals for decimals in run.decimals]
     return ReadMoves(
-        np.where(slides, values, np.radians(values)), np.radians(0.5 / np.abs(per_unit)), np.full(len(told), np.nan),
+        np.where(slides, values, np.radians(values)), np.radians(0.5 / np.abs(per_unit)), np.full(len(table), np.nan),
         np.array(run.deposit, dtype=np.bool_), linear, level == 0.0, tuple(run.events), speed=path * unit,
         speed_digits=half[1] * unit if linear.any() else 0.0, share=0.01 * share, share_digits=0.01 * half[0], level=level,
-        tool_frame=tool, unit=run.beside[1] if run.beside else "", linear_digits=0.5 / per_mm,
+        tool_frame=tool, unit=run.external[1] if run.external else "", linear_digits=0.5 / per_mm,
     )
 
 
@@ -154,28 +154,28 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
                 raise unreadable(f"{file} line {at + number + 1}", f"{line!r} is not position {number}")
             values[number] = [float(value) for value in point.groups()[1:]]
         at += points
-    told = {letters: int(number) for letters, number in zip(_BESIDE, count.groups()[1:])}
-    for letters, beside in told.items():
-        if beside not in (0, points):
+    counts = {letters: int(number) for letters, number in zip(_EXTERNAL, count.groups()[1:])}
+    for letters, external in counts.items():
+        if external not in (0, points):
             raise unreadable(f"{file} line 4", "not every position has one of the axes beside the robot, or these are alone")
-        values = np.hstack([values, _beside(file, letters, lines[at : at + beside], at)]) if beside else values
-        at += beside
+        values = np.hstack([values, _external_pulses(file, letters, lines[at : at + external], at)]) if external else values
+        at += external
     for number, pattern in enumerate(_INST):
         if at + number >= len(lines) or not re.fullmatch(pattern, lines[at + number]):
             raise unreadable(f"{file} line {at + number + 1}", "the instructions do not begin as those of a robot's job do")
     first = at + len(_INST)
     group = _GROUP.match(lines[first - 2])
     track, station = (bool(group[1]), group[2] or "") if group else (False, "")
-    if points and (track, bool(station)) != (told["BC"] > 0, told["EC"] > 0):
+    if points and (track, bool(station)) != (counts["BC"] > 0, counts["EC"] > 0):
         raise unreadable(f"{file} line {first - 1}", "its group is not that of its positions")
     return name[1], _Job(file, tool, values, lines[first:-2], first + 1, track, station)
 
 
-def _beside(file: str, letters: str, lines: list[str], at: int) -> Array:
+def _external_pulses(file: str, letters: str, lines: list[str], at: int) -> Array:
     """(n, k) pulses of a track or a station at the positions, told on lines after number `at`."""
     rows: list[list[float]] = []
     for number, line in enumerate(lines):
-        point = _BESIDE[letters].match(line)
+        point = _EXTERNAL[letters].match(line)
         if point is None or int(point[1]) != number or (rows and len(rows[0]) != point[2].count(",") + 1):
             raise unreadable(f"{file} line {at + number + 1}", f"{line!r} is not position {number} of {letters}")
         rows.append([float(value) for value in point[2].split(",")])
@@ -192,8 +192,8 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
     job = jobs[name]
     if name in callers:
         raise unreadable(job.file, "it calls itself")
-    told = [ratio[1].split() for line in job.lines if (ratio := _PER_UNIT.match(line))]
-    named, slides = sorted(axis for _, axis in told), [axis for unit, axis in told if unit == "mm"]
+    units = [ratio[1].split() for line in job.lines if (ratio := _PER_UNIT.match(line))]
+    named, slides = sorted(axis for _, axis in units), [axis for unit, axis in units if unit == "mm"]
     if len(job.points) and (named != sorted(_axes(job.points.shape[1])) or len(slides) != job.track):
         raise unreadable(job.file, "it does not say how many pulses there are to a degree of each axis, a mm of a track")
     if any(_MOVL.match(line) for line in job.lines) and not any(_UNIT.match(line) for line in job.lines):
@@ -258,10 +258,10 @@ def _move(job: _Job, text: str, run: _Run, where: str) -> None:
     value = float(move[4])
     if value <= 0.0 or (joint and value > 100.0):
         raise unreadable(where, f"the speed {move[4]} is none")
-    beside = job.track, job.station
-    if run.beside not in (None, beside) or run.axes not in (0, job.points.shape[1]):
+    external = job.track, job.station
+    if run.external not in (None, external) or run.axes not in (0, job.points.shape[1]):
         raise unreadable(where, "moves with another track or station than before are mixed")
-    run.beside, run.axes = beside, job.points.shape[1]
+    run.external, run.axes = external, job.points.shape[1]
     kind = 0 if joint else 1
     run.decimals[kind] = min(run.decimals[kind], len(move[5] or ""))
     run.moves.extend((value, np.nan) if joint else (np.nan, value))

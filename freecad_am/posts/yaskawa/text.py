@@ -27,8 +27,8 @@ def pulses(program: Program, joints: Array) -> NDArray[np.int64]:
 def job(program: Program, name: str, head: Sequence[str], pieces: Sequence[Piece]) -> bytes:
     """A whole file. head: lines before the first instruction."""
     runs = [piece for piece in pieces if isinstance(piece, Run)]
-    told = [pulses(program, run.moves.joints[run.start : run.stop]) for run in runs]
-    rows = np.concatenate(told) if told else np.zeros((0, len(program.slides)), dtype=np.int64)
+    texts = [pulses(program, run.moves.joints[run.start : run.stop]) for run in runs]
+    rows = np.concatenate(texts) if texts else np.zeros((0, len(program.slides)), dtype=np.int64)
     turning = ~program.slides[len(AXES) :]
     columns = {"C": rows[:, : len(AXES)], "BC": rows[:, program.slides], "EC": rows[:, len(AXES) :][:, turning]}
     columns = {letters: values for letters, values in columns.items() if values.size}

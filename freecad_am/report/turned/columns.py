@@ -169,24 +169,24 @@ def packed(of: Shown, into: Bytes) -> dict[str, Any]:
         "position": into.add(np.rint((motion.position[rows] - low) / step), "u2"),
         "build": into.add(np.rint(motion.build[rows] * _UNIT), "i2"),
         "tool": into.add(np.rint(motion.tool[rows] * _UNIT), "i2"),
-        "laid": into.add(_laid(motion, rows), "u1"),
+        "laid": into.add(_deposited(motion, rows), "u1"),
         "time": into.add(of.times, "f4"),
         "point": into.add(motion.point[rows], "u4"),
         "blocks": of.blocks(),
-        "columns": [{**_column(one, into), **_coloured(one, _laid(motion, rows))} for one in of.columns],
+        "columns": [{**_column(one, into), **_coloured(one, _deposited(motion, rows))} for one in of.columns],
         "axes": [_column(one, into) for one in of.axes],
     }
 
 
-def _laid(motion: Motion, rows: Rows) -> NDArray[np.bool_]:
+def _deposited(motion: Motion, rows: Rows) -> NDArray[np.bool_]:
     """(k,) whether the way to a row, from the one shown before, is laid."""
     found: NDArray[np.bool_] = motion.deposit[rows] & (motion.point[rows] > 0)
     return found
 
 
-def _coloured(column: Column, laid: NDArray[np.bool_]) -> dict[str, float]:
+def _coloured(column: Column, deposited: NDArray[np.bool_]) -> dict[str, float]:
     """The least and the most value of what is laid, between which colours go."""
-    values = column.values[laid & np.isfinite(column.values)]
+    values = column.values[deposited & np.isfinite(column.values)]
     least, most = (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
     return {"least": least, "most": most}
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.surroundings import Body, disc
+from freecad_am.core.geometry.obstacles import Body, disc
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.plots.look import shade
 
@@ -64,10 +64,10 @@ def turned(of: Shown, toolpath: Toolpath, width: float, platform: float | None) 
     left_out = len(of.motion) - len(of.rows)
     note = f"; {left_out:,} points between are left out here" if left_out else ""
     caption = f"<figcaption>The path with its beads{note}. Underlined places in the tables are shown here.</figcaption>"
-    told = json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c")
+    data = json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c")
     return Turned(
         f'<figure class="turned" id="path" hidden>{_CONTROLS}{caption}</figure>',
-        f'<script type="application/json" id="path-facts">{told}</script>'
+        f'<script type="application/json" id="path-facts">{data}</script>'
         f'<script type="text/plain" id="path-columns">{into.text()}</script><script>{script()}</script>',
     )
 
@@ -100,5 +100,5 @@ def _body(body: Body, every: int, into: Bytes) -> dict[str, Any]:
 
 def _box(of: Shown) -> list[list[float]]:
     """Least and largest corner of what is laid, which the view turns about."""
-    laid = of.motion.position[of.motion.deposit]
-    return np.stack([laid.min(axis=0), laid.max(axis=0)]).tolist()
+    deposited = of.motion.position[of.motion.deposit]
+    return np.stack([deposited.min(axis=0), deposited.max(axis=0)]).tolist()

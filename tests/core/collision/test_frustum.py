@@ -7,7 +7,7 @@ import pytest
 from freecad_am.core.collision.bodies import of_bodies
 from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.obstacles import Obstacles
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 
 
 def unit(v):

@@ -7,7 +7,7 @@ import pytest
 from freecad_am.core.collision.bodies import of_bodies
 from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.inside import inside_of
-from freecad_am.core.geometry.surroundings import Body, disc
+from freecad_am.core.geometry.obstacles import Body, disc
 
 NOZZLE = Frustum(0.5, 0.36, 0.87, 60.0)
 UP = np.array([[0.0, 0.0, 1.0]])

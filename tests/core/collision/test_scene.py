@@ -12,7 +12,7 @@ from freecad_am.core.collision import deposit, obstacles, own_layer, separation
 from freecad_am.core.collision.frustum import Frustum
 from freecad_am.core.collision.nozzle import depositing, exempt_height, travelling
 from freecad_am.core.collision.scene import scene
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 
 SLOPE = np.tan(np.radians(20.0))
 NOZZLE = Frustum(0.5, SLOPE, 1.0, 60.0)
@@ -192,7 +192,7 @@ def test_deposit_made_part_by_part_is_touched_as_all_of_it(monkeypatch):
     build, width, height = units(rng, 700) * 0.1 + [0.0, 0.0, 1.0], rng.uniform(2.0, 5.0, 700), rng.uniform(0.5, 1.5, 700)
     build /= np.linalg.norm(build, axis=1, keepdims=True)
     starts = np.array([0, 90, 91, 400])
-    whole = deposit.of_beads(points, build, width, height, starts, beside=3.0)
+    whole = deposit.of_beads(points, build, width, height, starts, foot=3.0)
     tip, axis = rng.uniform(-26.0, 26.0, (4000, 3)) + [0.0, 0.0, 2.0], units(rng, 4000)
     moment, own = rng.integers(0, 720, 4000), rng.integers(0, 700, 4000)
     late = np.full(4000, 700)
@@ -200,7 +200,7 @@ def test_deposit_made_part_by_part_is_touched_as_all_of_it(monkeypatch):
     assert 0.2 < expected[1].mean() < expected[0].mean() < 0.95
     for part in (7, 64, 1000):
         monkeypatch.setattr(deposit, "PART", part)
-        made = deposit.in_parts(points, build, width, height, starts, beside=3.0)
+        made = deposit.in_parts(points, build, width, height, starts, foot=3.0)
         np.testing.assert_array_equal(made.touched(NOZZLE, tip, axis, late), expected[0])
         np.testing.assert_array_equal(made.touched(NOZZLE, tip, axis, moment, own), expected[1])
 
@@ -215,7 +215,7 @@ def test_the_layer_being_laid_is_told_the_same_with_and_without_looking_at_each_
     rng = np.random.default_rng(20)
     below, mine = meander(600), meander(1500) + [0.0, 2.0, 1.5]
     points = np.concatenate([below, mine])
-    laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), 4.0, 1.5, [0, len(below)], beside=3.0)
+    laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), 4.0, 1.5, [0, len(below)], foot=3.0)
     at = rng.integers(len(below) + 50, len(points), 6000)
     tip = points[at] + rng.normal(size=(6000, 3)) * [0.5, 0.5, 0.1]
     axis = units(rng, 6000)
@@ -240,7 +240,7 @@ def test_pieces_next_to_the_tip_are_not_looked_at_one_by_one(monkeypatch):
     work = []
     for count in (2000, 8000, 32000):
         points = meander(count)
-        laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (count, 1)), 4.0, 1.5, [0], beside=3.0)
+        laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (count, 1)), 4.0, 1.5, [0], foot=3.0)
         at = np.linspace(count // 2, count - 1, 200).astype(int)
         looked[0] = 0
         axis = np.tile([np.sin(0.3), 0.0, np.cos(0.3)], (200, 1))

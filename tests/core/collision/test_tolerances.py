@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from freecad_am.core.collision.deposit import of_beads
-from freecad_am.core.collision.frustum import Frustum, beside_tip
+from freecad_am.core.collision.frustum import Frustum, side_height
 from freecad_am.core.collision.nozzle import depositing, travelling
 from freecad_am.core.collision.scene import scene
-from freecad_am.core.geometry.rods import Rod
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.cylinders import Cylinder
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.parameters.cell import CellParameters
@@ -66,7 +66,7 @@ def test_while_depositing_beads_are_met_exactly_and_halfway_within_a_tenth(deep,
 
 def test_over_the_bodies_that_a_nozzle_deposits_on_what_both_faces_may_be_off_is_left_out():
     nozzle, slope = depositing(RADIUS, 0.5, LENGTH, 0.0), 0.5
-    assert nozzle.bodies.low == pytest.approx(beside_tip(RADIUS, slope) + 0.2)
+    assert nozzle.bodies.low == pytest.approx(side_height(RADIUS, slope) + 0.2)
 
 
 @pytest.mark.parametrize(("gap", "touched"), [(-1.0, True), (0.15, True), (0.25, False)])
@@ -80,7 +80,7 @@ def test_links_are_kept_as_far_as_two_lots_of_triangles_are_off(gap, touched, cl
     ends = np.array([[-5.0 - gap - clearance, y, 0.0, 1.0] for y in (-10.0, 10.0)])
     part = cell.station @ np.linalg.inv(cell.mount)
     seen = (np.linalg.inv(cell.links(joints)[0, 2]) @ part @ ends.T).T[:, :3]
-    rods = [()] * 2 + [(Rod(*seen, 5.0),)] + [()] * 4
+    rods = [()] * 2 + [(Cylinder(*seen, 5.0),)] + [()] * 4
     found = ArmContact(cell, rods, (wall(0.0),), clearance=clearance).touches(joints)
     assert bool(found.any[0]) == touched and (not touched or found.link[0] == 2)
 

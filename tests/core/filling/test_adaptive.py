@@ -176,7 +176,7 @@ def test_beads_cover_as_much_as_they_are_wide(thick):
     pixel, near = 0.25**2, 0.06 * 2.0 * (50.0 + thick)  # a quarter of a place along the border
     assert found.whole == pytest.approx(region.area) and found.once == pytest.approx(pixel * swept_over.sum(), abs=near)
     assert found.left == pytest.approx(pixel * (within & ~swept_over).sum(), abs=near)
-    assert found.beside == pytest.approx(pixel * (swept_over & ~within).sum(), abs=near)
+    assert found.outside == pytest.approx(pixel * (swept_over & ~within).sum(), abs=near)
     usual = covered(region, [replace(curve, share=None) for curve in curves], BEADS)
     if abs(share - 1.0) > 0.1:
-        assert abs(usual.left - found.left) + abs(usual.beside - found.beside) > 2.0 * near
+        assert abs(usual.left - found.left) + abs(usual.outside - found.outside) > 2.0 * near

@@ -28,7 +28,7 @@ def spread(base, n, seed):
 def test_there_and_back(base, middle):
     points = spread(base, 4000, 1)
     size = np.abs(points).max()
-    np.testing.assert_allclose(base.rolled(base.flat(points, middle), middle), points, atol=1e-12 * size)
+    np.testing.assert_allclose(base.wrap(base.flat(points, middle), middle), points, atol=1e-12 * size)
 
 
 @pytest.mark.parametrize("base", BASES)

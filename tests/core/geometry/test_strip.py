@@ -45,7 +45,7 @@ def in_space(hub, strip, flat, turns, middle=0.0, step=0.03):
     count = np.maximum(np.ceil(np.hypot(*way.T) / step).astype(int), 1)
     edge = np.repeat(np.arange(len(way)), count)
     share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
-    return hub.rolled(line[edge] + share[:, None] * way[edge], middle)
+    return hub.wrap(line[edge] + share[:, None] * way[edge], middle)
 
 
 @pytest.mark.parametrize("name", HUBS)

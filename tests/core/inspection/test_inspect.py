@@ -245,7 +245,7 @@ def test_bands_are_alike_on_both_sides_and_green_within():
     texts = [band.text for band in bands.bands(0.1)]
     assert texts[3] == "within ±0.1" and texts[0] == "< -0.3" and texts[6] == "> 0.3"
     colours = bands.colours(deviation, np.arange(9) != 8, 0.1)
-    assert (colours[8] == bands.NOT_COUNTED).all() and colours[4][1] > colours[4][[0, 2]].max()
+    assert (colours[8] == bands.PAST_EDGES).all() and colours[4][1] > colours[4][[0, 2]].max()
 
 
 def test_the_table_has_a_column_for_each_part_and_their_spread():

@@ -23,7 +23,7 @@ def test_a_hemisphere_is_as_far_as_its_radius_tells():
         distance, normal = surface(points)
         assert np.abs(distance - (radius - R0)).max() < 1e-9
         assert np.abs(normal - points / radius[:, None]).max() < 1e-7
-    assert (of.past(points) == 0.0).all() and of.counted(points).all()
+    assert (of.past(points) == 0.0).all() and of.within_edges(points).all()
     below = points * [1.0, 1.0, -1.0]
     foot = below * [1.0, 1.0, 0.0]
     foot *= (R0 / np.linalg.norm(foot, axis=1))[:, None]
@@ -63,7 +63,7 @@ def test_past_the_sides_of_part_of_a_turn():
     of = planned(hemisphere(0.0, np.pi, False), "half")
     beside = np.array([[40.0, -2.0, 10.0], [40.0, 2.0, 10.0], [-40.0, -5.0, 10.0], [0.0, -45.0, 0.0]])
     assert of.past(beside) == pytest.approx([2.0, 0.0, 5.0, 45.0], abs=0.2)
-    assert list(of.counted(beside)) == [False, True, False, False]
+    assert list(of.within_edges(beside)) == [False, True, False, False]
 
 
 def test_sides_of_a_wall_are_half_a_thickness_off():
@@ -90,7 +90,7 @@ def test_triangles_of_a_box_are_exact_and_never_end():
     assert np.abs(distance - exact).max() < 1e-9
     step = 1e-5
     assert np.abs(of.exact(points + step * normal)[0] - distance - step).max() < 1e-9
-    assert of.counted(points).all()
+    assert of.within_edges(points).all()
 
 
 def rings(layer_height, radius=30.0):
@@ -113,7 +113,7 @@ def test_beads_of_a_pipe_are_its_surface_whichever_way_they_run():
     distance, normal = of.exact(points)
     assert np.abs(distance - off).max() < 1e-3
     assert np.abs(normal[:, 2]).max() < 1e-9 and (normal * points).sum(axis=1).min() > 29.0 * 0.9
-    assert of.counted(points).all() and not of.counted(points + [0.0, 0.0, 40.0]).any()
+    assert of.within_edges(points).all() and not of.within_edges(points + [0.0, 0.0, 40.0]).any()
 
 
 @pytest.mark.parametrize("sense", [1, -1])

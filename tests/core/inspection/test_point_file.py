@@ -110,7 +110,7 @@ def test_vertices_of_obj():
 
 
 def test_large_scans_are_thinned_evenly(monkeypatch):
-    monkeypatch.setattr(point_file, "MOST", 10)
+    monkeypatch.setattr(point_file, "MAX_POINTS", 10)
     found = point_file.parse(table(",").encode(), "scan.csv")
     assert (found.points == POINTS[np.linspace(0, 39, 10).astype(int)]).all() and "of 40 points 10 are kept" in told(found)
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.inspection import scan_checks, scan_motion
 from freecad_am.core.inspection.fit_layers import fitted, moved_most
 from freecad_am.core.inspection.scan_heights import Scan
@@ -176,12 +176,12 @@ def test_a_scan_from_anywhere_is_laid_onto_the_part():
     points += rng.normal(0.0, 0.02, points.shape)
     points[:80] += rng.uniform(-40.0, 40.0, (80, 3))
     turn = Rotation.from_euler("xyz", [70.0, -40.0, 130.0], degrees=True).as_matrix()
-    motion = scan_motion.laid(points @ turn.T + (500.0, -200.0, 90.0), wedge, "s")
+    motion = scan_motion.aligned(points @ turn.T + (500.0, -200.0, 90.0), wedge, "s")
     back = (points @ turn.T + (500.0, -200.0, 90.0)) @ motion[:3, :3].T + motion[:3, 3]
     assert np.linalg.norm(back - points, axis=1).max() < 0.1
     top = points_on(bent)
     with pytest.raises(InputError) as error:
-        scan_motion.laid(top @ turn.T + (500.0, -200.0, 90.0), PLATE, "s")
+        scan_motion.aligned(top @ turn.T + (500.0, -200.0, 90.0), PLATE, "s")
     assert error.value.code == "SCAN_AMBIGUOUS"
 
 

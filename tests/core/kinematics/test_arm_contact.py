@@ -8,11 +8,11 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.collision.deposit import of_beads
 from freecad_am.core.geometry import frames
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import contact as arm_contact
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links import robot as robot_links
-from freecad_am.core.kinematics.links import rods as link_rods
 from freecad_am.core.kinematics.links.contact import DEPOSIT, PLATFORM, ArmContact
 from freecad_am.core.kinematics.links.nozzle_body import NOZZLE
 from freecad_am.core.kinematics.links.rounds import NONE
@@ -80,7 +80,7 @@ def test_what_is_drawn_does_not_reach_into_a_box_untold_and_what_is_told_is_near
         seen = seen_from_part(cell, q[k], found.link[k])
         points = np.concatenate([solid.moved(seen).points[solid.triangles].mean(axis=1) for solid in links[found.link[k]]])
         off = np.linalg.norm(np.maximum(np.maximum(low - points, points - low - SIZE), 0.0), axis=1).min()
-        # plates count as round rods, and tapering ones as wide as they are at most
+        # plates count as round cylinders, and tapering ones as wide as they are at most
         assert off < 90.0
 
 
@@ -95,7 +95,7 @@ def test_a_rod_and_a_box_touch_where_analysis_says():
         only = [[rod] if k == link else [] for k in range(7)]
         axis = seen[:3, :3] @ (rod.end - rod.start) / rod.length
         side = np.eye(3)[np.argmin(np.abs(axis))]
-        # along x, y or z the rod reaches so far: half its length along its axis, and its radius across
+        # along x, y or z the cylinder reaches so far: half its length along its axis, and its radius across
         reach = 0.5 * rod.length * abs(axis @ side) + rod.radius * np.sqrt(1.0 - (axis @ side) ** 2)
         for gap, wanted in ((-1.0, True), (1.0, False)):
             low = middle - 0.5 * SIZE

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How far links stay from a box: by points on the sides of their rods and the distance of a point from a box."""
+"""How far links stay from a box: by points on the sides of their cylinders and the distance of a point from a box."""
 
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.kinematics.links.distance import least_distance
 from freecad_am.core.simulation.placing import placing
@@ -35,7 +35,7 @@ def test_the_least_distance_is_that_of_points_on_links(setup, low):
                 best = min(best, float(np.linalg.norm(outside, axis=1).min()))
         alone = least_distance(nozzle, q[None], np.zeros(1, dtype=np.int64), REACH)
         found = least_distance(contact, q[None], np.zeros(1, dtype=np.int64), REACH)
-        # points are up to 12 mm apart, rods 0.2 mm larger; the nozzle may be nearer than the box
+        # points are up to 12 mm apart, cylinders 0.2 mm larger; the nozzle may be nearer than the box
         assert min(best - 15.0, alone) - 1e-4 <= found <= min(best, alone) + 1e-6, q
         met += best <= alone - 15.0
     assert met > 5

@@ -76,7 +76,7 @@ def test_the_spin_turns_the_flange_about_the_deposition_point(setup):
     middle = cell.flange_poses(position, tool, phi)
     change = (later[:, :3, :3] - here[:, :3, :3]) / (2 * step) @ np.swapaxes(middle[:, :3, :3], 1, 2)
     turning = np.stack([change[:, 2, 1], change[:, 0, 2], change[:, 1, 0]], axis=1)
-    spin, point = cell.spin_axis(middle), cell.deposition_point(middle)
+    spin, point = cell.rotation_axis(middle), cell.deposition_point(middle)
     assert np.abs(turning - spin).max() < 1e-8
     velocity = (later[:, :3, 3] - here[:, :3, 3]) / (2 * step)
     assert np.abs(velocity - np.cross(spin, middle[:, :3, 3] - point)).max() < 1e-5

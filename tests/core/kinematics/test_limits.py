@@ -61,7 +61,7 @@ def test_the_smallest_share_is_that_of_all(arm, name):
 
 def test_endless_axis(arm):
     paper = arm.limits("paper")
-    assert paper.endless.tolist() == [False] * 5 + [True]
+    assert paper.continuous.tolist() == [False] * 5 + [True]
     assert np.degrees(paper.upper - paper.lower) == pytest.approx((370, 320, 546, 400, 270, np.inf))
     assert np.isposinf(paper.margin(np.radians((0.0, 0, 0, 0, 0, 1e6)))[5])
 

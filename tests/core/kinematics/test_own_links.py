@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.kinematics.links.distance import least_distance
 from freecad_am.core.kinematics.links.own import OwnLinks, positions

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The torch as a solid: what is refused of a file, and what its rods hold."""
+"""The torch as a solid: what is refused of a file, and what its cylinders hold."""
 
 import dataclasses
 
@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry import frames
-from freecad_am.core.geometry.surroundings import Body, box
+from freecad_am.core.geometry.obstacles import Body, box
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import torch
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import TORCH, ArmContact
 from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -51,10 +51,10 @@ def test_rods_hold_what_is_beyond_the_nozzle():
     beyond = points[points[:, 2] > NOZZLE.length]
     assert len(beyond) > 3000 and beyond[:, 2].max() > 214.0 and beyond[:, 0].max() > 154.0  # Z into the torch, X as it was
     held = np.zeros(len(beyond), dtype=bool)
-    for rod in found.rods:
+    for rod in found.cylinders:
         held |= rod.holds(beyond)
     assert held.all()
-    assert sum(np.pi * rod.length * rod.radius**2 for rod in found.rods) < 3.2 * (165.0 * 12.0**2 + 149.0 * 30.0 * 40.0)
+    assert sum(np.pi * rod.length * rod.radius**2 for rod in found.cylinders) < 3.2 * (165.0 * 12.0**2 + 149.0 * 30.0 * 40.0)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -101,7 +101,7 @@ def test_the_angle_that_is_named_serves():
 
 @pytest.mark.parametrize("setup", ["tool-on-robot", "part-on-robot"])
 def test_a_contact_is_where_torch_and_box_are(setup):
-    """At random poses: what has no point of the torch within the clearance of a body is not told by more than rods are
+    """At random poses: what has no point of the torch within the clearance of a body is not told by more than cylinders are
     larger, and what has one is; with the torch on the robot and with the part on it."""
     settings = CellParameters(
         machine="fanuc-arcmate120ic", setup=setup, deposition_point=(900.0, 0.0, 200.0, 0.0, 0.0, 0.0),

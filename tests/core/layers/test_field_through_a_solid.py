@@ -77,7 +77,7 @@ def test_in_a_maze_no_way_is_shorter_than_straight_or_longer_than_from_node_to_n
     places = grid.places(linked.nodes)
     start = int(np.argmin(places.sum(axis=1)))
     u = arrival(linked, 1.0, np.array([start]), np.zeros(1))
-    pairs = np.vstack([np.stack([np.arange(len(places)), side], axis=1) for side in linked.beside])
+    pairs = np.vstack([np.stack([np.arange(len(places)), side], axis=1) for side in linked.neighbours])
     pairs = pairs[pairs[:, 1] < len(places)]
     graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(places),) * 2)
     steps = dijkstra(graph.tocsr(), indices=start)

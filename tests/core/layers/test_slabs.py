@@ -6,9 +6,9 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from freecad_am.core.geometry.curves.guide import guide
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
-from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.layers.leaning import leaning
 from freecad_am.core.layers.planes.slabs import below, group_of, outline, slabs
 from freecad_am.core.layers.planes.stacking import stacked

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.layers.planes.stacking import best
 from freecad_am.core.parameters.filled import SolidParameters
 

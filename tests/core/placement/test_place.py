@@ -11,7 +11,7 @@ from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import jacobian
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.motion import DEPOSIT
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters

@@ -9,10 +9,10 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
@@ -60,7 +60,7 @@ def box(low, size, name):
 def planned(toolpath, cell, method="layer-by-layer"):
     """The motion of a job, and its issues."""
     rods, parameters = link_rods.of_robot(cell.robot.chain), JointParameters(method=method)
-    path = plan_joints(toolpath, cell, parameters, rods=rods)
+    path = plan_joints(toolpath, cell, parameters, cylinders=rods)
     motion, rapids = assemble(
         path, cell, ProcessParameters(), toolpath.surroundings, parameters, toolpath.layer_height, rods
     )

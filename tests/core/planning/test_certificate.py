@@ -54,7 +54,7 @@ def shortest(task, path):
     joints = np.stack([task.raw_joints(points.each(np.full(FINE, i)), phi) for i in range(len(points))])
     away = np.exp(1j * (joints - task.middle))
     reachable = np.isfinite(joints).all(axis=2) & (np.abs(np.angle(away)) <= np.where(
-        task.endless, np.inf, 0.5 * (task.cell.limits.upper - task.cell.limits.lower))).all(axis=2)
+        task.continuous, np.inf, 0.5 * (task.cell.limits.upper - task.cell.limits.lower))).all(axis=2)
     ratio = np.stack([
         task.condition_at(points.frames.of(np.full(FINE, i)).at(phi), joints[i]) for i in range(len(points))
     ])

@@ -161,7 +161,7 @@ def test_robots_wait_or_say_why_not():
         ("fanuc", COOLING, "ANALOGUE_INPUT"), ("fanuc", CoolingParameters(below=150.0, input=26), "ANALOGUE_INPUT"),
         ("staubli", whole, "NO_ANALOGUE_INPUT"),
     ):
-        other = dataclasses.replace(program(cell, path, found, motion, "fanuc", cooling), endless=(False,) * 6)
+        other = dataclasses.replace(program(cell, path, found, motion, "fanuc", cooling), continuous=(False,) * 6)
         with pytest.raises(InputError) as raised:
             catalogue.load(post).write(other)
         assert raised.value.code == code

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import ERROR, has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.motion import APPROACH, DEPOSIT, RETRACT, TRAVEL
@@ -252,7 +252,7 @@ def test_an_endless_axis_never_has_half_a_turn_to_go_in_one_move(sliced, cell_of
     toolpath = sliced("sphere", 15.0, chord_error=0.3)
     cell = cell_of(toolpath)
     path = plan_joints(toolpath, cell, JointParameters())
-    (axis,) = np.flatnonzero(cell.limits.endless)
+    (axis,) = np.flatnonzero(cell.limits.continuous)
     on = np.eye(6)[axis] * 3.0 * np.pi
     beads = tuple(
         dataclasses.replace(bead, joints=bead.joints + number * on, phi=bead.phi) for number, bead in enumerate(path.beads))

@@ -32,7 +32,7 @@ CELLS = {
 
 def bead(surface, flat, closed):
     """A bead of plane points (n, 2) laid on the surface, along its normals."""
-    points = surface.rolled(flat)
+    points = surface.wrap(flat)
     if closed:
         points[-1] = points[0]
     up = surface.normals(points)

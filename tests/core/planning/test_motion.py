@@ -14,11 +14,11 @@ from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters, StartParameters
-from freecad_am.core.planning.beads.straight import kept_straight
+from freecad_am.core.planning.beads.chord_error import refined_to_chord_error
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.rapids.clearance import Moves as Driven
-from freecad_am.core.planning.rapids.clearance import Surroundings
+from freecad_am.core.planning.rapids.clearance import RapidObstacles
 from freecad_am.core.planning.task import Task
 from freecad_am.core.program import FIRST_TIME, Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
 from freecad_am.core.simulation import rapid_look
@@ -124,7 +124,7 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     some = motion.deposit
     flat = np.zeros(int(some.sum()))
     deposit = Beads(motion.position[some], motion.build[some], motion.tool[some], flat, flat, motion.point[some] == 0)
-    surroundings = Surroundings(cell, deposit, ())
+    surroundings = RapidObstacles(cell, deposit, ())
     poses = cell.machine.opw.inverse(cell.flange_poses(np.array([tip]), np.array([axis]), np.zeros(1)))[:, 0]
     joints = poses[np.isfinite(poses).all(axis=1)][:1]
     moves = Driven(joints, joints, np.zeros(1, dtype=int))
@@ -255,5 +255,5 @@ def test_points_are_added_where_joint_motion_leaves_the_bead(sliced, cell_of):
         offset = tip.reshape(len(origin), -1, 3) - origin
         where = np.clip((offset * along).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
         assert np.linalg.norm(offset - where[..., None] * along, axis=-1).max() < toolpath.chord_error * 1.05
-        again, issues = kept_straight(task, path, toolpath.chord_error)
+        again, issues = refined_to_chord_error(task, path, toolpath.chord_error)
         assert len(again.bead) == len(path.bead) and not issues

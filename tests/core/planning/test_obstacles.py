@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry import frames
-from freecad_am.core.geometry.surroundings import box
+from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.obstacles import Obstacle, obstacles
 from freecad_am.core.simulation import rapid_look

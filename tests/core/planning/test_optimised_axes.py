@@ -11,7 +11,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import JointParameters, given_text
 from freecad_am.core.planning.external import optimised
-from freecad_am.core.planning.external.freedom import FAR
+from freecad_am.core.planning.external.freedom import AMPLE
 from freecad_am.core.planning.external.level import on_face
 from freecad_am.core.planning.external.rule import least_margin
 from freecad_am.core.planning.plan import plan_joints
@@ -120,7 +120,7 @@ def test_derivatives(hemisphere, external, objective):
     x = 0.01 * np.random.default_rng(5).normal(size=(1 + cell.external.axes) * freedom.shape.shape[1])
     here, step = freedom.look(x), 1e-6
     of_condition = np.arange(len(here.margins)) >= len(here.margins) - len(freedom.points)
-    told = ~(of_condition & (here.margins >= FAR))
+    told = ~(of_condition & (here.margins >= AMPLE))
     assert (told & of_condition).any()
     for number in range(len(x)):
         change = np.where(np.arange(len(x)) == number, step, 0.0)

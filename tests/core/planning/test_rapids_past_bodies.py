@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import has_errors
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters

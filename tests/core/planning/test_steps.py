@@ -49,21 +49,21 @@ def wild():
 
 
 def test_others_are_told_all(wild):
-    told, rows = steps.told(wild, catalogue.controller("abb"), CHORD, 50.0)
+    told, rows = steps.programmed(wild, catalogue.controller("abb"), CHORD, 50.0)
     assert told is wild and (rows == np.arange(len(wild))).all()
 
 
 def test_what_comes_late_enough_stays_to_the_bit():
     turn = np.linspace(0.0, 6.0, 200)
     one = motion(bead(0, 8.0 * np.c_[np.cos(turn), np.sin(turn)]), bead(1, [[0.0, 0.0], [0.0401, 0.0], [0.0401, 0.0401]]))
-    told, rows = steps.told(one, UR, CHORD, 50.0)
+    told, rows = steps.programmed(one, UR, CHORD, 50.0)
     assert (rows == np.arange(len(one))).all()
     for field in dataclasses.fields(Motion):
         assert np.array_equal(getattr(told, field.name), getattr(one, field.name), equal_nan=True), field.name
 
 
 def test_no_move_is_shorter_than_a_step_and_no_point_lies_off_the_way(wild):
-    told, _ = steps.told(wild, UR, CHORD, 50.0)
+    told, _ = steps.programmed(wild, UR, CHORD, 50.0)
     assert 0.5 * len(wild) < len(told) < 0.9 * len(wild)
     inside = told.deposit & (told.point > 0)
     assert told.duration[inside].min() >= 0.002
@@ -86,18 +86,18 @@ def test_no_move_is_shorter_than_a_step_and_no_point_lies_off_the_way(wild):
 def test_a_corner_that_is_needed_takes_a_step(wild):
     """A step aside of 0.015 mm, within 0.75 ms: leaving it out would be off by more than is allowed."""
     one = motion(bead(0, [[0.0, 0.0], [5.0, 0.0], [5.0, 0.015], [5.0, 5.0]]))
-    finer, rows = steps.told(one, UR, 0.01, 50.0)
+    finer, rows = steps.programmed(one, UR, 0.01, 50.0)
     assert rows.tolist() == list(range(6)) and finer.duration[4] == pytest.approx(0.002, rel=1e-3)
     assert finer.speed[4] == pytest.approx(7.5, rel=1e-3) and finer.speed[3] == SPEED
-    coarser, rows = steps.told(one, UR, 0.05, 50.0)
+    coarser, rows = steps.programmed(one, UR, 0.05, 50.0)
     assert rows.tolist() in ([0, 1, 2, 4, 5], [0, 1, 2, 3, 5])
     assert coarser.duration[2:].sum() == pytest.approx(one.duration[2:].sum(), rel=1e-12)
 
 
 def test_points_too_near_for_a_blend_go_however_slow():
     one = motion(bead(0, [[0.0, 0.0], [3.0, 0.0], [3.004, 0.0], [8.0, 0.0]], speed=1.0))
-    assert steps.told(one, UR, CHORD, 50.0)[1].tolist() in ([0, 1, 2, 4, 5], [0, 1, 2, 3, 5])
-    assert len(steps.told(one, UR, CHORD, 100.0)[1]) == len(steps.told(one, UR, CHORD, 0.0)[1]) == len(one)
+    assert steps.programmed(one, UR, CHORD, 50.0)[1].tolist() in ([0, 1, 2, 4, 5], [0, 1, 2, 3, 5])
+    assert len(steps.programmed(one, UR, CHORD, 100.0)[1]) == len(steps.programmed(one, UR, CHORD, 0.0)[1]) == len(one)
 
 
 def test_points_stay_where_axes_turn_far():
@@ -107,4 +107,4 @@ def test_points_stay_where_axes_turn_far():
     joints[5:, 4] += 0.2
     joints[4, 4] += 0.1
     turned = dataclasses.replace(one, joints=joints)
-    assert len(steps.told(one, UR, CHORD, 50.0)[1]) < len(one) == len(steps.told(turned, UR, CHORD, 50.0)[1])
+    assert len(steps.programmed(one, UR, CHORD, 50.0)[1]) < len(one) == len(steps.programmed(turned, UR, CHORD, 50.0)[1])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry import frames
-from freecad_am.core.geometry.surroundings import box
+from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import torch

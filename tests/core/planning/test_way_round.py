@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry import frames
+from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.geometry.spread import spread
-from freecad_am.core.geometry.surroundings import box
 from freecad_am.core.issues import has_errors
 from freecad_am.core.motion import TRAVEL
 from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.planning import nozzle_beside
+from freecad_am.core.planning import nozzle_obstacles
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.rapids import way_round as sampled
@@ -120,7 +120,7 @@ def test_rapids_over_a_positioner_are_led_past_an_obstacle(monkeypatch):
         nozzle = np.linalg.inv(cell.robot.base) @ arm.frame(middle) @ cell.carried
         pose = nozzle @ frames.pose(np.eye(3), np.array([0.0, 0.0, -30.0]))
         there = dataclasses.replace(cell, obstacles=(box(size, pose, "lamp"),))
-        if not nozzle_beside.findings(motion, there):  # it is in the way of travels alone
+        if not nozzle_obstacles.findings(motion, there):  # it is in the way of travels alone
             break
     layers = tuple(Layer(tuple(beads[k:k + len(beads) // 2])) for k in (0, len(beads) // 2))
     toolpath = Toolpath(layers, np.eye(4), planned_jobs.HEIGHT, planned_jobs.CHORD_ERROR, family="developable",

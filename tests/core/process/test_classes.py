@@ -24,11 +24,11 @@ def test_texts_read_back(seed):
         values = {key: rng.uniform(*ends) for key, ends in KEYS.items() if rng.random() < 0.6}
         given[name] = BeadClass(**values, schedule=rng.choice([None, rng.randint(1, 65535)]))
     found = classes(text_of(given))
-    assert set(found) == {name for name, one in given.items() if one.told()}
+    assert set(found) == {name for name, one in given.items() if one.own_values()}
     for name, one in found.items():
-        assert set(one.told()) == set(given[name].told()) and one.schedule == given[name].schedule
-        for key, value in one.told().items():
-            assert math.isclose(value, given[name].told()[key], rel_tol=1e-11, abs_tol=1e-11)
+        assert set(one.own_values()) == set(given[name].own_values()) and one.schedule == given[name].schedule
+        for key, value in one.own_values().items():
+            assert math.isclose(value, given[name].own_values()[key], rel_tol=1e-11, abs_tol=1e-11)
 
 
 @pytest.mark.parametrize(("text", "words"), [

@@ -34,12 +34,12 @@ def test_a_ring_on_a_cone_bends_to_its_side_as_the_cone_laid_flat_does(lean):
     of the cone of the wall's normals, radius / cos(lean)."""
     points, build = ring(40.0, lean)
     # within a window of 8 mm the heading goes up in steps of 0.35 mm: (0.35 / 8)^2 / 12
-    np.testing.assert_allclose(bead_speed.radii_beside(points, build, True, 8.0), 40.0 / math.cos(lean), rtol=2e-4)
+    np.testing.assert_allclose(bead_speed.side_radii(points, build, True, 8.0), 40.0 / math.cos(lean), rtol=2e-4)
 
 
 def test_a_ring_on_a_plane_disc_laid_edgewise_does_not_bend_to_its_side():
     points, build = ring(40.0, math.pi / 2.0)
-    assert bead_speed.radii_beside(points, build, True, 8.0).min() > 1e6
+    assert bead_speed.side_radii(points, build, True, 8.0).min() > 1e6
 
 
 def test_in_the_plane_it_is_the_radius_of_the_bead_laid_flat():
@@ -50,7 +50,7 @@ def test_in_the_plane_it_is_the_radius_of_the_bead_laid_flat():
     for closed in (True, False):
         line = np.vstack([flat, flat[:1]]) if closed else flat
         points = np.c_[line, np.full(len(line), 7.0)]
-        found = bead_speed.radii_beside(points, np.tile([0.0, 0.0, 1.0], (len(line), 1)), closed, 9.0)
+        found = bead_speed.side_radii(points, np.tile([0.0, 0.0, 1.0], (len(line), 1)), closed, 9.0)
         np.testing.assert_allclose(found, bead_speed.radii(line, closed, 9.0), rtol=1e-9)
 
 

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from freecad_am.core.process.deposit.twice import laid_twice
+from freecad_am.core.process.deposit.twice import deposited_twice
 from tests.core.process.test_support import HEIGHT, WIDTH, bead, rod, toolpath
 
 
@@ -21,7 +21,7 @@ def turned(angle, length=60.0, at=(0.0, 0.0)):
 
 
 def area(*beads, more=()):
-    return laid_twice(toolpath(list(beads), *more)) / HEIGHT
+    return deposited_twice(toolpath(list(beads), *more)) / HEIGHT
 
 
 def test_beads_apart_or_end_to_end_or_above_each_other_share_nothing():

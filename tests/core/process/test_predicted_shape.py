@@ -11,7 +11,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.process.shape import compare
 from freecad_am.core.process.shape.faces import BOTH, faces
-from freecad_am.core.process.shape.laying import laid, parts_of
+from freecad_am.core.process.shape.laying import parts_of, predicted_deposit
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 WIDE, HIGH, SPEED = 6.0, 2.0, 8.0
@@ -45,7 +45,7 @@ def toolpath(layers, height=HIGH, width=WIDE, **more):
 
 
 def deposit(path, process=PROCESS, edge=None):
-    return laid(parts_of(path, [process] * len(path.parts)), lambda share, text: None, edge)
+    return predicted_deposit(parts_of(path, [process] * len(path.parts)), lambda share, text: None, edge)
 
 
 def box(low, high):
@@ -105,7 +105,7 @@ def test_it_holds_what_is_fed(feed):
     axes = [np.arange(-20.0, 75.0, edge), np.arange(-30.0, 45.0, edge), np.arange(-12.0, 60.0, edge)]
     lattice = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) + [0.31 * edge, 0.17 * edge, 0.73 * edge]
     assert abs(edge**3 * found.grid.at(lattice).sum() / fed - 1.0) < 1e-9
-    assert abs(found.fed / fed - 1.0) < 1e-9 and abs(found.laid / fed - 1.0) < 1e-9
+    assert abs(found.fed / fed - 1.0) < 1e-9 and abs(found.applied / fed - 1.0) < 1e-9
     assert found.grid.filled.min() >= 0.0 and found.grid.filled.max() <= 1.0 + 1e-12
 
 

@@ -10,8 +10,8 @@ import pytest
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.curves.sampling import arc, line
 from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.obstacles import Body, disc
 from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub
-from freecad_am.core.geometry.surroundings import Body, disc
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.filled import DevelopableParameters
@@ -46,7 +46,7 @@ def toolpath(*layers, family="surface", height=HEIGHT, width=WIDTH):
 
 def told(path, planes=(), bodies=(), bases=()):
     """Length over nothing, and the issues."""
-    found = support.told(path, planes, bodies, bases)
+    found = support.with_support(path, planes, bodies, bases)
     return found.unsupported, [issue for issue in found.issues if issue.code == "UNSUPPORTED"]
 
 
@@ -170,7 +170,7 @@ def mushroom_path():
         DevelopableParameters(layer_height=4.0, chord_error=0.05, bead_spacing=6.0, fill="lines", fill_angle_step=0.0),
         BuildDirectionParameters(), ProcessParameters(), None,
     )
-    return support.told(made, (), (), (base,))
+    return support.with_support(made, (), (), (base,))
 
 
 def test_the_mushroom_is_told_with_its_length(mushroom_path):

@@ -12,7 +12,7 @@ from freecad_am.core.parameters.bead_classes import BeadEnd, BeadStart
 from freecad_am.core.parameters.process import MaterialParameters, ProcessParameters, WireParameters
 from freecad_am.core.preflight import deposit
 from freecad_am.core.process.model import bead_table, wire_taken
-from freecad_am.core.process.model.material import speeds_told
+from freecad_am.core.process.model.material import with_speed_issues
 from freecad_am.core.process.model.wire import fed
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
@@ -136,7 +136,7 @@ def test_beads_of_other_widths_and_heights_at_speeds_that_follow_balance():
 
 def test_starts_and_ends_count_among_the_speeds_of_a_material():
     of = replace(ProcessParameters(), material=MaterialParameters(name="clay", slowest=4.0, fastest=10.0))
-    assert speeds_told(PATH, of).issues == ()
+    assert with_speed_issues(PATH, of).issues == ()
     for ends, low, high in (((5.0, 3.0, 0.0, 0.0), "3", "6"), ((0.0, 0.0, 5.0, 11.0), "6", "11")):
-        (issue,) = speeds_told(path_of(ends), of).issues
+        (issue,) = with_speed_issues(path_of(ends), of).issues
         assert issue.code == "MATERIAL_SPEED" and f"at {low} to {high.replace('6', '9')} mm/s" in issue.message

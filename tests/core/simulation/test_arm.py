@@ -6,10 +6,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.surroundings import disc
+from freecad_am.core.geometry.obstacles import disc
 from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links import robot as robot_links
-from freecad_am.core.kinematics.links import rods as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.parameters.cell import CellParameters
@@ -40,7 +40,7 @@ def test_places_are_on_the_motion_and_no_farther_apart_than_a_step(a_motion):
 
 
 def test_long_motions_are_looked_at_at_so_many_places(a_motion, monkeypatch):
-    monkeypatch.setattr(arms, "MOST", 500)
+    monkeypatch.setattr(arms, "MAX_LOOKS", 500)
     seen, _, step = arms.places(a_motion(4).joints)
     assert step > arms.STEP and 500 <= len(seen) <= 502
 
@@ -118,7 +118,7 @@ def test_between_gaps_every_row_is_told_as_looking_everywhere_tells_it(a_motion,
 def test_the_deposit_of_a_motion_has_the_size_of_its_beads(a_motion):
     motion = a_motion(7)
     wide = dataclasses.replace(motion, width=np.where(motion.deposit, np.arange(len(motion)) % 5 + 2.0, np.nan))
-    made, plain = arms.laid(wide, 1.0, 0.5), arms.laid(motion, 1.0, 0.5)
+    made, plain = arms.deposit_obstacles(wide, 1.0, 0.5), arms.deposit_obstacles(motion, 1.0, 0.5)
     # sections of stadiums half a mm high: round by a quarter, and flat between
     assert np.unique(made.radius) == pytest.approx([0.25])
     for laid, low, high in ((made, 1.5, 5.5), (plain, 0.5, 0.5)):

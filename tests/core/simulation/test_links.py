@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links import robot as robot_links
-from freecad_am.core.kinematics.links import rods as link_rods
 from freecad_am.core.kinematics.links import solids
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.simulation import table_links
@@ -37,7 +37,7 @@ PRIMITIVES = {
     "cone": (solids.turned([(0, 0), (6, 0), (3, 1), (0, 1)], [5, 0, 0], [0, 12, 0]), np.pi * 13 / 3 * (36 + 18 + 9)),
     "capsule": (solids.capsule([0, 0, 0], [0, 8, 0], 3.0, 3.0), np.pi * 9 * 8 + 4 / 3 * np.pi * 27),
     "box": (solids.box([9, 9, 9], [0, 1, 0], [0, 0, 1], (2.0, 3.0, 4.0)), 24.0),
-    "rod": (solids.rod([0, 0, 0], [10, 0, 0], [0, 0, 1], 2.0, 2.0, 3.0), 3.0 * (np.pi * 4 + 40)),
+    "rod": (solids.strut([0, 0, 0], [10, 0, 0], [0, 0, 1], 2.0, 2.0, 3.0), 3.0 * (np.pi * 4 + 40)),
 }
 
 

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry import surroundings
+from freecad_am.core.geometry import obstacles
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import offered
@@ -122,7 +122,7 @@ def test_the_mass_counts_as_the_part_grows(toolpath, positioner):
 
 
 def test_what_it_grows_on_weighs_too(toolpath, positioner):
-    plate = surroundings.box((200.0, 100.0, 20.0), np.eye(4), "substrate")
+    plate = obstacles.box((200.0, 100.0, 20.0), np.eye(4), "substrate")
     masses, _ = grown(toolpath, toolpath.bead_width or ProcessParameters().bead_width)
     on_plate = dataclasses.replace(toolpath, surroundings=(plate,))
     whole = masses.sum() + 0.4e6 * 1e-6 * DENSITY
@@ -142,7 +142,7 @@ def test_the_middle_of_the_part_may_be_so_far_from_the_last_axis(toolpath, posit
     if with_plate:
         at = np.eye(4)
         at[:3, 3] = 30.0, 10.0, -10.0
-        toolpath = dataclasses.replace(toolpath, surroundings=(surroundings.box((60.0, 40.0, 20.0), at, "substrate"),))
+        toolpath = dataclasses.replace(toolpath, surroundings=(obstacles.box((60.0, 40.0, 20.0), at, "substrate"),))
         masses, middles = np.r_[0.048 * DENSITY, masses], np.concatenate([at[None, :3, 3], middles])
     places = on_face(toolpath, middles, platform)
     ways = []
@@ -228,7 +228,7 @@ def test_positioners_offered_carry_the_part_and_are_of_the_robots_maker(toolpath
 
 
 def test_weights_that_positioners_are_chosen_by_are_those_of_the_payload(toolpath):
-    plate = surroundings.box((200.0, 100.0, 20.0), np.eye(4), "substrate")
+    plate = obstacles.box((200.0, 100.0, 20.0), np.eye(4), "substrate")
     whole = grown(toolpath, toolpath.bead_width or ProcessParameters().bead_width)[0].sum() + 0.4 * DENSITY
     found = remedies.weight(dataclasses.replace(toolpath, surroundings=(plate,)), ProcessParameters())
     assert found == pytest.approx(whole, rel=1e-9)

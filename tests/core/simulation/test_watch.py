@@ -10,8 +10,8 @@ from freecad_am.core.issues import ERROR, NOTE, Issue
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation import watch as watching
+from freecad_am.core.simulation.achievable_feed import achievable_feed
 from freecad_am.core.simulation.arm import ArmTouches
-from freecad_am.core.simulation.pace import pace
 from freecad_am.core.simulation.watch import bad_links, shown_margins, watch
 
 LINKS = ("base", "q1", "q2", "q3", "q4", "q5", "q6", "part", "nozzle")
@@ -33,7 +33,7 @@ def calm(cell, a_motion):
 def seen(motion, cell, condition=None, issues=()):
     n = len(motion)
     condition = np.full(n, 0.5) if condition is None else condition
-    return watch(motion, cell, pace(motion, cell.machine.max_speed), condition, np.full(n, 0.1), issues)
+    return watch(motion, cell, achievable_feed(motion, cell.machine.max_speed), condition, np.full(n, 0.1), issues)
 
 
 def test_a_calm_motion_has_no_findings(calm, cell):
@@ -97,7 +97,7 @@ def test_runs_of_rows_on_which_a_link_touches_one_thing_are_one_finding(calm, ce
     link[30], what[30] = 0, 2
     arm = ArmTouches(link, what, ("nozzle", "platform", "fixture"), 0.01, LINKS)
     unknown = np.full(n, np.nan)
-    found = watch(calm, cell, pace(calm, cell.machine.max_speed), unknown, unknown, arm=arm)
+    found = watch(calm, cell, achievable_feed(calm, cell.machine.max_speed), unknown, unknown, arm=arm)
     assert [(one.row, one.kind, one.label, one.other) for one in found.findings] == [
         (4, watching.TOUCHES, "q5", "platform"), (9, watching.TOUCHES, "q5", "nozzle"),
         (30, watching.TOUCHES, "base", "fixture"),

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base, Seat, Stretch, middle_azimuth, upright
-from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing.solids.equidistant import Facets
 from freecad_am.core.slicing.solids.standing import hub_among, on_hub

@@ -9,8 +9,8 @@ from scipy.spatial import ConvexHull
 
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.mesh.solid import SolidMesh
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub, upright
-from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InfeasibleError, InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import DevelopableParameters

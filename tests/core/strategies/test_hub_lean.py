@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
 from tests.core.strategies.test_developable import CONE, CYLINDER, box, collar, laid, planned, solids, sound

@@ -105,7 +105,7 @@ def test_a_thin_collar_is_told_to_lie_beside_and_a_wide_one_is_no_news():
         balance = deposit_balance.of_toolpath(made, planned(made), 6.0)
         return balance, [one.code for one in deposit_balance.issues(balance)]
     balance, codes = told(10.0, 13.0)
-    assert codes[-1] == "DEPOSITED_BESIDE" and balance.beside == pytest.approx(balance.beads / 2.0, rel=0.02)
+    assert codes[-1] == "DEPOSITED_BESIDE" and balance.outside == pytest.approx(balance.beads / 2.0, rel=0.02)
     assert "DEPOSITED_BESIDE" not in told(10.0, 40.0)[1]
 
 

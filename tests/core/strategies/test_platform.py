@@ -9,8 +9,8 @@ import pytest
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.curves.sampling import line
 from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub, upright
-from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.strategies.revolution import platform
 

@@ -10,7 +10,7 @@ from scipy import ndimage
 from scipy.spatial import ConvexHull, cKDTree
 
 from freecad_am.core.geometry.mesh.solid import SolidMesh
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.layers.planes.stacking import stacked
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters

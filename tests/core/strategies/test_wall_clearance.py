@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from freecad_am.core.collision.frustum import beside_tip
+from freecad_am.core.collision.frustum import side_height
 from freecad_am.core.collision.tolerances import ABOVE_FACES
-from freecad_am.core.geometry.surroundings import Body, disc
+from freecad_am.core.geometry.obstacles import Body, disc
 from freecad_am.core.geometry.walls.surface_wall import TORUS, SurfaceWall
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
@@ -42,7 +42,7 @@ FINEST = 0.4  # deg, what the finest candidates leave open
 
 
 def left_out(nozzle):
-    return beside_tip(0.5 * nozzle.diameter, np.tan(nozzle.half_angle))
+    return side_height(0.5 * nozzle.diameter, np.tan(nozzle.half_angle))
 
 
 def bead(points, tool=(0.0, 0.0, 1.0), closed=False):
@@ -167,7 +167,7 @@ def test_beside_a_tall_face_the_tilt_is_the_least_that_clears_it():
     path = toolpath(bead(np.stack([np.zeros(41), np.linspace(0, 80, 41), np.zeros(41)], axis=1)))
     face = box([10, -200, -50], [30, 300, 150])
     told = []
-    found = kept_clear(path, [face], NOZZLE, LOCAL, told=lambda *work: told.append(work))
+    found = kept_clear(path, [face], NOZZLE, LOCAL, report=lambda *work: told.append(work))
     assert told == [(41, 1)]  # before the work, which may be long
     slope = np.tan(NOZZLE.half_angle)
     needed = brentq(lambda e: (0.5 + 60 * slope) * np.cos(e) - 60 * np.sin(e) - 10.0, 0.0, 1.0)
@@ -232,7 +232,7 @@ def test_what_is_clear_stays_as_it_is_to_the_bit():
     path = toolpath(bead([[0, 0, 0], [5, 0, 0]]), bead([[0, 0, 1], [5, 0, 1]]))
     told = []
     clear = box([40, 40, 0], [50, 50, 50])
-    assert kept_clear(path, [clear], NOZZLE, LOCAL, told=lambda *work: told.append(work)) is path and told == []
+    assert kept_clear(path, [clear], NOZZLE, LOCAL, report=lambda *work: told.append(work)) is path and told == []
     flat = box([-100, -100, -10], [100, 100, 0])
     assert kept_clear(path, [flat], NOZZLE, LOCAL) is path
 
@@ -308,7 +308,7 @@ def test_tools_that_turn_as_fast_as_they_may_stay_below_that_where_they_are_tilt
 
     def fastest(build):
         work.clear()
-        found = kept_clear(path, [post], NOZZLE, build, told=lambda *some: work.append(some))
+        found = kept_clear(path, [post], NOZZLE, build, report=lambda *some: work.append(some))
         axes = found.layers[0].beads[0].tool
         solid = sampled(NOZZLE, left_out(NOZZLE) + ABOVE_FACES, points, axes)
         assert not ((solid > [46, 6, -20]) & (solid < [50, 12, 90])).all(axis=2).any()
@@ -355,7 +355,7 @@ def test_a_bead_of_many_points_is_tilted_at_some_and_is_clear_at_all(monkeypatch
     asked = flank(40, 16.0, 8.0)
     many = bead([[16.0 + 3.0 * np.sin(0.1 * y), y, 0] for y in np.linspace(-40, 40, 801)])
     asked = dataclasses.replace(asked, layers=(*asked.layers[:-1], Layer((many,))))
-    monkeypatch.setattr(clearance_knots, "MOST", 41)
+    monkeypatch.setattr(clearance_knots, "MAX_POINTS", 41)
     searched = []
     cones = tilt_search.TiltSearch.coarse
     monkeypatch.setattr(tilt_search.TiltSearch, "coarse", lambda self: searched.append(len(self.flat)) or cones(self))

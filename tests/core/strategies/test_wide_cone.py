@@ -15,7 +15,7 @@ from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.strategies.solids.beads import rolled
+from freecad_am.core.strategies.solids.beads import wrapped
 from freecad_am.core.strategies.solids.filling import Pictures
 
 CONE = Developable(60.0, 20.0)  # laid flat a turn is 342 deg
@@ -62,7 +62,7 @@ def test_beads_on_both_sides_of_a_hole_stay_out_of_it(fill, contour, at):
     base, process = Base("the hub", CONE, np.eye(4)), ProcessParameters()
     curves = Pictures(strategy, process).filled(Slice(0, RoundLayer(CONE), (ring(at),), ()), 0.0, base).curves
     points = np.vstack([
-        rolled(curve, RoundLayer(CONE), base, strategy, BuildDirectionParameters(), process, None).bead.points
+        wrapped(curve, RoundLayer(CONE), base, strategy, BuildDirectionParameters(), process, None).bead.points
         for curve in curves
     ])
     way = np.hypot(points[:, 0], points[:, 1]) / math.sin(CONE.taper)

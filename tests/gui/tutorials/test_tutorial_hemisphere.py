@@ -4,7 +4,7 @@
 import FreeCAD as App
 
 from freecad_am import api
-from freecad_am.gui.spin_map import dock as docks
+from freecad_am.gui.redundancy_map import dock as docks
 
 PAGE = "hemisphere"
 

@@ -24,7 +24,7 @@ LAYER, SEGMENTS = 1, 2  # ToolPathGroup
 POINTS, PROCESS_ON = 1, 2  # PathSegment
 POSITION, DIRECTION = 1, 2  # Point
 APART = 1e-6  # mm; points no farther apart are one
-MOST = 1e7  # mm
+MAX_MM = 1e7  # mm
 Value = int | float | bytes
 
 
@@ -40,8 +40,8 @@ def curves_of(data: bytes, where: str) -> tuple[BeadCurve, ...]:
     if not found:
         raise InputError(CODE, where, "no segment of it deposits, so there is no bead; export a toolpath that deposits")
     for _, points, _ in found:
-        if not (np.isfinite(points).all() and np.abs(points).max() <= MOST):
-            raise InputError(CODE, where, f"a position is not a number of at most {MOST:g} mm; export it again")
+        if not (np.isfinite(points).all() and np.abs(points).max() <= MAX_MM):
+            raise InputError(CODE, where, f"a position is not a number of at most {MAX_MM:g} mm; export it again")
     numbers = {layer: k for k, layer in enumerate(sorted({layer for layer, _, _ in found}))}
     return tuple(BeadCurve(points, directions, numbers[layer]) for layer, points, directions in found)
 
@@ -68,8 +68,8 @@ def _beads(data: bytes) -> Iterator[tuple[int, Array, Array | None]]:
             if kept.sum() < 2:
                 continue
             size = np.linalg.norm(directions[kept], axis=1)
-            told = np.isfinite(size).all() and size.min() > 1e-9
-            yield layer, points[kept], -directions[kept] / size[:, None] + 0.0 if told else None
+            known = np.isfinite(size).all() and size.min() > 1e-9
+            yield layer, points[kept], -directions[kept] / size[:, None] + 0.0 if known else None
 
 
 def _point(data: bytes) -> tuple[list[float], list[float]]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...issues import Issue
 from ...types import Array
-from ..surroundings import Body
+from ..obstacles import Body
 
 # endings of files that are laid as beads, and what they are
 POINT_FILES = {".csv": "csv", ".gcode": "gcode", ".gco": "gcode", ".g": "gcode", ".ada3dp": "ada3dp"}

@@ -16,7 +16,7 @@ COLUMNS = ("x", "y", "z", "i", "j", "k", "bead")
 BY_COUNT = {3: COLUMNS[:3], 4: (*COLUMNS[:3], "bead"), 6: COLUMNS[:6], 7: COLUMNS}
 CODE = "BAD_TABLE"
 APART = 1e-6  # mm; points no farther apart are one
-MOST = 1e7  # mm; farther away is a slip of the pen
+MAX_MM = 1e7  # mm; farther away is a slip of the pen
 FORM = "a table has the columns x,y,z, then i,j,k where directions are given, then bead where there are several"
 
 
@@ -75,8 +75,8 @@ def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[f
             number = float(cell)
         except ValueError:
             raise InputError(CODE, where, f"{cell[:40]!r} is not a number; give {name} as a number with a point") from None
-        if not math.isfinite(number) or abs(number) > MOST:
-            raise InputError(CODE, where, f"{name} is {number:g}; give a number of at most {MOST:g}")
+        if not math.isfinite(number) or abs(number) > MAX_MM:
+            raise InputError(CODE, where, f"{name} is {number:g}; give a number of at most {MAX_MM:g}")
         found.append(number)
     return found
 

@@ -22,7 +22,7 @@ WORD = re.compile(r"([A-Za-z])\s*([-+]?(?:\d+\.?\d*|\.\d+))")
 START = re.compile(r"[A-Za-z]\s*[-+.\d]")
 LAYER = re.compile(r";\s*(?:LAYER\s*:\s*-?\d+|LAYER_CHANGE|layer\s+-?\d+\b.*|BEFORE_LAYER_CHANGE)", re.IGNORECASE)
 APART = 1e-6  # mm; points no farther apart are one
-MOST = 1e7  # mm; farther away is a slip of the pen
+MAX_MM = 1e7  # mm; farther away is a slip of the pen
 ARC_END = 0.1  # mm by which the ends of an arc may be on different circles: slicers round to hundredths
 ROUNDED = 1e-9
 UP = np.array([0.0, 0.0, 1.0])
@@ -92,7 +92,7 @@ class _Reader:
         elif name in ("M82", "M83"):
             self.absolute_e = name == "M82"
         elif name == "G92":
-            self._counted(dict(words))
+            self._reset_origin(dict(words))
         elif name in ("G28", "G29"):
             self._end()
             self.known -= {letter for letter, _ in words} or {"X", "Y", "Z"}
@@ -102,7 +102,7 @@ class _Reader:
     def _place(self) -> Array:
         return np.array([self.at[axis] for axis in "XYZ"]) + self.shift
 
-    def _counted(self, words: dict[str, float]) -> None:
+    def _reset_origin(self, words: dict[str, float]) -> None:
         """G92: what the program counts from now on, with the head where it is."""
         here = self._place()
         for axis in ("X", "Y", "Z", "E"):
@@ -115,8 +115,8 @@ class _Reader:
         for axis, value in words.items():
             if axis not in self.at:
                 continue
-            if not math.isfinite(value) or abs(value) > MOST:
-                raise self._error(f"{axis} is {value:g}; give a number of at most {MOST:g}")
+            if not math.isfinite(value) or abs(value) > MAX_MM:
+                raise self._error(f"{axis} is {value:g}; give a number of at most {MAX_MM:g}")
             absolute = self.absolute_e if axis == "E" else self.absolute
             before = self.at[axis]
             self.at[axis] = value if absolute else before + value
@@ -192,8 +192,8 @@ class _Reader:
         self._end()
         if not self.beads:
             raise InputError(CODE, self.where, f"no move of it extrudes, so there is no bead; {FORM}")
-        told = [comments for comments, _ in self.beads]
-        keys: Iterable[float] = told if self.comments else [round(float(points[0, 2]), 3) for _, points in self.beads]
+        texts = [comments for comments, _ in self.beads]
+        keys: Iterable[float] = texts if self.comments else [round(float(points[0, 2]), 3) for _, points in self.beads]
         layers, layer, before = [], -1, math.nan
         for key in keys:
             layer += key != before

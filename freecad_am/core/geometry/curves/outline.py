@@ -17,7 +17,7 @@ from ..columns import lengths
 # a row of points that turns by more than this has a corner there, where nothing else is known, rad
 CORNER = np.radians(35.0)
 # a segment so many times as long as one beside it is not a piece of the same arc: a circle through both would bow it most
-LONG = 3.0
+LENGTH_RATIO = 3.0
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def estimated(points: Array, closed: bool) -> Outline:
         tangent[0] = 2.0 * (along[0] @ tangent[1]) * along[0] - tangent[1]
         tangent[-1] = 2.0 * (along[-1] @ tangent[-2]) * along[-1] - tangent[-2]
     corner = (before * after).sum(axis=1) < np.cos(CORNER)
-    long = (length > LONG * np.minimum(far[:-1], near[1:]))[:, 0]
+    long = (length > LENGTH_RATIO * np.minimum(far[:-1], near[1:]))[:, 0]
     straight = (corner[:-1] | corner[1:] | long)[:, None]
     leaving, arriving = np.where(straight, along, tangent[:-1]), np.where(straight, along, tangent[1:])
     return outline(points, np.stack([np.r_[leaving[:1], arriving], np.r_[leaving, arriving[-1:]]], axis=1))

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...issues import Issue
 from ...types import Array
-from ..surroundings import Body
+from ..obstacles import Body
 from ..walls.part_depths import PartDepths
 
 KINK = 1e-5  # rad; smaller turns between two pieces are a smooth join

@@ -174,9 +174,9 @@ class SpaceCurve:
         for _ in range(STEPS):
             foot, slope, bend = self.at(w)
             gap = goal - foot
-            pace = dot(slope, slope)
-            curvature = pace - dot(gap, bend)
-            step = dot(gap, slope) / np.maximum(np.abs(curvature), 1e-4 * pace)  # always downhill
+            rate = dot(slope, slope)
+            curvature = rate - dot(gap, bend)
+            step = dot(gap, slope) / np.maximum(np.abs(curvature), 1e-4 * rate)  # always downhill
             step = np.minimum(np.maximum(step, -farthest), farthest)
             new = np.minimum(np.maximum(w + step, low), high)
             moving = np.abs(new - w) >= 1e-13 * self.period

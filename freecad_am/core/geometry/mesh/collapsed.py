@@ -54,8 +54,8 @@ def collapsed(vertices: Array, triangles: Index, owner: Index, shortest: float, 
 
 def _candidates(vertices: Array, triangles: Index, owner: Index, edges: Edges, short: Mask) -> tuple[Index, Index]:
     """Vertices that may go and the neighbours that they may go to."""
-    beside = owner[edges.faces]
-    curve = (edges.count != 2) | (beside[:, 0] != beside[:, 1])
+    adjacent = owner[edges.faces]
+    curve = (edges.count != 2) | (adjacent[:, 0] != adjacent[:, 1])
     on_curve = np.bincount(edges.ends[curve].ravel(), minlength=len(vertices))
     along = np.zeros((len(vertices), 3))
     unit = vertices[edges.ends[curve, 1]] - vertices[edges.ends[curve, 0]]

@@ -47,14 +47,15 @@ def _planes(corners: Array) -> Array:
 
 def _crossed(corners: Array, triangles: Index, planes: Array, pairs: Index, least: float) -> Crossings:
     """Those of the pairs (k, 2) that cross."""
-    pairs = pairs[_both_sides(_beside(corners, planes, *pairs.T), least)]
-    pairs = pairs[_both_sides(_beside(corners, planes, *pairs.T[::-1]), least)]
+    pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T), least)]
+    pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T[::-1]), least)]
     one, other = pairs.T
     same = triangles[one][:, :, None] == triangles[other][:, None, :]
     along = np.cross(planes[one, :3], planes[other, :3])
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
-    start, end = _within(corners[one], np.where(same.any(axis=2), 0.0, _beside(corners, planes, other, one)), along)
-    low, high = _within(corners[other], np.where(same.any(axis=1), 0.0, _beside(corners, planes, one, other)), along)
+    start, end = _within(corners[one], np.where(same.any(axis=2), 0.0, _plane_distances(corners, planes, other, one)), along)
+    far = np.where(same.any(axis=1), 0.0, _plane_distances(corners, planes, one, other))
+    low, high = _within(corners[other], far, along)
     first = np.maximum(dot(start, along), dot(low, along))
     last = np.minimum(dot(end, along), dot(high, along))
     keep = last - first > least
@@ -62,7 +63,7 @@ def _crossed(corners: Array, triangles: Index, planes: Array, pairs: Index, leas
     return Crossings(pairs[keep], (last - first)[keep], middle[keep])
 
 
-def _beside(corners: Array, planes: Array, one: Index, other: Index) -> Array:
+def _plane_distances(corners: Array, planes: Array, one: Index, other: Index) -> Array:
     """How far (k, 3) mm the corners of `other` are above the planes of `one`."""
     height: Array = (corners[other] * planes[one, None, :3]).sum(axis=2) - planes[one, 3, None]
     return height

@@ -40,7 +40,7 @@ class Manifold(NamedTuple):
     split: int
 
 
-def told_apart(vertices: Array, triangles: Index) -> Manifold:
+def separated(vertices: Array, triangles: Index) -> Manifold:
     """The same triangles, with vertices of their own where their neighbours are not: across edges that more than two share,
     or that two run along in the same sense."""
     edges = Edges(triangles)

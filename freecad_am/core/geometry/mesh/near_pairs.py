@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from ...types import Index
 
-ALIKE = 1.5  # largest to smallest ball of a class in which they are looked for together
+CLASS_RATIO = 1.5  # largest to smallest ball of a class in which they are looked for together
 BLOCK = 2_000_000  # pairs held at a time
 
 
@@ -22,7 +22,7 @@ def near_pairs(middle: NDArray[np.float64], reach: NDArray[np.float64]) -> Itera
     Balls are looked for from the largest of a class of like size among those of its own and smaller classes, so that one
     long needle does not make neighbours of all the small ones around.
     """
-    sizes = np.floor(np.log(np.maximum(reach, 1e-12)) / np.log(ALIKE)).astype(np.intp)
+    sizes = np.floor(np.log(np.maximum(reach, 1e-12)) / np.log(CLASS_RATIO)).astype(np.intp)
     for size in np.unique(sizes)[::-1]:
         largest = np.flatnonzero(sizes == size)
         others = np.flatnonzero(sizes <= size)

@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from ...issues import InputError
 from ...types import Array, Index, Mask
-from ..told import place
+from ..formatting import place
 from ..walls.surface import dot
 from .refined import Edges
 from .solid import SolidMesh
@@ -26,9 +26,9 @@ def connected_pieces(corners: Index) -> Index:
     return found
 
 
-def turned_alike(vertices: Array, corners: Index, edges: Edges, label: str, told: list[str]) -> Index:
+def turned_alike(vertices: Array, corners: Index, edges: Edges, label: str, messages: list[str]) -> Index:
     """Triangles turned so that neighbours agree."""
-    turned = alike_across(corners, edges, np.arange(len(edges.ends)), told)
+    turned = alike_across(corners, edges, np.arange(len(edges.ends)), messages)
     forward = turned < np.roll(turned, -1, axis=1)
     one, other = edges.faces.T
     number = Edges(turned)
@@ -40,7 +40,7 @@ def turned_alike(vertices: Array, corners: Index, edges: Edges, label: str, told
     return turned
 
 
-def alike_across(corners: Index, edges: Edges, two: Index, told: list[str]) -> Index:
+def alike_across(corners: Index, edges: Edges, two: Index, messages: list[str]) -> Index:
     """Triangles turned so that neighbours across edges (k,) of two agree, as far as they can."""
     forward = corners < np.roll(corners, -1, axis=1)
     one, other = edges.faces[two].T
@@ -49,7 +49,7 @@ def alike_across(corners: Index, edges: Edges, two: Index, told: list[str]) -> I
     if not against.any():
         return corners
     flip = _flips(len(corners), one, other, against)
-    told.append(f"{int(min(flip.sum(), (~flip).sum()))} triangles were turned to agree with their neighbours")
+    messages.append(f"{int(min(flip.sum(), (~flip).sum()))} triangles were turned to agree with their neighbours")
     return np.where(flip[:, None], corners[:, ::-1], corners)
 
 
@@ -70,7 +70,7 @@ def _flips(count: int, one: Index, other: Index, against: Mask) -> Mask:
     return turned
 
 
-def solids_of(vertices: Array, corners: Index, told: list[str]) -> tuple[SolidMesh, ...]:
+def solids_of(vertices: Array, corners: Index, messages: list[str]) -> tuple[SolidMesh, ...]:
     """Pieces that hang together, outermost ones turned outside out and cavities with the solid about them."""
     piece = connected_pieces(corners)
     pieces = np.split(corners[np.argsort(piece, kind="stable")], np.cumsum(np.bincount(piece))[:-1])
@@ -79,7 +79,7 @@ def solids_of(vertices: Array, corners: Index, told: list[str]) -> tuple[SolidMe
     volume = np.array([SolidMesh(vertices, some).volume for some in pieces])
     bulky = np.abs(volume) > FLAT * np.linalg.norm(high - low, axis=1) ** 3
     if not bulky.all():
-        told.append(f"{int((~bulky).sum())} pieces that enclose nothing were dropped")
+        messages.append(f"{int((~bulky).sum())} pieces that enclose nothing were dropped")
     about = {}
     for k in np.flatnonzero(bulky & (volume < 0.0)).tolist():
         wider = np.flatnonzero((low < low[k]).all(axis=1) & (high > high[k]).all(axis=1) & bulky & (volume > 0.0))
@@ -90,7 +90,7 @@ def solids_of(vertices: Array, corners: Index, told: list[str]) -> tuple[SolidMe
     turned = [k for k in outer if volume[k] < 0.0]
     if turned:
         many = f"{len(turned)} solids were inside out and were turned"
-        told.append("a solid was inside out and was turned" if len(turned) == 1 else many)
+        messages.append("a solid was inside out and was turned" if len(turned) == 1 else many)
     found = []
     for k in outer:
         own = [pieces[k][:, ::-1] if volume[k] < 0.0 else pieces[k]]

@@ -12,10 +12,10 @@ from ..walls.surface import dot
 
 ROUNDS = 60
 NEEDLE = 0.5  # of the shortest to the longest side
-ENDLESS = 100  # more edges that are too long than twice the least there were: halving them does not end
+DIVERGED = 100  # more edges that are too long than twice the least there were: halving them does not end
 STALLED, SHORTER = 10, 0.9  # rounds in which the longest edge becomes no shorter than this share of itself: nor does it
 LEVEL = 0.3  # cosine between the normals of two triangles, down to which an edge may be turned in any case
-FLIPS, FEW, MANY = 40, 4, 6000  # rounds on small meshes, where slivers are cheaply got rid of, and on large ones
+FLIPS, FEW_FLIPS, MANY = 40, 4, 6000  # rounds on small meshes, where slivers are cheaply got rid of, and on large ones
 
 # vertices (k, 3), owners of the triangles beside each new one (k, 2) -1 for none, ends of the edge it halves (k, 2)
 Placed = Callable[[Array, Index, Index], Array]
@@ -67,7 +67,7 @@ def refined(
             return vertices, triangles, owner
         tops.append(float(length.max()))
         highest, least = (long, long) if long > highest else (highest, min(long, least))
-        if turned and least < 0.5 * highest and long > 2 * least + ENDLESS:
+        if turned and least < 0.5 * highest and long > 2 * least + DIVERGED:
             return None
         if turned and len(tops) > STALLED and min(tops[-STALLED:]) > SHORTER * min(tops[:-STALLED]):
             return None
@@ -83,8 +83,8 @@ def refined(
         if len(triangles) + 2 * split.sum() > most:
             return None
         ends = edges.ends[split]
-        beside = np.where(edges.faces[split] >= 0, owner[edges.faces[split]], -1)
-        middle = place(0.5 * (vertices[ends[:, 0]] + vertices[ends[:, 1]]), beside, ends)
+        adjacent = np.where(edges.faces[split] >= 0, owner[edges.faces[split]], -1)
+        middle = place(0.5 * (vertices[ends[:, 0]] + vertices[ends[:, 1]]), adjacent, ends)
         number = np.full(len(split), -1, dtype=np.intp)
         number[split] = len(vertices) + np.arange(len(ends))
         vertices = np.vstack([vertices, middle])
@@ -98,8 +98,8 @@ def quartered(vertices: Array, triangles: Index, owner: Index, place: Placed) ->
     """Vertices, triangles and their owners (m,), each triangle divided into four at the middles of its edges, which `place`
     moves to where they belong."""
     edges = Edges(triangles)
-    beside = np.where(edges.faces >= 0, owner[edges.faces], -1)
-    middle = place(vertices[edges.ends].mean(axis=1), beside, edges.ends)
+    adjacent = np.where(edges.faces >= 0, owner[edges.faces], -1)
+    middle = place(vertices[edges.ends].mean(axis=1), adjacent, edges.ends)
     a, b, c = triangles.T
     ab, bc, ca = (edges.of + len(vertices)).T
     four = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
@@ -119,8 +119,8 @@ def _first_cut(edges: Edges, own: Array, owner: Index, longest: float, split: Ma
     top = edges.of[row, order[:, 2]]
     needle = (short < NEEDLE * long) & (middle > longest)
     count = np.bincount(top[needle], minlength=len(split))
-    beside = owner[edges.faces]
-    diagonal = (count == 2) & (edges.count == 2) & (beside[:, 0] == beside[:, 1])
+    adjacent = owner[edges.faces]
+    diagonal = (count == 2) & (edges.count == 2) & (adjacent[:, 0] == adjacent[:, 1])
     split[diagonal] = False
     return np.where(diagonal[top], order[:, 1], order[:, 2])
 
@@ -174,7 +174,7 @@ def flipped(vertices: Array, triangles: Index, owner: Index) -> Index:
     together (Delaunay)."""
     triangles = triangles.copy()
     open_ = np.ones(len(triangles), dtype=bool)  # changed, or wished for by two edges: between others nothing is new
-    for _ in range(FLIPS if len(triangles) < MANY else FEW):
+    for _ in range(FLIPS if len(triangles) < MANY else FEW_FLIPS):
         edges = Edges(triangles)
         pair = np.flatnonzero((edges.count == 2) & (owner[edges.faces[:, 0]] == owner[edges.faces[:, 1]]))
         pair = pair[open_[edges.faces[pair]].any(axis=1)]

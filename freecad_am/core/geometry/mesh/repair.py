@@ -15,15 +15,15 @@ from scipy.spatial import cKDTree
 
 from ...issues import NOTE, WARNING, InputError, Issue
 from ...types import Array, Index
-from ..told import place
+from ..formatting import place
 from .crossing import crossings
-from .manifold import filled, holes, told_apart
+from .manifold import filled, holes, separated
 from .orientation import alike_across, connected_pieces, solids_of, turned_alike
 from .refined import Edges
 from .solid import SolidMesh
 
 WELDS = (1e-5, 1e-4, 1e-3, 1e-2)  # mm; the first that closes the mesh
-MOST_TOLD = 8
+MOST_NAMED = 8
 ROUNDS = 4
 MOSTLY = 0.5  # of the triangles
 END = 0.5  # of the largest opening of a surface; what is larger is an end of it too
@@ -44,27 +44,27 @@ def repaired(points: Array, triangles: Index, label: str, hole: float = 0.0, cro
     """
     if not len(triangles) or not np.isfinite(points).all():
         raise InputError("BAD_FILE", label, "the mesh has no triangles, or points that are not numbers; export it again")
-    told: list[str] = []
+    messages: list[str] = []
     mended: list[str] = []
-    vertices, corners = _closed(points, triangles, told)
+    vertices, corners = _closed(points, triangles, messages)
     if not len(corners):
         raise InputError("NO_SOLID", label, "the mesh encloses nothing; export the solid again")
     edges = Edges(corners)
     if (edges.count != 2).any():
-        vertices, corners = _mended(vertices, corners, label, hole, told, mended)
+        vertices, corners = _mended(vertices, corners, label, hole, messages, mended)
         edges = Edges(corners)
-    corners = turned_alike(vertices, corners, edges, label, told)
-    solids = solids_of(vertices, corners, told)
+    corners = turned_alike(vertices, corners, edges, label, messages)
+    solids = solids_of(vertices, corners, messages)
     if not solids:
         raise InputError("NO_SOLID", label, "the mesh encloses nothing; export the solid again")
     for solid in solids:
         if crossing:
-            mended += crossing_told(solid, WELDS[-1])
+            mended += crossing_messages(solid, WELDS[-1])
         else:
             solid.refuse_crossing(label, WELDS[-1])
     issues = []
-    if told:
-        issues.append(Issue(NOTE, "MESH_REPAIRED", f"{label}: {'; '.join(told[:MOST_TOLD])}"))
+    if messages:
+        issues.append(Issue(NOTE, "MESH_REPAIRED", f"{label}: {'; '.join(messages[:MOST_NAMED])}"))
     return Repaired(solids, (*issues, *mended_issues(label, mended)))
 
 
@@ -72,7 +72,7 @@ def mended_issues(label: str, mended: list[str]) -> tuple[Issue, ...]:
     """What was mended, and where, as an issue; none for nothing."""
     if not mended:
         return ()
-    return (Issue(WARNING, "MENDED", f"{label}: {'; '.join(mended[:MOST_TOLD])}"),)
+    return (Issue(WARNING, "MENDED", f"{label}: {'; '.join(mended[:MOST_NAMED])}"),)
 
 
 class Connected(NamedTuple):
@@ -87,14 +87,14 @@ class Connected(NamedTuple):
 def connected_triangles(points: Array, triangles: Index, label: str, hole: float) -> Connected:
     """Points (n, 3) and triangles (m, 3) as a surface that may be open. hole: holes up to so many mm across are closed,
     where they are smaller than END of the largest opening of their piece. InputError NO_SOLID."""
-    told: list[str] = []
+    messages: list[str] = []
     mended: list[str] = []
-    vertices, corners = _closed(points, triangles, told)
+    vertices, corners = _closed(points, triangles, messages)
     if not len(corners):
         raise InputError("NO_SOLID", label, "all triangles of the mesh cancel one another; export it again")
     edges = Edges(corners)
-    corners = alike_across(corners, edges, np.flatnonzero(edges.count == 2), told)
-    found = told_apart(vertices, corners)
+    corners = alike_across(corners, edges, np.flatnonzero(edges.count == 2), messages)
+    found = separated(vertices, corners)
     if found.split:
         at = place(vertices[edges.ends[np.argmax(edges.count > 2)]].mean(axis=0))
         mended.append(f"{found.split} edges of more than two triangles were divided, as at {at}")
@@ -112,11 +112,11 @@ def connected_triangles(points: Array, triangles: Index, label: str, hole: float
             f"{len(small)} holes were closed, the largest {widest.size:.3g} mm across at {place(widest.middle)}"
         )
     vertices, corners = filled(found.vertices, found.triangles, small)
-    issues = (Issue(NOTE, "MESH_REPAIRED", f"{label}: {'; '.join(told[:MOST_TOLD])}"),) if told else ()
+    issues = (Issue(NOTE, "MESH_REPAIRED", f"{label}: {'; '.join(messages[:MOST_NAMED])}"),) if messages else ()
     return Connected(vertices, corners, issues, tuple(mended))
 
 
-def crossing_told(solid: SolidMesh, least: float) -> list[str]:
+def crossing_messages(solid: SolidMesh, least: float) -> list[str]:
     """Where a solid cuts itself by more than `least` mm, in words; nothing where it does not."""
     found = crossings(solid.vertices, solid.triangles, least)
     if not len(found.pairs):
@@ -128,13 +128,13 @@ def crossing_told(solid: SolidMesh, least: float) -> list[str]:
 
 
 def _mended(
-    vertices: Array, corners: Index, label: str, size: float, told: list[str], mended: list[str]
+    vertices: Array, corners: Index, label: str, size: float, messages: list[str], mended: list[str]
 ) -> tuple[Array, Index]:
     """A mesh that is not closed as one that is. InputError OPEN_MESH, NON_MANIFOLD where a hole is larger than `size`."""
     before = Edges(corners)
     two = before.count == 2
-    corners = alike_across(corners, before, np.flatnonzero(two), told)
-    found = told_apart(vertices, corners)
+    corners = alike_across(corners, before, np.flatnonzero(two), messages)
+    found = separated(vertices, corners)
     open_ = holes(found)
     large = [hole for hole in open_ if hole.size > size]
     if large and not (before.count == 1).any():
@@ -162,12 +162,12 @@ def _mended(
     for _ in range(ROUNDS):
         if (Edges(corners).count == 2).all():
             break
-        again = told_apart(vertices, corners)  # what was closed may lie on what was there, as a fin's other side does
+        again = separated(vertices, corners)  # what was closed may lie on what was there, as a fin's other side does
         vertices, corners = filled(again.vertices, again.triangles, holes(again))
     return vertices, corners
 
 
-def _closed(points: Array, triangles: Index, told: list[str]) -> tuple[Array, Index]:
+def _closed(points: Array, triangles: Index, messages: list[str]) -> tuple[Array, Index]:
     """Vertices and triangles without doubles, by the narrowest weld that closes the mesh, else by the one that leaves the
     fewest edges open."""
     best: tuple[int, Array, Index, list[str]] | None = None
@@ -183,7 +183,7 @@ def _closed(points: Array, triangles: Index, told: list[str]) -> tuple[Array, In
         if not left:
             break
     assert best is not None
-    told += best[3]
+    messages += best[3]
     return best[1], best[2]
 
 
@@ -202,8 +202,8 @@ def _welded(points: Array, triangles: Index, weld: float, notes: list[str]) -> t
     ranked = np.sort(corners, axis=1)
     number = np.ravel(np.unique(ranked, axis=0, return_inverse=True)[1])
     turn = np.argmin(corners, axis=1)
-    rolled = corners[np.arange(len(corners))[:, None], (turn[:, None] + np.arange(3)) % 3]
-    sense = np.where(rolled[:, 1] < rolled[:, 2], 1, -1)
+    rotated = corners[np.arange(len(corners))[:, None], (turn[:, None] + np.arange(3)) % 3]
+    sense = np.where(rotated[:, 1] < rotated[:, 2], 1, -1)
     good = np.flatnonzero(np.bincount(number, weights=sense)[number] * sense > 0.0)
     kept = good[np.unique(number[good], return_index=True)[1]]
     if len(kept) < MOSTLY * (number.max(initial=-1) + 1):  # every triangle from both sides, as for display

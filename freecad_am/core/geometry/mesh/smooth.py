@@ -86,9 +86,9 @@ class SmoothMesh:
         unit = mean / length[:, None]
         above = np.einsum("klc,klc->kl", normal, away)
         middle = np.einsum("kl,klc->kc", weight, away)
-        lift = dot(unit, middle)
-        value = 0.5 * ((weight * above).sum(axis=1) + lift)
-        turned = (middle - lift[:, None] * unit) / length[:, None]
+        height = dot(unit, middle)
+        value = 0.5 * ((weight * above).sum(axis=1) + height)
+        turned = (middle - height[:, None] * unit) / length[:, None]
         change = above + np.einsum("klc,kc->kl", normal, turned) + np.einsum("klc,kc->kl", away, unit) - 2.0 * value[:, None]
         slope = 0.5 * (np.einsum("kl,klc->kc", pull * change, away) + mean + unit)
         return value, slope

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from ...issues import InputError
 from ...types import Array, Index
-from ..told import place
+from ..formatting import place
 from ..walls.surface import dot
 from .crossing import crossings
 from .refined import Edges

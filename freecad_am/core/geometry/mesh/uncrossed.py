@@ -10,7 +10,7 @@ import numpy as np
 
 from ...types import Array, Index, Mask
 from .crossing import crossings
-from .manifold import Hole, filled, holes, told_apart
+from .manifold import Hole, filled, holes, separated
 from .refined import Edges
 
 ROUNDS = 3  # each cuts out one ring of triangles more
@@ -37,7 +37,7 @@ def uncrossed(vertices: Array, triangles: Index, pairs: Index, widest: float, le
         if at_end[triangles[gone]].any():
             return None
         kept = triangles[~gone]
-        found = told_apart(vertices, kept)
+        found = separated(vertices, kept)
         origin = np.empty(len(found.vertices), dtype=np.intp)
         origin[found.triangles] = kept
         left = [hole for hole in holes(found) if not at_end[origin[hole.loop]].any()]
@@ -46,7 +46,7 @@ def uncrossed(vertices: Array, triangles: Index, pairs: Index, widest: float, le
         points, corners = filled(found.vertices, found.triangles, left)
         if not len(crossings(points, corners, least).pairs):
             return Uncrossed(points, corners, int(gone.sum()), left)
-        beside = np.zeros(len(vertices), dtype=bool)
-        beside[triangles[gone]] = True
-        gone = beside[triangles].any(axis=1)
+        adjacent = np.zeros(len(vertices), dtype=bool)
+        adjacent[triangles[gone]] = True
+        gone = adjacent[triangles].any(axis=1)
     return None

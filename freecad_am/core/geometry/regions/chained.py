@@ -9,13 +9,13 @@ import numpy as np
 
 from ...types import Array
 
-NEAR = 1e-7  # of the period; cuts meet there
+MEETING = 1e-7  # of the period; cuts meet there
 
 
 def chained(pieces: Sequence[Sequence[Array]], cuts: Array) -> tuple[list[tuple[Array, int]], list[Array]]:
     """Rings of windows put together where cuts went through: those that go round with their sense, and closed ones."""
     turn = float(cuts[-1] - cuts[0])
-    near, count = NEAR * turn, len(cuts) - 1
+    near, count = MEETING * turn, len(cuts) - 1
     runs: list[Array] = []
     closed: list[Array] = []
     starts: list[tuple[int, float, int]] = []

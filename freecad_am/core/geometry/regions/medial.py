@@ -69,8 +69,8 @@ def _axis(region: Region, least: float, step: float) -> _Axis:
     corners = diagram.vertices * size + middle
     pairs = diagram.ridge_points
     ends = np.fromiter(chain.from_iterable(diagram.ridge_vertices), dtype=np.intp, count=2 * len(pairs)).reshape(-1, 2)
-    beside = (follows[pairs[:, 0]] == pairs[:, 1]) | (follows[pairs[:, 1]] == pairs[:, 0])
-    use = (ends >= 0).all(axis=1) & ~beside
+    adjacent = (follows[pairs[:, 0]] == pairs[:, 1]) | (follows[pairs[:, 1]] == pairs[:, 0])
+    use = (ends >= 0).all(axis=1) & ~adjacent
     pairs, ends = pairs[use], ends[use]
     away = np.hypot(*(corners[ends] - places[pairs[:, :1]]).transpose(2, 0, 1))
     apart = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
@@ -111,17 +111,17 @@ def _cycle(points: Array, links: Index) -> Index | None:
         links = links[keep]
     if not len(links) or (np.bincount(links.ravel()) > 2).any():
         return None
-    beside: dict[int, list[int]] = {}
+    neighbours: dict[int, list[int]] = {}
     for a, b in links.tolist():
-        beside.setdefault(a, []).append(b)
-        beside.setdefault(b, []).append(a)
-    path = [min(beside)]
-    ahead = min(beside[path[0]])
+        neighbours.setdefault(a, []).append(b)
+        neighbours.setdefault(b, []).append(a)
+    path = [min(neighbours)]
+    ahead = min(neighbours[path[0]])
     while ahead != path[0]:
         before, here = path[-1], ahead
         path.append(here)
-        ahead = next((other for other in beside[here] if other != before), path[0])
-    return np.array(path) if len(path) == len(beside) else None
+        ahead = next((other for other in neighbours[here] if other != before), path[0])
+    return np.array(path) if len(path) == len(neighbours) else None
 
 
 def _longest(points: Array, links: Index) -> Index:

@@ -20,7 +20,7 @@ from ...types import Array, Mask
 from ..curves.plane_curve import doubled_area, nearest_of, winding
 from ..curves.polyline import turn_segments
 
-SAME = 1e-12  # of the extent; points nearer together are one
+MERGED = 1e-12  # of the extent; points nearer together are one
 SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated
 AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
 LEAST_ARC = 8  # segments of a full turn
@@ -239,7 +239,7 @@ def _distinct(loop: Array) -> Array:
     if len(loop) == 0:
         return loop
     away = np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1)
-    kept: Array = loop[away > SAME * max(float(np.ptp(loop, axis=0).max()), 1e-300)]
+    kept: Array = loop[away > MERGED * max(float(np.ptp(loop, axis=0).max()), 1e-300)]
     return kept
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from ...types import Array
 from ..columns import columns
 from ..curves.plane_curve import doubled_area, winding
-from .chained import NEAR, chained
+from .chained import MEETING, chained
 from .region import Region, regions
 
 HALF_TURN = 2.6  # rad; a window is no wider, room included
@@ -60,7 +60,7 @@ class Period:
             cover[:, 0] -= self.whole * np.round((cover[:, 0].mean() - sheet) / self.whole)
         return cover
 
-    def laid(self, cover: Array, about: float = 0.0) -> Array:
+    def unroll(self, cover: Array, about: float = 0.0) -> Array:
         """Points (n, 2) of the plane of (u, v), turned back by `about` mm of u."""
         if math.isinf(self.apex):
             return np.asarray(cover - np.array([about, 0.0]))
@@ -77,7 +77,7 @@ class Period:
         turned = np.stack([away[:, 0] * cos - away[:, 1] * sin, away[:, 0] * sin + away[:, 1] * cos], axis=1)
         return np.asarray(turned + apex)
 
-    def beside(self, flat: Array, u: float) -> Array:
+    def distance_past(self, flat: Array, u: float) -> Array:
         """How far (n,) mm points of the plane lie past the generatrix at u, |u| below a quarter turn."""
         if math.isinf(self.apex):
             return np.asarray(flat[:, 0] - u)
@@ -91,7 +91,7 @@ class Window(NamedTuple):
     about: float
     low: float
     high: float
-    room: float
+    margin: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +110,7 @@ class Strip:
     def rings(self) -> tuple[tuple[Array, int], ...]:
         """The borders (n, 2) laid flat and how often each goes round: 1, -1 and 0 for holes."""
         found = [(self.lower, 1), (self.upper, -1), *((hole, 0) for hole in self.holes)]
-        return tuple((self.period.laid(points), turns) for points, turns in found)
+        return tuple((self.period.unroll(points), turns) for points, turns in found)
 
     @cached_property
     def levels(self) -> tuple[float, float]:
@@ -126,11 +126,11 @@ class Strip:
         period = self.period
         windows = self.windows(reach)
         pieces: list[list[Array]] = []
-        for about, low, high, room in windows:
+        for about, low, high, margin in windows:
             found: list[Array] = []
-            for part in self.between(low - room, high + room):
-                laid = regions([period.laid(ring, about) for ring in part.rings()])
-                for whole in (piece for region in laid for piece in operation(region)):
+            for part in self.between(low - margin, high + margin):
+                unrolled = regions([period.unroll(ring, about) for ring in part.rings()])
+                for whole in (piece for region in unrolled for piece in operation(region)):
                     cover = [self._cut(ring, about, (low - about, high - about)) for ring in whole.rings()]
                     found += [ring for inner in regions(cover) for ring in _boxed(inner, low, high)]
             pieces.append(found)
@@ -163,8 +163,8 @@ class Strip:
             following = np.roll(cover, -1, axis=0)
             k = np.flatnonzero((cover[:, 0] < u) != (following[:, 0] < u))
             k = k if closed else k[k < len(cover) - 1]
-            a, b = self.period.laid(cover[k], u), self.period.laid(following[k], u)
-            fa, fb = self.period.beside(a, 0.0), self.period.beside(b, 0.0)
+            a, b = self.period.unroll(cover[k], u), self.period.unroll(following[k], u)
+            fa, fb = self.period.distance_past(a, 0.0), self.period.distance_past(b, 0.0)
             place = self.period.unrolled(a + (fa / (fa - fb))[:, None] * (b - a))
             place[:, 0] = u
             cover = np.insert(cover, k + 1, place, axis=0)
@@ -178,16 +178,16 @@ class Strip:
     def windows(self, reach: float) -> tuple[Window, ...]:
         """The strip once round, for what looks `reach` mm around."""
         turn = self.period.around
-        room, count = self._windows(reach)
+        margin, count = self._windows(reach)
         cuts = np.linspace(-0.5 * turn, 0.5 * turn, count + 1).tolist()
-        return tuple(Window(0.5 * (low + high), low, high, room) for low, high in zip(cuts, cuts[1:]))
+        return tuple(Window(0.5 * (low + high), low, high, margin) for low, high in zip(cuts, cuts[1:]))
 
     def pane(self, window: Window) -> Array:
         """A ring (n, 2) in (u, v) about all of the strip in a window, without the room beside it."""
         u = np.linspace(window.low, window.high, 17)
         bottom, top = self.levels
-        room = 0.05 * (window.high - window.low) + 1.0
-        below, above = np.stack([u, np.full(17, bottom - room)], axis=1), np.stack([u, np.full(17, top + room)], axis=1)
+        margin = 0.05 * (window.high - window.low) + 1.0
+        below, above = np.stack([u, np.full(17, bottom - margin)], axis=1), np.stack([u, np.full(17, top + margin)], axis=1)
         return np.vstack([below, above[::-1]])
 
     def _windows(self, reach: float) -> tuple[float, int]:
@@ -196,9 +196,9 @@ class Strip:
             return 1.1 * reach, 1
         way = abs(self.period.apex - self.levels[1])
         # a place that is `reach` inside is as far above the border next to the apex, and that border hides what is beyond
-        room = 1.1 * math.asin(reach / (way + reach))
-        count = max(1, math.ceil(self.period.turn / max(HALF_TURN - 2.0 * room, 0.2)))
-        return room * abs(self.period.apex), count
+        margin = 1.1 * math.asin(reach / (way + reach))
+        count = max(1, math.ceil(self.period.turn / max(HALF_TURN - 2.0 * margin, 0.2)))
+        return margin * abs(self.period.apex), count
 
 
 def parts(rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: Period) -> tuple[Strip | Region, ...]:
@@ -221,8 +221,8 @@ def parts(rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: 
         inside = [hole for hole in shifted if winding((outer,), hole[:1])[0] > 0]
         about = np.array([np.round(outer[:, 0].mean() / period.around) * period.around, 0.0])
         sheet = 0.5 * float(outer[:, 0].min() + outer[:, 0].max()) - float(about[0])
-        laid = regions([period.laid(ring - about) for ring in (outer, *inside)])
-        found += [replace(region, sheet=sheet) for region in laid]
+        unrolled = regions([period.unroll(ring - about) for ring in (outer, *inside)])
+        found += [replace(region, sheet=sheet) for region in unrolled]
     return tuple(found)
 
 
@@ -243,7 +243,7 @@ def strips(loops: Sequence[tuple[Array, int]], period: Period) -> tuple[Strip | 
 
 def _begun(ring: Array, sense: int, turn: float) -> tuple[Array, int]:
     """A border that goes round, begun where it leaves the generatrix half a turn from 0."""
-    past = np.remainder(sense * ring[:, 0] + 0.5 * turn + NEAR * turn, turn)
+    past = np.remainder(sense * ring[:, 0] + 0.5 * turn + MEETING * turn, turn)
     first = int(np.argmin(past))
     ring = np.vstack([ring[first:], ring[:first] + np.array([sense * turn, 0.0])])
     ring[:, 0] -= turn * np.round((ring[0, 0] + sense * 0.5 * turn) / turn)
@@ -257,8 +257,8 @@ def _within(strip: Strip, hole: Array) -> bool:
 
 
 def _box(low: float, high: float, bottom: float, top: float) -> Array:
-    room = 1.0 + top - bottom
-    return np.array([[low, bottom - room], [high, bottom - room], [high, top + room], [low, top + room]])
+    margin = 1.0 + top - bottom
+    return np.array([[low, bottom - margin], [high, bottom - margin], [high, top + margin], [low, top + margin]])
 
 
 def _boxed(region: Region, low: float, high: float) -> list[Array]:

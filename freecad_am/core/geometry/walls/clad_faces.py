@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...issues import Issue
-from ..surroundings import Body
+from ..obstacles import Body
 from .patch_wall import PatchWall
 
 

@@ -56,7 +56,7 @@ def first_curves(wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim,
 
 def _curve(wall: PatchWall, ground: Ground, line: LevelLine, rims: tuple[Rim, ...]) -> tuple[FirstCurve | None, float]:
     points = thinned(line.points, line.closed, CLOSE * wall.mesh.typical_edge)
-    points, piece = _settled(wall, ground, points)
+    points, piece = _converged(wall, ground, points)
     if not line.closed:
         for end in (0, -1):
             points[end] = wall.project(_on_rim(points[end], rims, ground)[None])[0][0]
@@ -89,7 +89,7 @@ def _refined(wall: PatchWall, ground: Ground, first: FirstCurve) -> tuple[FirstC
         if not len(bad):
             break
         middle, along, _ = curve.at(curve.w[bad] + 0.5 * curve.span[bad])
-        points, piece = _settled(wall, ground, middle)
+        points, piece = _converged(wall, ground, middle)
         slope = unit(np.cross(wall.project(points)[1], ground.on(piece, points)[1]))
         slope *= np.where(dot(slope, along) < 0.0, -1.0, 1.0)[:, None]
         sound = np.abs(dot(points - ground.on(piece, points)[0], ground.on(piece, points)[1])) < 1e-6
@@ -110,7 +110,7 @@ def _off(ground: Ground, points: Array) -> Array:
     return off
 
 
-def _settled(wall: PatchWall, ground: Ground, points: Array, level: Array | float = 0.0) -> tuple[Array, Index]:
+def _converged(wall: PatchWall, ground: Ground, points: Array, level: Array | float = 0.0) -> tuple[Array, Index]:
     """Points moved within the wall onto the ground, or `level` (k,) mm above it, and the piece of it that each lies on."""
     points, normal = wall.project(points)
     piece = ground.located(points)[2]
@@ -138,10 +138,10 @@ def _on_rim(point: Array, rims: tuple[Rim, ...], ground: Ground) -> Array:
     for _ in range(STEPS):
         at, slope = spline(w)[None], spline(w, 1)[None]
         foot, up, _ = ground.located(at)
-        pace = float(dot(slope, up)[0])
-        if abs(pace) < 1e-3:
+        rate = float(dot(slope, up)[0])
+        if abs(rate) < 1e-3:
             return point
-        step = float(dot(at - foot, up)[0]) / pace
+        step = float(dot(at - foot, up)[0]) / rate
         w = w - float(np.clip(step, -1.0, 1.0))
         if abs(step) < 1e-12:
             break
@@ -248,7 +248,7 @@ def _rounded(
         if not len(bad):
             break
         # no farther than needed: what is round lies between the facet and its sagitta above
-        on_wall[far] = _settled(wall, ground, on_wall[far], np.clip(above, 0.0, sagitta)[far])[0]
+        on_wall[far] = _converged(wall, ground, on_wall[far], np.clip(above, 0.0, sagitta)[far])[0]
         order = np.argsort(np.r_[np.arange(len(points)), bad + 0.5], kind="stable")
         points = np.vstack([points, on_wall[bad]])[order]
         sharp = np.r_[sharp, np.zeros(len(bad), dtype=bool)][order]

@@ -142,9 +142,9 @@ def distances(points: Array, ground: Ground, near: float) -> Array:
         found, of = ground.signed(points[asked]), np.ravel(of)
         away = np.linalg.norm(points[open_] - points[asked][of], axis=1)
         least = np.abs(found[of]) - away
-        told = least > near
-        value[open_[told]] = (np.sign(found[of]) * least)[told]
-        open_, size = open_[~told], 0.5 * size
+        certain = least > near
+        value[open_[certain]] = (np.sign(found[of]) * least)[certain]
+        open_, size = open_[~certain], 0.5 * size
     value[open_] = ground.signed(points[open_])
     return value
 

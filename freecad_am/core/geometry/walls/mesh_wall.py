@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...issues import NOTE, InputError, Issue
 from ...types import Array, Index, Mask
+from ..formatting import deviation, place
 from ..mesh.collapsed import collapsed
 from ..mesh.crossing import crossings
 from ..mesh.refined import Edges, flipped, refined
@@ -20,18 +21,17 @@ from ..mesh.repair import WELDS, connected_triangles, mended_issues
 from ..mesh.smooth import SmoothMesh
 from ..mesh.solid import Search, SolidMesh
 from ..mesh.uncrossed import uncrossed
-from ..told import deviation, place
 from .patch_wall import PatchWall
 from .rims import outward_volume
 from .surface import dot
 
-MOST = 1_500_000  # triangles
-SHORT = 0.55  # of the longest edge; shorter ones are drawn together
+MAX_TRIANGLES = 1_500_000  # triangles
+COLLAPSE = 0.55  # of the longest edge; shorter ones are drawn together
 CREASE = np.cos(np.radians(20.0))  # facets that meet at more are areas of their own, whose edges stay where they are
 PLANE = np.cos(np.radians(3.0))  # and for facets larger than the mesh's edges where it would run across such meetings
 ACROSS = 0.05  # of the length of an edge, mm off the facets from which on this is looked at
 PIECE = 1000  # places done together; bounds the memory
-TOLD = 0.02  # mm off the mesh that the smooth surface may be before it is told
+REPORTED_FROM_MM = 0.02  # mm off the mesh that the smooth surface may be before it is told
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
         other = _meshed(read, _areas(read.vertices, read.triangles, edge), facets, edge, label)
         wall = other if other.between < wall.between else wall
     off = wall.smoothing
-    if off <= TOLD or wall.samples is None:
+    if off <= REPORTED_FROM_MM or wall.samples is None:
         return wall
     farthest = wall.samples[np.argmax(np.linalg.norm(wall.vertices - wall.samples, axis=1))]
     return replace(wall, issues=(*wall.issues, Issue(
@@ -90,18 +90,18 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
 
 def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) -> MeshWall:
     """The smooth wall through facets, whose areas `owner` (m,) tells apart. InputError TOO_FINE."""
-    made = refined(read.vertices, read.triangles, owner, edge, lambda middles, beside, ends: middles, MOST)
+    made = refined(read.vertices, read.triangles, owner, edge, lambda middles, adjacent, ends: middles, MAX_TRIANGLES)
     if made is None:
         made = refined(
-            read.vertices, read.triangles, owner, edge, lambda middles, beside, ends: middles, MOST, turned=False
+            read.vertices, read.triangles, owner, edge, lambda middles, adjacent, ends: middles, MAX_TRIANGLES, turned=False
         )
     if made is None:
         raise InputError(
-            "TOO_FINE", label, f"with edges of {edge:.3g} mm, a layer height, the mesh of the wall has more than {MOST} "
-            "triangles; use a larger layer height, or deposit the wall in parts",
+            "TOO_FINE", label, f"with edges of {edge:.3g} mm, a layer height, the mesh of the wall has more than "
+            f"{MAX_TRIANGLES} triangles; use a larger layer height, or deposit the wall in parts",
         )
     vertices, corners, owner = made
-    corners, owner = collapsed(vertices, corners, owner, SHORT * edge, edge)
+    corners, owner = collapsed(vertices, corners, owner, COLLAPSE * edge, edge)
     corners = flipped(vertices, corners, owner)
     used, index = np.unique(corners, return_inverse=True)
     samples, corners = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)

@@ -46,6 +46,6 @@ class PartDepths:
         """Volume of the part, mm3, that beads of a width, mm, deposit."""
         return self.volume * float(np.mean(self.depths <= width)) if len(self.depths) else 0.0
 
-    def beside(self, width: float) -> float:
+    def outside(self, width: float) -> float:
         """Volume of beads of a width, mm, that the part does not reach to, mm3."""
         return self.area * float(np.maximum(width - self.thickness, 0.0).mean()) if len(self.thickness) else 0.0

@@ -16,7 +16,7 @@ from ..curves.space_curve import SpaceCurve
 from ..mesh.edge_runs import tangents
 from ..mesh.triangle_mesh import Mesh
 from ..mesh.triangles import closest
-from ..surroundings import Body
+from ..obstacles import Body
 from .part_depths import PartDepths
 from .patch import Patch
 from .surface import dot
@@ -158,16 +158,16 @@ class PatchWall:
         arc, t = arc[row, best], t[row, best]
         for _ in range(3):
             at, slope, bend = joints.at(arc, t)
-            pace = dot(slope, slope) - dot(p - at, bend)
-            t = np.clip(t + dot(p - at, slope) / np.maximum(pace, 0.1 * dot(slope, slope)), 0.0, 1.0)
+            rate = dot(slope, slope) - dot(p - at, bend)
+            t = np.clip(t + dot(p - at, slope) / np.maximum(rate, 0.1 * dot(slope, slope)), 0.0, 1.0)
         at, slope, _ = joints.at(arc, t)
         normal = (1.0 - t)[:, None] * joints.start_normal[arc] + t[:, None] * joints.end_normal[arc]
         left = dot(p - at, np.cross(normal, slope)) > 0.0
         # only between the two patches that meet there: beyond a corner of the joints the triangle is right
         pair = joints.pair[arc]
-        told = (pair == patch[near][:, None]).any(axis=1)
+        joined = (pair == patch[near][:, None]).any(axis=1)
         patch = patch.copy()
-        patch[near[told]] = np.where(left, pair[:, 0], pair[:, 1])[told]
+        patch[near[joined]] = np.where(left, pair[:, 0], pair[:, 1])[joined]
         return patch
 
     @cached_property

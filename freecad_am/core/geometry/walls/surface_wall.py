@@ -9,7 +9,7 @@ import numpy as np
 
 from ...issues import Issue
 from ...types import Array
-from ..surroundings import Body
+from ..obstacles import Body
 from .part_depths import PartDepths
 from .surface import Cone, Surface, Torus
 from .tabulated import Tabulated

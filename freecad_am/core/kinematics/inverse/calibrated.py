@@ -23,8 +23,8 @@ STEPS, AGAIN = 16, 4  # steps at most, and after how many the Jacobian is found 
 ASIDE = 5.0  # mm
 TINY = 1e-9
 LENGTH = 500.0  # mm that count as one rad
-SETTLED = 1e-11  # of the error as an angle, 5e-9 mm; one more step is not worth its time
-NEAR = 2e-10  # left by rounding beside a singularity
+CONVERGED = 1e-11  # of the error as an angle, 5e-9 mm; one more step is not worth its time
+SINGULAR = 2e-10  # left by rounding beside a singularity
 DAMPING = 1e-14
 
 
@@ -112,7 +112,7 @@ class CalibratedArm:
             for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
                 error[:, 3 + row] = 0.5 * (turned[:, last, following] - turned[:, following, last])
             off[open_] = np.sqrt(np.einsum("ni,ni->n", error, error))
-            left = off[open_] > SETTLED
+            left = off[open_] > CONVERGED
             if not left.any():
                 break
             open_, error = open_[left], error[left]
@@ -120,7 +120,7 @@ class CalibratedArm:
                 back[open_] = self._inverse_rates(q[open_], flange[left, :3, 3])
             rates = np.einsum("nij,nj->ni", back[open_], error)
             q[open_] += rates / np.maximum(1.0, np.abs(rates).max(axis=1, keepdims=True))  # no more than 1 rad at a time
-        q[~(off < NEAR)] = np.nan
+        q[~(off < SINGULAR)] = np.nan
         return q
 
     def _inverse_rates(self, q: Array, points: Array) -> Array:

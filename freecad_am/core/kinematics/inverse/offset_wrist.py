@@ -23,7 +23,7 @@ from .offset_wrist_plane import Curves, geometry
 from .offset_wrist_search import Zeros
 
 CHUNK = 2048
-MOST = 16  # solutions of six revolute joints
+MAX_SOLUTIONS = 16  # solutions of six revolute joints
 STEP_RAD = 1e-5  # of axis 6, by which the slope is taken
 
 
@@ -81,7 +81,8 @@ class OffsetWristArm:
     def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
         """All of `inverse`, and the configuration (16, n) whose words each bears, -1 where there is none."""
         given = np.asarray(poses, float)
-        result, words = np.full((MOST, len(given), 6), np.nan), np.full((MOST, len(given)), -1, dtype=np.intp)
+        result = np.full((MAX_SOLUTIONS, len(given), 6), np.nan)
+        words = np.full((MAX_SOLUTIONS, len(given)), -1, dtype=np.intp)
         for start in range(0, len(given), CHUNK):
             piece = slice(start, start + CHUNK)
             self._solve_piece(given[piece], result[:, piece], words[:, piece])
@@ -163,7 +164,7 @@ class OffsetWristArm:
         begins[1:] = pose[further[1:]] != pose[further[:-1]]
         number = np.arange(len(further))
         slot[further] = 8 + number - np.maximum.accumulate(np.where(begins, number, 0))
-        kept = slot < MOST
+        kept = slot < MAX_SOLUTIONS
         out[slot[kept], pose[kept]] = q[order[kept]]
         named[slot[kept], pose[kept]] = words[kept]
 

@@ -20,7 +20,7 @@ from . import offset_shoulder_loops
 from .offset_wrist_plane import TINY, Curves, Spot, geometry, plane_of, spot_of
 
 SAMPLES = 36
-BESIDE = 0.37  # of a step: no sample where the arm is stretched or folded, at which a zero of it would have either sign
+SAMPLE_SHIFT = 0.37  # of a step: no sample where the arm is stretched or folded, where a zero of it would have either sign
 PIECES, LEVELS = 8, 6  # into which a step is divided where the arm swings fast, and how often again
 FLAT = (0.02, 4e-4)  # of the cosine between axes 4 and 5: steps whose ends are less are divided, and again
 SWING = 0.96  # cosine of the most that arm or axis 4 may turn in a step
@@ -71,7 +71,7 @@ class Loops(NamedTuple):
 def zeros(curves: Curves) -> Zeros:
     """All zeros, in no order."""
     loops = _loops(curves)
-    t = (np.arange(-1, SAMPLES + 2) + BESIDE) * (2.0 * math.pi / SAMPLES)
+    t = (np.arange(-1, SAMPLES + 2) + SAMPLE_SHIFT) * (2.0 * math.pi / SAMPLES)
     loop, low, high = _steps(curves, loops, np.arange(len(loops.pose)), np.broadcast_to(t, (len(loops.pose), len(t))), 0)
     at = loops.of(loop)
     root = _refined(curves, at, low, high)

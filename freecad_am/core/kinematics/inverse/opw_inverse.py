@@ -79,7 +79,7 @@ def _solve_piece(arm: OpwArm, rows: Array, branches: tuple[int, ...], out: Array
         base = np.arctan2(side.sine, side.cosine)
         if lost is not None:
             base[lost] = np.nan
-        _settle(arm, 0, base)
+        _to_machine(arm, 0, base)
         flange = _about_axis_1(side, rows)
         for down in (0, 1):
             pair = (slots.get(2 * down), slots.get(2 * down + 1))
@@ -182,8 +182,8 @@ def _arm(arm: OpwArm, side: _Side, triangle: _Triangle, left: bool, angles: Arra
         sideways = triangle.common[1] - triangle.turn[1]
         np.subtract(-inclined, triangle.bend, out=angles[2])
     np.arctan2(along_ahead, along_above, out=angles[1])
-    _settle(arm, 1, angles[1])
-    _settle(arm, 2, angles[2], -inclined if left else -inclined - math.pi, math.pi)
+    _to_machine(arm, 1, angles[1])
+    _to_machine(arm, 2, angles[2], -inclined if left else -inclined - math.pi, math.pi)
     sine = ahead * towards
     sine += above * sideways
     cosine = above * towards
@@ -223,7 +223,7 @@ def _wrist(
     rest -= forearm[:2] * y
     np.arctan2(rest[0], rest[1], out=angles[5])
     for axis in (3, 4, 5):
-        _settle(arm, axis, angles[axis])
+        _to_machine(arm, axis, angles[axis])
 
 
 def _flip(arm: OpwArm, angles: Array, other: Array) -> None:
@@ -244,7 +244,7 @@ def _half_turn(angle: Array, out: Array) -> None:
     np.subtract(angle, np.copysign(math.pi, angle), out=out)
 
 
-def _settle(arm: OpwArm, axis: int, angle: Array, low: float = -math.pi, width: float = 2.0 * math.pi) -> None:
+def _to_machine(arm: OpwArm, axis: int, angle: Array, low: float = -math.pi, width: float = 2.0 * math.pi) -> None:
     """From opw's angle, in [low, low + width], to the machine's in [-pi, pi], in place."""
     sign, shift = arm.signs[axis], arm.offsets[axis]
     if shift and abs(abs(shift) - math.pi) < 1e-12 and width > math.pi:

@@ -134,10 +134,10 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     if np.linalg.norm(np.cross(out, z[5])) > STRAIGHT:
         raise refused("the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange",
                        FLANGE)
-    beside = flange[:3, 3] - centre
-    if np.linalg.norm(beside - out * float(beside @ out)) > NEAR_MM:
+    offset = flange[:3, 3] - centre
+    if np.linalg.norm(offset - out * float(offset @ out)) > NEAR_MM:
         raise refused("the flange's origin does not lie on axis 6", FLANGE)
-    if float(beside @ out) < -NEAR_MM and float(out @ forearm) < 0.0:
+    if float(offset @ out) < -NEAR_MM and float(out @ forearm) < 0.0:
         raise refused("the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as "
                        "tool0 or fanuc_flange, or turn the flange", FLANGE)
     # axis 5 within the forearm: about its own y, turned about it by turn4 of at most a right angle
@@ -157,7 +157,7 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
              1 if float(z[5] @ out) > 0.0 else -1)
     return OpwArm(
         a1=clean(float(shoulder @ x)), a2=clean(float(to_wrist @ across)), b=clean(side), c1=clean(float(p[1, 2])),
-        c2=clean(upper), c3=clean(abs(length)), c4=clean(float(beside @ out)),
+        c2=clean(upper), c3=clean(abs(length)), c4=clean(float(offset @ out)),
         offsets=tuple(_offset(turn) for turn in turns), signs=signs,
     )
 

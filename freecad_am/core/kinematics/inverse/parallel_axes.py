@@ -46,7 +46,7 @@ class ParallelAxesArm:
     upper: float
     fore: float
     wrist: tuple[float, float]
-    beside: float
+    offset: float
     tip: Array
     signs: tuple[int, ...]
     zeros: tuple[float, ...]
@@ -116,8 +116,8 @@ class ParallelAxesArm:
         """Write the angles `out` (branches, 6, m) of frames on axis 6 given by their upper three `rows` (3, 4, m)."""
         centre = rows[:, 3]
         squared = (centre[0] + HINT) ** 2 + centre[1] ** 2
-        along = squared - self.beside**2
-        lost = along < -2.0 * max(abs(self.beside), TOUCH) * TOUCH
+        along = squared - self.offset**2
+        lost = along < -2.0 * max(abs(self.offset), TOUCH) * TOUCH
         along = np.sqrt(np.maximum(along, 0.0))
         along[lost] = np.nan
         for back in (0, 1):
@@ -125,9 +125,9 @@ class ParallelAxesArm:
             if not of_side:
                 continue
             signed = -along if back else along
-            sine = (centre[1] * signed - (centre[0] + HINT) * self.beside) / squared
-            cosine = ((centre[0] + HINT) * signed + centre[1] * self.beside) / squared
-            one = self._settled(0, np.arctan2(sine, cosine))
+            sine = (centre[1] * signed - (centre[0] + HINT) * self.offset) / squared
+            cosine = ((centre[0] + HINT) * signed + centre[1] * self.offset) / squared
+            one = self._to_machine(0, np.arctan2(sine, cosine))
             # axis 6 in the arm's frame: ahead, along its normal, up
             six = rows[0, 2] * cosine + rows[1, 2] * sine, rows[1, 2] * cosine - rows[0, 2] * sine, rows[2, 2]
             off = np.hypot(six[0], six[2])
@@ -147,8 +147,8 @@ class ParallelAxesArm:
                 if not pair:
                     continue
                 side = -1.0 if turned else 1.0
-                fifth = self._settled(4, -bent if turned else bent)
-                sixth = self._settled(5, last - np.copysign(math.pi, last) if turned else last)
+                fifth = self._to_machine(4, -bent if turned else bent)
+                sixth = self._to_machine(5, last - np.copysign(math.pi, last) if turned else last)
                 x, z = side * five_x, side * five_z
                 ahead = signed - self.ahead - self.wrist[0] * z - self.wrist[1] * x
                 above = centre[2] - self.above + self.wrist[0] * x - self.wrist[1] * z
@@ -160,9 +160,9 @@ class ParallelAxesArm:
                     turn = across if left else -across
                     two = np.arctan2(ahead * towards - above * turn, above * towards + ahead * turn)
                     angles[0], angles[4], angles[5] = one, fifth, sixth
-                    angles[1] = self._settled(1, two)
-                    angles[2] = self._settled(2, elbow)
-                    angles[3] = self._settled(3, four - two - elbow)
+                    angles[1] = self._to_machine(1, two)
+                    angles[2] = self._to_machine(2, elbow)
+                    angles[3] = self._to_machine(3, four - two - elbow)
                     angles[:, np.isnan(two) | np.isnan(one)] = np.nan
 
     def _chosen(self, ahead: Array, above: Array) -> tuple[Array, Array]:
@@ -190,7 +190,7 @@ class ParallelAxesArm:
         sine[lost] = np.nan
         return np.arctan2(sine, cosine), upper + fore * cosine, fore * sine
 
-    def _settled(self, axis: int, theta: Array) -> Array:
+    def _to_machine(self, axis: int, theta: Array) -> Array:
         """The machine's angle in [-pi, pi] of the arm's."""
         angle = theta - self.zeros[axis] if self.zeros[axis] else theta
         turns = np.rint(angle * (1.0 / TURN))

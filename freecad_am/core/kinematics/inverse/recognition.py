@@ -63,7 +63,7 @@ def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
     arm = ParallelAxesArm(
         ahead=float(shoulder[0]), above=float(shoulder[1]), upper=float(np.hypot(*upper)), fore=float(np.hypot(*fore)),
         wrist=(float(away[0] * cosine - away[1] * sine), float(away[0] * sine + away[1] * cosine)),
-        beside=float(normal @ meeting), tip=frames.inverse(last) @ at_rest.flange,
+        offset=float(normal @ meeting), tip=frames.inverse(last) @ at_rest.flange,
         signs=(_sign(z[0, 2]), *(_sign(axis @ normal) for axis in z[1:4]), 1, _sign(six @ z[5])),
         zeros=tuple(clean(turn) for turn in (turn1, turn2, turn23 - turn2, turn234 - turn23, bent, 0.0)),
     )
@@ -90,9 +90,9 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     ahead = np.cross(normal, (0.0, 0.0, 1.0))
     plane = np.stack([ahead, (0.0, 0.0, 1.0)])
     shoulder, elbow, centre = (plane @ at for at in (p[1], p[2], point))
-    beside = float(normal @ point)
-    if abs(beside) > NEAR_MM:
-        raise opw_recognition.refused(f"the wrist is not spherical, and axis 4 passes {abs(beside):.6g} mm beside axis 1")
+    offset = float(normal @ point)
+    if abs(offset) > NEAR_MM:
+        raise opw_recognition.refused(f"the wrist is not spherical, and axis 4 passes {abs(offset):.6g} mm beside axis 1")
     upper, fore = elbow - shoulder, centre - elbow
     away = point - p[5] - z[5] * float(z[5] @ (point - p[5]))
     if min(np.hypot(*upper), np.hypot(*fore), np.linalg.norm(away)) < NEAR_MM:

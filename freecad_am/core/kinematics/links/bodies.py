@@ -23,10 +23,10 @@ def link_bodies(top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | No
     links = (BASE, *joints)
     if not top.has("bodies"):
         return tuple(() if shape is None else (shape,) for shape in shapes)
-    told = top["bodies"].only("source", *links)
-    told["source"].text()
+    text = top["bodies"].only("source", *links)
+    text["source"].text()
     return tuple(
-        tuple(_solid(piece, last=name == links[-1]) for piece in told[name].items()) if told.has(name) else ()
+        tuple(_solid(piece, last=name == links[-1]) for piece in text[name].items()) if text.has(name) else ()
         for name in links
     )
 

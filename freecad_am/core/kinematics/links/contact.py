@@ -2,11 +2,11 @@
 """Whether the links of a robot meet what is in its cell: nozzle, platform, bodies, obstacles, and what has been deposited
 before; and whether nozzle or part meet the obstacles.
 
-Links are rods that hold what is drawn of them; bodies are their triangles and, where closed, their inside; beads are as
+Links are cylinders that hold what is drawn of them; bodies are their triangles and, where closed, their inside; beads are as
 wide and high as they are. So what is not told to touch does not touch, as far as links are what is drawn. What the flange
 carries is not looked at against the last two links, which hold it and can hardly move against it, nor what stands still
-against the base. A part that moves is all there from the beginning: rods about its bodies and beads. The nozzle is looked
-at as it is against bodies, without clearance: it deposits next to them. What holds the nozzle is looked at where
+against the base. A part that moves is all there from the beginning: cylinders about its bodies and beads. The nozzle is
+looked at as it is against bodies, without clearance: it deposits next to them. What holds the nozzle is looked at where
 `cell.nozzle.shape` shows it. The links of positioner and track (`beside`) move with their axes: those of the robot, nozzle
 and torch are looked at against them, the part against those of the positioner that it does not stand on, and they against
 obstacles. Links of the robot against each other: `own`. The floor and cables are not looked at at all.
@@ -28,15 +28,15 @@ from ...collision.obstacles import Obstacles
 from ...collision.scene import Scene
 from ...collision.tolerances import ABOUT_FACES
 from ...geometry import frames
-from ...geometry.rods import Rod, about, row
-from ...geometry.surroundings import Body, disc
+from ...geometry.cylinders import Cylinder, about, row
+from ...geometry.obstacles import Body, disc
 from ...parameters.external import ROBOT
 from ...types import Array, Index, Mask
 from ..cell import Cell
-from .beside import STANDS, BesideLink
+from .external_links import STANDS, ExternalLink
 from .nozzle_body import NOZZLE, nozzle_body
 from .own import OwnLinks
-from .rounds import NONE, Solid, about_link, ball, of_rod
+from .rounds import NONE, Solid, about_link, ball, of_cylinder
 
 BASE, PLATFORM, DEPOSIT, PART, TORCH = "base", "platform", "deposit", "part", "torch"
 WORLD = "world"
@@ -44,7 +44,7 @@ OWN = "link "  # before the axis of a link, as it is touched
 LINKS_MORE = 4  # of `links` besides the axes, before those of what stands beside the robot
 PIECE = 4096  # joint vectors done together
 LINK_PIECE, SHARE = 50.0, 0.01  # longest edge of a triangle that links are looked at against, mm, and of the body's size
-SLICES = 8  # rods about a deposit that moves
+SLICES = 8  # cylinders about a deposit that moves
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Group:
 
 @dataclass(frozen=True)
 class ArmContact:
-    """A robot in its cell. rods: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
+    """A robot in its cell. cylinders: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
     deposit: in part coordinates. clearance: mm, links that are nearer touch.
 
     names: what can be touched, in the end links of the robot; links: what touches it: base, axes, then part, nozzle and
@@ -83,7 +83,7 @@ class ArmContact:
     """
 
     cell: Cell
-    rods: Sequence[Sequence[Rod]]
+    cylinders: Sequence[Sequence[Cylinder]]
     bodies: Sequence[Body] = ()
     deposit: Obstacles | None = None
     clearance: float = 0.0
@@ -104,9 +104,9 @@ class ArmContact:
         groups = [*(_of_body(body, holder, NOZZLE) for body in about_nozzle), *(_of_body(body, part) for body in around)]
         names = [body.name for body in (*about_nozzle, *around)]
         more = ABOUT_FACES + self.clearance
-        solids = [[of_rod(rod, more) for rod in link] for link in self.rods]
-        solids += [[of_rod(rod, more) for rod in self._part_rods(around)], [_of_nozzle(self.cell)]]
-        solids += [[of_rod(rod, more) for rod in (() if held is None else held.rods)]]
+        solids = [[of_cylinder(cylinder, more) for cylinder in link] for link in self.cylinders]
+        solids += [[of_cylinder(cylinder, more) for cylinder in self._part_cylinders(around)], [_of_nozzle(self.cell)]]
+        solids += [[of_cylinder(cylinder, more) for cylinder in (() if held is None else held.cylinders)]]
         if self.deposit is not None:
             names.append(DEPOSIT)
             points = self.deposit.corners.reshape(-1, 3)
@@ -115,11 +115,14 @@ class ArmContact:
             groups.append(Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + wide))
         groups += [_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
         names += [body.name for body in self.cell.obstacles]
-        groups += [_of_body(one.body, self._against(one), one.name) for one in self.cell.beside]
-        names += [one.name for one in self.cell.beside]
-        solids += [[of_rod(rod, more) for rod in (one.rods if self.cell.obstacles else ())] for one in self.cell.beside]
+        groups += [_of_body(one.body, self._against(one), one.name) for one in self.cell.external_links]
+        names += [one.name for one in self.cell.external_links]
+        solids += [
+            [of_cylinder(cylinder, more) for cylinder in (one.cylinders if self.cell.obstacles else ())]
+            for one in self.cell.external_links
+        ]
         object.__setattr__(self, "links", (
-            BASE, *self.cell.robot.axes, PART, NOZZLE, TORCH, *(one.name for one in self.cell.beside)))
+            BASE, *self.cell.robot.axes, PART, NOZZLE, TORCH, *(one.name for one in self.cell.external_links)))
         object.__setattr__(self, "names", (*names, BASE, *(OWN + axis for axis in self.cell.robot.axes)))
         object.__setattr__(self, "groups", tuple(groups))
         object.__setattr__(self, "solids", tuple(map(tuple, solids)))
@@ -128,7 +131,7 @@ class ArmContact:
     @cached_property
     def own(self) -> OwnLinks:
         """The links against each other."""
-        return OwnLinks.of(self.cell.robot.chain, self.cell.limits, self.rods, self.clearance)
+        return OwnLinks.of(self.cell.robot.chain, self.cell.limits, self.cylinders, self.clearance)
 
     @property
     def _carries_part(self) -> bool:
@@ -150,11 +153,11 @@ class ArmContact:
         axes, cell = self.cell.robot.chain.axes, self.cell
         on_track = cell.external is not None and cell.external.slides is not None
         found = list(range(0 if on_track else 1, axes + 1))
-        beside = [axes + LINKS_MORE + k for k, one in enumerate(cell.beside) if one.axis != STANDS]
+        adjacent = [axes + LINKS_MORE + k for k, one in enumerate(cell.external_links) if one.axis != STANDS]
         return [*found, *([axes + 1] if cell.part_moves else []), *([] if cell.torch_stands else [axes + 2, *self._torch]),
-                *beside]
+                *adjacent]
 
-    def _against(self, one: BesideLink) -> list[int]:
+    def _against(self, one: ExternalLink) -> list[int]:
         """What is looked at against a link beside the robot: the robot's links, but not those that stand on the carriage of
         a track, nozzle and torch, and the part but for the last two links of what it stands on, as with a flange."""
         axes, on_robot = self.cell.robot.chain.axes, one.carries == ROBOT
@@ -163,14 +166,14 @@ class ArmContact:
         part = [] if on_robot or one.after <= 1 else [axes + 1]
         return [*range(first, axes + 1), *part, axes + 2, *self._torch]
 
-    def _part_rods(self, around: Sequence[Body]) -> list[Rod]:
-        """Rods that hold the part with what it stands on, where it may meet obstacles."""
-        if not (self.cell.obstacles or self.cell.beside) or not self.cell.part_moves:
+    def _part_cylinders(self, around: Sequence[Body]) -> list[Cylinder]:
+        """Cylinders that hold the part with what it stands on, where it may meet obstacles."""
+        if not (self.cell.obstacles or self.cell.external_links) or not self.cell.part_moves:
             return []
-        found = [rod for body in around for rod in row(body.vertices, body.triangles)]
+        found = [cylinder for body in around for cylinder in row(body.vertices, body.triangles)]
         if self.deposit is not None:
             wide = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
-            found += [Rod(rod.start, rod.end, rod.radius + wide) for rod in _slices(self.deposit.corners)]
+            found += [Cylinder(one.start, one.end, one.radius + wide) for one in _slices(self.deposit.corners)]
         return found
 
     def touches(self, joints: ArrayLike, moment: Index | None = None) -> Touches:
@@ -195,9 +198,9 @@ class ArmContact:
         platform, nozzle = (carried, still) if self._carries_part else (still, carried @ _TURNED)
         part = platform @ frames.inverse(self.cell.mount)
         seen_from = {PART: part, NOZZLE: nozzle, WORLD: self.cell.world(joints) if self.cell.obstacles else part}
-        beside = self.cell.beside_frames(joints)
-        seen_from |= {one.name: beside[:, k] for k, one in enumerate(self.cell.beside)}
-        return np.concatenate([links, part[:, None], nozzle[:, None], nozzle[:, None], beside], axis=1), seen_from
+        adjacent = self.cell.external_link_frames(joints)
+        seen_from |= {one.name: adjacent[:, k] for k, one in enumerate(self.cell.external_links)}
+        return np.concatenate([links, part[:, None], nozzle[:, None], nozzle[:, None], adjacent], axis=1), seen_from
 
     def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
         links, seen_from = self.seen(joints)
@@ -245,8 +248,8 @@ def _of_nozzle(cell: Cell) -> Solid:
     return Solid(solid, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.zeros(3), solid.reach)
 
 
-def _slices(corners: Array) -> list[Rod]:
-    """Rods that hold the hulls of corners (m, c, 3), of those next to each other along the longest side of all."""
+def _slices(corners: Array) -> list[Cylinder]:
+    """Cylinders that hold the hulls of corners (m, c, 3), of those next to each other along the longest side of all."""
     middle = corners.mean(axis=1)
     order = np.argsort(middle[:, int(np.ptp(middle, axis=0).argmax())], kind="stable")
     return [about(corners[some].reshape(-1, 3)) for some in np.array_split(order, min(SLICES, len(order)))]

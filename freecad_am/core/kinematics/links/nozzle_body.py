@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...geometry.surroundings import Body
+from ...geometry.obstacles import Body
 from ...parameters.cell import NozzleParameters
 
 NOZZLE = "nozzle"

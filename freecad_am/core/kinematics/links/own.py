@@ -13,17 +13,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...collision.rods_apart import PlacedRods, nearer
+from ...collision.cylinders_apart import PlacedCylinders, nearer
 from ...collision.tolerances import ABOUT_FACES
-from ...geometry.rods import Rod
+from ...geometry.cylinders import Cylinder
 from ...geometry.spread import spread
 from ...types import Array, Index, Mask
 from ..chain import Chain
 from ..limits import Limits
-from .rounds import NONE, Solid, about_link, of_rod
+from .rounds import NONE, Solid, about_link, of_cylinder
 
-POSITIONS, MOST = 128, 0.5  # looked at to see which pairs are left out, and the share at which they are not yet
-FEW = 4  # one position in so many is looked at first
+POSITIONS, LEFT_OUT = 128, 0.5  # looked at to see which pairs are left out, and the share at which they are not yet
+EVERY = 4  # one position in so many is looked at first
 
 
 @dataclass(frozen=True)
@@ -37,10 +37,10 @@ class OwnLinks:
     pairs: tuple[tuple[int, int], ...]
 
     @classmethod
-    def of(cls, chain: Chain, limits: Limits, rods: Sequence[Sequence[Rod]], clearance: float) -> OwnLinks:
-        """The links of a robot of these rods, each (axes + 1) in the frame of the link, that are to be kept clearance mm
-        apart; of the limits the first ones are its own."""
-        solids = tuple(tuple(of_rod(rod, 0.0) for rod in link) for link in rods)
+    def of(cls, chain: Chain, limits: Limits, cylinders: Sequence[Sequence[Cylinder]], clearance: float) -> OwnLinks:
+        """The links of a robot of these cylinders, each (axes + 1) in the frame of the link, that are to be kept clearance
+        mm apart; of the limits the first ones are its own."""
+        solids = tuple(tuple(of_cylinder(cylinder, 0.0) for cylinder in link) for link in cylinders)
         last = len(solids) - 1
         stopped = {(2, 0), (last, last - 2)}
         every = [(one, other) for one in range(2, last + 1) for other in range(one - 1) if (one, other) not in stopped]
@@ -48,8 +48,8 @@ class OwnLinks:
         found = cls(solids, tuple(about_link(link) for link in solids), gap, ())
         links = chain.links(positions(limits, chain.axes))
         # most pairs are seen by a few positions to be far below that share
-        often = [pair for pair in every if len(links) and found._touch(*pair, links[::FEW]).mean() > 0.5 * MOST]
-        usual = {pair for pair in often if found._touch(*pair, links).mean() > MOST}
+        often = [pair for pair in every if len(links) and found._touch(*pair, links[::EVERY]).mean() > 0.5 * LEFT_OUT]
+        usual = {pair for pair in often if found._touch(*pair, links).mean() > LEFT_OUT}
         return cls(solids, found.balls, gap, tuple(pair for pair in every if pair not in usual))
 
     def touches(self, links: Array) -> tuple[Index, Index]:
@@ -80,9 +80,9 @@ class OwnLinks:
 def positions(limits: Limits, axes: int) -> Array:
     """(k, axes) joints spread evenly over all that the limits of so many axes allow, the same each time; of axes without end
     over one turn."""
-    endless = limits.endless[:axes]
-    low = np.where(endless, -np.pi, limits.lower[:axes])
-    high = np.where(endless, np.pi, limits.upper[:axes])
+    continuous = limits.continuous[:axes]
+    low = np.where(continuous, -np.pi, limits.lower[:axes])
+    high = np.where(continuous, np.pi, limits.upper[:axes])
     found = low + spread(POSITIONS, axes) * (high - low)
     coupled = found @ limits.coefficients[:, :axes].T
     return np.asarray(found[((coupled >= limits.coupled_lower) & (coupled <= limits.coupled_upper)).all(axis=1)])
@@ -94,7 +94,7 @@ def _apart(one: Array, other: Array, ball: tuple[Array, float], second: tuple[Ar
     return np.asarray(np.linalg.norm(away, axis=1) - ball[1] - second[1])
 
 
-def _placed(solid: Solid, frame: Array) -> PlacedRods:
-    """The rod that a solid is, with frames (k, 4, 4) of its link."""
+def _placed(solid: Solid, frame: Array) -> PlacedCylinders:
+    """The cylinder that a solid is, with frames (k, 4, 4) of its link."""
     turn = frame[:, :3, :3]
-    return PlacedRods(turn @ solid.tip + frame[:, :3, 3], turn @ solid.axis, solid.solid.high, solid.solid.radius)
+    return PlacedCylinders(turn @ solid.tip + frame[:, :3, 3], turn @ solid.axis, solid.solid.high, solid.solid.radius)

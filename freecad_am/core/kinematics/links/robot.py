@@ -14,7 +14,7 @@ import numpy as np
 from ...geometry import frames
 from ...types import Array
 from ..chain import Chain
-from .solids import BRIGHT, DARK, Solid, capsule, cylinder, rod, turned
+from .solids import BRIGHT, DARK, Solid, capsule, cylinder, strut, turned
 
 # radii of the first and the last joint as shares of the arm's whole length, tapering between; the last such that flanges of
 # robots from 0.7 to 3 m are about as wide as the plates of ISO 9409-1 are: 40 to 125 mm
@@ -22,7 +22,7 @@ THICK, THIN = 0.068, 0.016
 # half the length of a drum, in radii
 DRUM = 0.85
 # runs shorter than this share of the arm are none
-SHORT = 0.03
+LEAST_SHARE = 0.03
 # how much of a run is still part of the link before
 STILL = 0.45
 _NONE = 1e-6  # and shorter than this there is nothing to draw
@@ -49,7 +49,7 @@ class Skeleton:
     def run(self, axis: int) -> float:
         """Length of the run along an axis, mm; 0 where it is short, but for the last one, which ends at the flange."""
         length = float(np.linalg.norm(self.leave[axis] - self.enter[axis]))
-        short = SHORT if axis + 1 < len(self.directions) else _NONE
+        short = LEAST_SHARE if axis + 1 < len(self.directions) else _NONE
         return length if length > short * self.size else 0.0
 
 
@@ -87,7 +87,7 @@ def _base(bones: Skeleton, base: list[Solid]) -> None:
     up = np.array([0.0, 0.0, 1.0])
     plate = 0.22 * radius
     base.append(cylinder(foot, foot + plate * up, 1.75 * radius, DARK, 0.05))
-    if np.linalg.norm(bones.enter[0] - foot) > SHORT * bones.size:
+    if np.linalg.norm(bones.enter[0] - foot) > LEAST_SHARE * bones.size:
         base.append(capsule(foot, bones.enter[0], 1.2 * radius, radius))
 
 
@@ -124,7 +124,7 @@ def _between(bones: Skeleton, axis: int, own: list[Solid]) -> None:
     if length < _NONE * bones.size:
         return
     if np.linalg.norm(np.cross(bones.directions[axis], bones.directions[axis + 1])) < _PARALLEL and length > first - last:
-        own.append(rod(start, end, bones.directions[axis], 0.9 * first, 0.9 * last, 1.1 * last))
+        own.append(strut(start, end, bones.directions[axis], 0.9 * first, 0.9 * last, 1.1 * last))
     else:
         own.append(capsule(start, end, 0.82 * min(first, 1.3 * last), 0.82 * last))
 

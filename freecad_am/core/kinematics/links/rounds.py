@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Links as they are looked at: solids of revolution about their rods, and balls about these."""
+"""Links as they are looked at: solids of revolution about their cylinders, and balls about these."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...collision.frustum import Frustum
-from ...geometry.rods import Rod
+from ...geometry.cylinders import Cylinder
 from ...types import Array
 
 NONE = -1  # no link
@@ -27,11 +27,11 @@ class Solid:
     radius: float
 
 
-def of_rod(rod: Rod, more: float) -> Solid:
+def of_cylinder(cylinder: Cylinder, more: float) -> Solid:
     """A rod, larger by so many mm on all sides."""
-    centre, axis = 0.5 * (rod.start + rod.end), (rod.end - rod.start) / rod.length
-    solid = Frustum(rod.radius + more, 0.0, -more, rod.length + more)
-    return Solid(solid, rod.start, axis, centre, float(np.hypot(0.5 * rod.length + more, rod.radius + more)))
+    centre, axis = 0.5 * (cylinder.start + cylinder.end), (cylinder.end - cylinder.start) / cylinder.length
+    solid = Frustum(cylinder.radius + more, 0.0, -more, cylinder.length + more)
+    return Solid(solid, cylinder.start, axis, centre, float(np.hypot(0.5 * cylinder.length + more, cylinder.radius + more)))
 
 
 def about_link(link: Sequence[Solid]) -> tuple[Array, float]:

@@ -36,8 +36,8 @@ def link_shapes(top: Node, joints: tuple[str, ...]) -> tuple[LinkShape | None, .
     links = (BASE, *joints)
     if not top.has("shapes"):
         return (None,) * len(links)
-    told = top["shapes"].only(*links)
-    return tuple(_shape(told[name]) if told.has(name) else None for name in links)
+    entries = top["shapes"].only(*links)
+    return tuple(_shape(entries[name]) if entries.has(name) else None for name in links)
 
 
 def _shape(node: Node) -> LinkShape:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plain solids as triangles with normals: turned about an axis, rods between two discs, boxes. For drawing alone."""
+"""Plain solids as triangles with normals: turned about an axis, cylinders between two discs, boxes. For drawing alone."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def capsule(start: ArrayLike, end: ArrayLike, first: float, last: float, tone: s
     return turned(np.concatenate([low, high]), begin, stop, tone)
 
 
-def rod(
+def strut(
     start: ArrayLike, end: ArrayLike, axis: ArrayLike, first: float, last: float, thick: float, tone: str = BODY
 ) -> Solid:
     """A plate `thick` mm along the unit `axis`, as wide as two discs of radii `first` and `last` mm at its ends."""

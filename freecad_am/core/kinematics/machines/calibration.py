@@ -26,7 +26,7 @@ LARGEST = 1  # MB
 JOINTS = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
 NUMBERS = ("x", "y", "z", "roll", "pitch", "yaw")
 # farther than this from the machine file it is that of another robot: mm and rad
-FAR_MM, FAR = 30.0, math.radians(3.0)
+FAR_MM, FAR_RAD = 30.0, math.radians(3.0)
 _NAMED = re.compile(r"(?P<machine>.+?)\s+calibration=(?P<file>.+)")
 _ENTRY = re.compile(r"(?P<indent> *)(?P<key>[^\s:#]+):(?:\s+(?P<value>.*))?")
 
@@ -60,9 +60,9 @@ def read(path: Path) -> tuple[Array, str]:
         text = content(path, LARGEST, "BAD_CALIBRATION", str(path)).decode("utf-8")
     except (OSError, ValueError) as error:
         raise InputError("BAD_CALIBRATION", str(path), f"cannot be read as a calibration: {error}") from None
-    told = _entries(text, path)
-    poses = [_pose(told, joint, path) for joint in JOINTS]
-    return np.stack(poses), told.get("kinematics.hash", "").strip("'\"")
+    entries = _entries(text, path)
+    poses = [_pose(entries, joint, path) for joint in JOINTS]
+    return np.stack(poses), entries.get("kinematics.hash", "").strip("'\"")
 
 
 def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
@@ -75,7 +75,7 @@ def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
     for joint, was, now in zip(JOINTS, chain.origins, origins, strict=True):
         off = float(np.linalg.norm(now[:3, 3] - was[:3, 3]))
         turned = math.acos(float(np.clip(0.5 * (np.trace(was[:3, :3].T @ now[:3, :3]) - 1.0), -1.0, 1.0)))
-        if off > FAR_MM or turned > FAR:
+        if off > FAR_MM or turned > FAR_RAD:
             raise InputError(
                 "BAD_CALIBRATION", f"{path}: kinematics.{joint}", f"it is {off:.3g} mm and {math.degrees(turned):.3g} deg "
                 "from where the machine file has this joint, which is more than a calibration corrects; name the machine "
@@ -107,19 +107,19 @@ def _entries(text: str, path: Path) -> dict[str, str]:
     return found
 
 
-def _pose(told: dict[str, str], joint: str, path: Path) -> Array:
+def _pose(entries: dict[str, str], joint: str, path: Path) -> Array:
     numbers = []
     for name in NUMBERS:
         key = f"kinematics.{joint}.{name}"
-        if key not in told:
+        if key not in entries:
             raise InputError("BAD_CALIBRATION", f"{path}: {key}", "this key is missing; give the file as ur_calibration "
                              "wrote it")
         try:
-            number = float(told[key])
+            number = float(entries[key])
         except ValueError:
             number = math.nan
         if not math.isfinite(number):
-            raise InputError("BAD_CALIBRATION", f"{path}: {key}", f"{_short(told[key])} is not a number")
+            raise InputError("BAD_CALIBRATION", f"{path}: {key}", f"{_short(entries[key])} is not a number")
         numbers.append(number)
     return frames.from_rpy(np.array(numbers[:3]) * 1000.0, np.array(numbers[3:]))
 

@@ -153,10 +153,10 @@ def text(draft: Draft) -> str:
 
 
 def _bare(chain: Chain, joints: tuple[str, ...], title: str, source: str) -> Draft:
-    endless = np.full(chain.axes, math.inf)
+    unlimited = np.full(chain.axes, math.inf)
     return Draft(
-        id="", title=title, chain=chain, joints=joints, lower=-endless, upper=endless, max_speed=endless,
-        max_acceleration=endless, max_jerk=endless, base=np.eye(4), shown=Shown((1,) * chain.axes, (0.0,) * chain.axes),
+        id="", title=title, chain=chain, joints=joints, lower=-unlimited, upper=unlimited, max_speed=unlimited,
+        max_acceleration=unlimited, max_jerk=unlimited, base=np.eye(4), shown=Shown((1,) * chain.axes, (0.0,) * chain.axes),
         shapes=(None,) * (chain.axes + 1), sources=(source,),
     )
 

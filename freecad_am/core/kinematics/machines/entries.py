@@ -72,8 +72,8 @@ def payload_of(top: Node) -> Payload:
     """What a machine carries, as far as its file tells it."""
     if not top.has("payload"):
         return Payload()
-    told = top["payload"].only("kg", "from_axis", "source")
-    return Payload(most_of(told, "kg", "a mass"), most_of(told, "from_axis", "a distance"))
+    payload = top["payload"].only("kg", "from_axis", "source")
+    return Payload(most_of(payload, "kg", "a mass"), most_of(payload, "from_axis", "a distance"))
 
 
 def recognised(chain: Chain) -> tuple[SerialArm | None, str]:

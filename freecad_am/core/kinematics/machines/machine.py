@@ -39,7 +39,7 @@ from .file import Node, read
 
 BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
-NOT_TOLD = "a URDF does not tell what the controller shows"
+UNKNOWN_REMARK = "a URDF does not tell what the controller shows"
 REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is not a machine file
 KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "payload",
@@ -277,8 +277,8 @@ def _calibrated(machine: Machine, path: Path) -> Machine:
                          "Robots do: leave it out")
     poses, robot = calibration.read(path)
     chain = calibration.calibrated(machine.chain, machine.base, poses, path)
-    told = f"{path.name} ({robot})" if robot else path.name
-    return replace(machine, chain=chain, arm=CalibratedArm(machine.arm, chain), sources=(*machine.sources, told))
+    text = f"{path.name} ({robot})" if robot else path.name
+    return replace(machine, chain=chain, arm=CalibratedArm(machine.arm, chain), sources=(*machine.sources, text))
 
 
 def of_description(source: str, found: Description, arm: SerialArm | None) -> Machine:
@@ -294,7 +294,7 @@ def of_description(source: str, found: Description, arm: SerialArm | None) -> Ma
     return Machine(
         id=found.name, title=found.name, axes=names, chain=found.chain, arm=arm, no_arm="",
         base=np.eye(4) if found.base is None else found.base, max_speed=found.max_speed, limit_sets={MAKER: limits},
-        controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=NOT_TOLD, posts=(),
+        controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=UNKNOWN_REMARK, posts=(),
         pulses_per_degree=(), speed_unit="", sources=(source,), remarks=found.notes,
         max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes, bodies=found.bodies,
     )

@@ -145,8 +145,8 @@ def _of_joints(chain: Chain, shown: Shown, values: Array, poses: Array, any_base
     ]
     if any_base:
         return found
-    told = {suspect.axes for suspect in found}
-    free = [_any_zero(axis, chain, shown, values, poses) for axis in range(chain.axes) if (axis,) not in told]
+    named = {suspect.axes for suspect in found}
+    free = [_any_zero(axis, chain, shown, values, poses) for axis in range(chain.axes) if (axis,) not in named]
     return found + [suspect for suspect in free if fits([suspect.left])]
 
 

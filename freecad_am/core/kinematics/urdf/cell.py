@@ -57,8 +57,8 @@ class UrdfCell:
         robot = self.machine()
         assert robot.base is not None  # named by _reference
         world, found = frames.inverse(self._stands(robot)), []
-        beside = ((self.track, robot.base, ROBOT), (self.positioner, self._tip(self.positioner), PART))
-        for way, tip, carried in beside:
+        external = ((self.track, robot.base, ROBOT), (self.positioner, self._tip(self.positioner), PART))
+        for way, tip, carried in external:
             if way:
                 meant = self._reference(way, tip)
                 found.append(External(str(meant), _six(world @ self._stands(meant)), carried))
@@ -144,8 +144,8 @@ def texts_of(meant: Reference) -> tuple[str, str]:
     if not is_there(meant.file):
         raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no URDF {meant.file}")
     found = UrdfCell(meant.file)
-    beside = f"{MORE} ".join(map(str, found.external()))
-    return str(found.machine()), beside or "none"
+    external = f"{MORE} ".join(map(str, found.external()))
+    return str(found.machine()), external or "none"
 
 
 def texts_of_machine(machine: object) -> tuple[str, str]:

@@ -57,8 +57,8 @@ def _fixed_to(urdf: Urdf, link: str, pose: Array, but: Sequence[str]) -> Iterato
 
 def _pieces(urdf: Urdf, link: str, pose: Array, notes: list[str]) -> Iterator[LinkShape | Solid]:
     element = urdf.links[link]
-    told = list(element.all("collision")) or list(element.all("visual"))
-    for one in told:
+    text = list(element.all("collision")) or list(element.all("visual"))
+    for one in text:
         solid = _solid(one)
         if solid is not None:
             yield solid.moved(pose @ one.pose())

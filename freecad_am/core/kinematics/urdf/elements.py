@@ -120,8 +120,8 @@ def read(path: Path) -> Element:
     except OSError as error:
         raise InputError(CODE, str(path), f"cannot be read: {error.strerror or error}") from None
     except xml.parsers.expat.ExpatError as error:
-        told = xml.parsers.expat.errors.messages[error.code]
-        raise InputError(CODE, f"{path.name}: line {error.lineno}", f"this is not XML: {told}") from None
+        text = xml.parsers.expat.errors.messages[error.code]
+        raise InputError(CODE, f"{path.name}: line {error.lineno}", f"this is not XML: {text}") from None
     return stack[0].children[0]
 
 

@@ -28,7 +28,7 @@ FIXED = "fixed"
 # names that ROS-Industrial gives them, and FANUC
 BASES, TIPS = ("base_link",), ("tool0", "flange", "fanuc_flange")
 ROBOT = 6  # joints of one
-STRAIGHT, NEAR = 1e-6, 1e-3  # of a tip: rad that its Z is off the axis, mm that it may lie behind
+STRAIGHT, BEHIND_MM = 1e-6, 1e-3  # of a tip: rad that its Z is off the axis, mm that it may lie behind
 DEGREE = math.radians(1.0)
 
 
@@ -124,7 +124,7 @@ class Urdf:
         axis = _axis(last)
         _, from_before = self._moved(last.one("parent").text("link"), last.pose() @ rest)
         ahead = from_before[:3, 2] @ from_before[:3, 3]
-        return _along(rest[:3, 2], axis) and float(ahead) > -NEAR
+        return _along(rest[:3, 2], axis) and float(ahead) > -BEHIND_MM
 
     def _moved(self, link: str, rest: Array) -> tuple[Element, Array]:
         """The joint that moves a link, and a pose (4, 4) in that link seen from the joint."""
@@ -257,7 +257,7 @@ def _turned_out(rest: Array, axis: Array, tip: str, notes: list[str]) -> Array:
     if _along(rest[:3, 2], axis) or not _along(rest[:3, 0], axis):
         return rest
     notes.append(f"the X of {tip} points out of the flange, not its Z: it is turned there, as tool0 stands to flange")
-    inwards = float(rest[:3, 0] @ rest[:3, 3]) < -NEAR
+    inwards = float(rest[:3, 0] @ rest[:3, 3]) < -BEHIND_MM
     return np.asarray(rest @ frames.pose(frames.about_y(-0.5 * math.pi if inwards else 0.5 * math.pi), (0.0, 0.0, 0.0)))
 
 

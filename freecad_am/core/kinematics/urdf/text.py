@@ -31,10 +31,10 @@ def _text_of(
     links = ["base_link", *(f"link_{number}" for number in range(1, chain.axes + 1))]
     for index, joint in enumerate(joints):
         sliding, unit = bool(chain.sliding[index]), 0.001 if chain.sliding[index] else 1.0
-        endless = not math.isfinite(lower[index]) or not math.isfinite(upper[index])
-        kind = "prismatic" if sliding else "continuous" if endless else "revolute"
+        continuous = not math.isfinite(lower[index]) or not math.isfinite(upper[index])
+        kind = "prismatic" if sliding else "continuous" if continuous else "revolute"
         speed = unit * float(max_speed[index]) if math.isfinite(max_speed[index]) else 0.0
-        span = "" if endless else f'lower="{unit * float(lower[index])!r}" upper="{unit * float(upper[index])!r}" '
+        span = "" if continuous else f'lower="{unit * float(lower[index])!r}" upper="{unit * float(upper[index])!r}" '
         lines += [
             f'  <link name="{links[index + 1]}"/>',
             f'  <joint name="{_escaped(joint)}" type="{kind}">',

@@ -15,15 +15,15 @@ from scipy.sparse.linalg import spsolve
 from ...geometry.angles import TURN
 from ...geometry.mesh.refined import Edges
 from ...geometry.mesh.solid import SolidMesh
-from ...geometry.surroundings import Body
+from ...geometry.obstacles import Body
 from ...issues import InputError
 from ...types import Array, Index
 from .guide_edges import Nodes
 
-PACE = 0.25  # of the size of a section, from one to the next
-NEAR = 1.5  # of the size of the last section; what reaches farther from the middle belongs to another part of the solid
+STEP_SHARE = 0.25  # of the size of a section, from one to the next
+REACH = 1.5  # of the size of the last section; what reaches farther from the middle belongs to another part of the solid
 ENDED = 0.6  # of the area of the last section; less is where the solid ends
-MOST = 2000  # sections
+MAX_SECTIONS = 2000  # sections
 ROUNDS = 6  # in which planes are set normal to the line through their middles
 SMOOTH = 2.0  # sizes of a section; the line does not swing within less
 MIRRORED = 16  # sections before the first and after the last one, as it were
@@ -131,7 +131,7 @@ def centre_line(bodies: Sequence[Body], start: Array, way: Array, depth: float) 
     found = _followed(solid, first, way)
     if len(found) < 3:
         raise _not_found(name, "the solid ends after one section")
-    nodes, areas = _settled(solid, found, _Plane(start, way))
+    nodes, areas = _smoothed(solid, found, _Plane(start, way))
     length = np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum()
     led = float(length * np.mean(areas)) / SolidMesh(bodies[0].vertices, bodies[0].triangles).volume
     if not LED < led < 2.0 - LED:
@@ -149,10 +149,10 @@ def _not_found(name: str, why: str) -> InputError:
 def _followed(solid: _Solid, first: Section, way: Array) -> list[Section]:
     """Sections from the first one on to where the solid ends."""
     found, normal = [first], way
-    pace = PACE * first.reach
-    while len(found) < MOST:
+    stride = STEP_SHARE * first.reach
+    while len(found) < MAX_SECTIONS:
         last = found[-1]
-        here: Section | None = solid.section(last.middle + pace * normal, normal, NEAR * last.reach)
+        here: Section | None = solid.section(last.middle + stride * normal, normal, REACH * last.reach)
         for _ in range(2):
             if here is None:
                 break
@@ -160,15 +160,15 @@ def _followed(solid: _Solid, first: Section, way: Array) -> list[Section]:
             turned = 2.0 * (chord @ normal) * chord - normal  # as along an arc
             ahead = chord + 0.5 * (turned - chord)
             ahead /= np.linalg.norm(ahead)
-            here = solid.section(here.middle, ahead, NEAR * last.reach)
-        if here is None or here.area < ENDED * last.area or (here.middle - last.middle) @ normal < 0.3 * pace:
+            here = solid.section(here.middle, ahead, REACH * last.reach)
+        if here is None or here.area < ENDED * last.area or (here.middle - last.middle) @ normal < 0.3 * stride:
             break
         found.append(here)
         normal = ahead
     return found
 
 
-def _settled(solid: _Solid, found: Sequence[Section], start: _Plane) -> tuple[Nodes, Array]:
+def _smoothed(solid: _Solid, found: Sequence[Section], start: _Plane) -> tuple[Nodes, Array]:
     """The smooth line through the middles of sections by planes normal to it, from the plane where the solid stands; and the
     areas of these sections."""
     middles = np.array([one.middle for one in found])
@@ -178,7 +178,7 @@ def _settled(solid: _Solid, found: Sequence[Section], start: _Plane) -> tuple[No
     for _ in range(ROUNDS):
         line, places = _line(middles, start, end)
         points, along = _at(line, places)
-        cuts = [solid.section(point, normal, NEAR * size) for point, normal in zip(points, along)]
+        cuts = [solid.section(point, normal, REACH * size) for point, normal in zip(points, along)]
         kept = [one for one in cuts if one is not None and one.area > ENDED * float(np.median(areas))]
         if len(kept) < 3:
             break
@@ -199,7 +199,7 @@ def _line(middles: Array, start: _Plane, end: _Plane | None) -> tuple[CubicSplin
     after = np.zeros((0, 3)) if end is None else end.mirrored(middles[-count:][::-1])
     whole = np.vstack([start.mirrored(middles[:count][::-1]), middles, after])
     third = diags([-1.0, 3.0, -3.0, 1.0], [0, 1, 2, 3], shape=(len(whole) - 3, len(whole)))
-    stiff = (SMOOTH / PACE / TURN) ** 6
+    stiff = (SMOOTH / STEP_SHARE / TURN) ** 6
     smooth = spsolve((identity(len(whole)) + stiff * third.T @ third).tocsc(), whole)
     places = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(smooth, axis=0), axis=1))]
     return CubicSpline(places, smooth), places[count : count + len(middles)]

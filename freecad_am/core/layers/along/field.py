@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.curves.guide import Guide
+from ...geometry.formatting import place
 from ...geometry.mesh.split_edges import split
+from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import Region
-from ...geometry.surroundings import Body
-from ...geometry.told import place
 from ...issues import ERROR, InfeasibleError, InputError, Issue
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
@@ -76,7 +76,7 @@ def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> list[
     heights: Array = height * (np.arange(number, dtype=np.float64) + strategy.share_of_cut)
     cuts = [
         AlongCuts(guide, points, triangles, far).loops(
-            planes.beside_faces(np.column_stack([points[:, :2], far]), triangles, heights, strategy)
+            planes.off_faces(np.column_stack([points[:, :2], far]), triangles, heights, strategy)
         ) for points, triangles, far in meshes
     ]
     below: list[list[Array]] = []

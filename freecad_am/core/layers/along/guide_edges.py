@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.told import place
+from ...geometry.formatting import place
 from ...issues import InputError
 from ...types import Array
 

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...geometry.curves.guide import guide
+from ...geometry.formatting import place
+from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
-from ...geometry.surroundings import Body
-from ...geometry.told import place
 from ...issues import NOTE, Issue
 from ...parameters.filled import SolidParameters
 from ...types import Array
@@ -34,7 +34,7 @@ def guided(
     nodes = None if edges is None else chained([Nodes(*edge) for edge in edges])
     if nodes is None:
         nodes = centre_line(bodies, standing.groups[0].base.frame[:3, 3], way, 0.5 * strategy.layer_height)
-        found = (*found, _told(nodes, label))
+        found = (*found, _note(nodes, label))
     elif (nodes.points[-1] - nodes.points[0]) @ way < -LEVEL * np.linalg.norm(nodes.points[-1] - nodes.points[0]):
         nodes = nodes.reversed()
     whole = guide(*nodes)
@@ -46,7 +46,7 @@ def guided(
     return SolidsOnHub(label, (Group(base, tuple(bodies)),), strategy.chord_error, (), found)
 
 
-def _told(nodes: Nodes, label: str) -> Issue:
+def _note(nodes: Nodes, label: str) -> Issue:
     length = float(np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum())
     turn = np.degrees(np.arccos(np.clip((nodes.tangents[1:] * nodes.tangents[:-1]).sum(axis=1), -1.0, 1.0)).sum())
     return Issue(

@@ -31,7 +31,7 @@ class Charted:
         """Mm of an edge after which it is looked at whether it bends."""
 
     @abstractmethod
-    def laid(self, place: Place) -> tuple[Array, Array]:
+    def in_part(self, place: Place) -> tuple[Array, Array]:
         """Where in the part (n, 3) beads lie at places of the chart, and the unit normals (n, 3) there."""
 
     @property
@@ -56,7 +56,7 @@ class Charted:
     def wrap(self, flat: Array) -> Wrapped:
         """Through the chart to where beads lie."""
         place = self.chart.find(flat)
-        points, normals = self.laid(place)
+        points, normals = self.in_part(place)
         first, second = self.axes(normals)
         x = self.chart.heading(place)
         return Wrapped(points, normals, -np.unwrap(np.arctan2((x * second).sum(axis=1), (x * first).sum(axis=1))))
@@ -79,7 +79,7 @@ class Charted:
         looks = np.maximum(np.ceil(length / self.look), 2.0).astype(np.intp)
         of = np.repeat(np.arange(len(edge)), looks + 1)
         share = (np.arange(len(of)) - np.repeat(np.cumsum(looks + 1) - looks - 1, looks + 1)) / looks[of]
-        points = self.laid(self.chart.find(flat[of] + share[:, None] * edge[of]))[0]
+        points = self.in_part(self.chart.find(flat[of] + share[:, None] * edge[of]))[0]
         inner = np.flatnonzero((of[1:-1] == of[:-2]) & (of[1:-1] == of[2:])) + 1
         bend = np.linalg.norm(points[inner - 1] - 2.0 * points[inner] + points[inner + 1], axis=1) / 8.0
         most = np.zeros(len(edge))

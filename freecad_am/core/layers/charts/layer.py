@@ -31,7 +31,7 @@ class ChartLayer(Charted):
         """It bends as ways through the part lead round corners."""
         return True
 
-    def laid(self, place: Place) -> tuple[Array, Array]:
+    def in_part(self, place: Place) -> tuple[Array, Array]:
         """Through the chart onto the cut, and along the way through the part to where beads lie."""
         cut = self.chart.at(place)
         return self.field.onto(cut, self.distance), self.field.directions(cut)

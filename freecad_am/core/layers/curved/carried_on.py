@@ -51,11 +51,11 @@ def gradients(linked: Links, values: Array, step: float) -> Array:
     padded = np.append(values, np.nan)
     found = np.zeros((len(values), 3))
     for axis in range(3):
-        behind = values - padded[linked.beside[2 * axis]]
-        ahead = padded[linked.beside[2 * axis + 1]] - values
+        behind = values - padded[linked.neighbours[2 * axis]]
+        ahead = padded[linked.neighbours[2 * axis + 1]] - values
         found[:, axis] = _mean(np.stack([behind, ahead])) / step
         lacking = np.flatnonzero(np.isnan(found[:, axis]))
-        around = np.append(found[:, axis], np.nan)[linked.beside[:, lacking]]
+        around = np.append(found[:, axis], np.nan)[linked.neighbours[:, lacking]]
         found[lacking, axis] = np.nan_to_num(_mean(around))
     return found
 

@@ -14,7 +14,7 @@ import numpy as np
 from ...types import Array, Index, Mask
 from .voxels import Voxels
 
-SETTLED = 1e-9  # of a step; a node that comes no nearer than that is done
+CONVERGED = 1e-9  # of a step; a node that comes no nearer than that is done
 BAND = 0.5  # of a step; nodes whose distances differ by less depend on one another
 ROUNDS = 3  # in a band
 
@@ -24,11 +24,11 @@ class Links(NamedTuple):
     along y, along z; n where there is none inside."""
 
     nodes: Index
-    beside: Index
+    neighbours: Index
 
     def beyond(self, side: int, nodes: Index) -> Index:
         """The second neighbours (k,) of nodes (k,) on one of the six sides; n where there is none."""
-        column = np.append(self.beside[side], len(self.nodes))
+        column = np.append(self.neighbours[side], len(self.nodes))
         found: Index = column[column[nodes]]
         return found
 
@@ -49,8 +49,8 @@ def arrival(linked: Links, step: float, seeds: Index, values: Array) -> Array:
     fixed[seeds] = fixed[-1] = True
     active = _around(linked, seeds, fixed)
     while len(active):
-        found = _godunov(u[linked.beside[0::2, active]], u[linked.beside[1::2, active]], step)
-        better = found < u[active] - SETTLED * step
+        found = _godunov(u[linked.neighbours[0::2, active]], u[linked.neighbours[1::2, active]], step)
+        better = found < u[active] - CONVERGED * step
         u[active[better]] = found[better]
         active = _around(linked, active[better], fixed)
     return _sharpened(linked, step, u, fixed)[:-1]
@@ -59,7 +59,7 @@ def arrival(linked: Links, step: float, seeds: Index, values: Array) -> Array:
 def _around(linked: Links, nodes: Index, fixed: Mask) -> Index:
     """The nodes beside some, without those that are fixed."""
     marked = np.zeros(len(fixed), dtype=bool)
-    marked[linked.beside[:, nodes]] = True
+    marked[linked.neighbours[:, nodes]] = True
     found: Index = np.flatnonzero(marked & ~fixed)
     return found
 
@@ -108,7 +108,7 @@ def _upwind(linked: Links, step: float, first: Array, sharp: Array, nodes: Index
     is no farther from the seeds. `first` decides which neighbour is upwind."""
     values, steps = np.full((3, len(nodes)), np.inf), np.full((3, len(nodes)), step)
     for axis in range(3):
-        sides = linked.beside[2 * axis : 2 * axis + 2, nodes]
+        sides = linked.neighbours[2 * axis : 2 * axis + 2, nodes]
         lower = np.argmin(first[sides], axis=0)
         near = sides[lower, np.arange(len(nodes))]
         far = np.where(lower == 0, linked.beyond(2 * axis, nodes), linked.beyond(2 * axis + 1, nodes))

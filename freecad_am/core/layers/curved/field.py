@@ -9,8 +9,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...geometry.mesh.solid import Search, SolidMesh
+from ...geometry.obstacles import Body
 from ...geometry.on_hub import Group
-from ...geometry.surroundings import Body
 from ...issues import NOTE, WARNING, InputError, Issue
 from ...parameters.filled import SolidParameters
 from ...types import Array
@@ -20,11 +20,11 @@ from ..surface import Slice
 from .geodesic import GeodesicField, Piece, field
 
 FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most
-MOST = 2_000_000  # nodes, where that keeps below COARSE
+MAX_NODES = 2_000_000  # nodes, where that keeps below COARSE
 STANDING = 0.05  # layer heights from the plane or the substrate; facets so near to it stand there
 LOST = 0.002  # share of a part that no way need lead to: rounding at corners
 FACETS = 1.5  # chord errors between triangles of a face, however made
-TOLD = 0.05  # distortion of a piece that is told
+REPORTED_DISTORTION = 0.05  # distortion of a piece that is told
 
 
 def slices(group: Group, ground: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
@@ -41,7 +41,7 @@ def slices(group: Group, ground: Sequence[Body], strategy: SolidParameters) -> I
     for layer in range(max(number, 0)):
         for piece in found.pieces((layer + cut) * height):
             issues: tuple[Issue, ...] = ()
-            if piece.stretch > max(worst, TOLD):
+            if piece.stretch > max(worst, REPORTED_DISTORTION):
                 worst = piece.stretch
                 issues = (_stretched(piece, layer),)
             regions = tuple(region.simple(BORDER * found.grid.step) for region in piece.regions)
@@ -100,7 +100,7 @@ def _field(
 def _step(volume: float, name: str, strategy: SolidParameters) -> float:
     """Mm from node to node. InputError TOO_FINE."""
     height = strategy.layer_height
-    step = max(FINE * height, float(np.cbrt(volume / MOST)))
+    step = max(FINE * height, float(np.cbrt(volume / MAX_NODES)))
     if step > COARSE * height:
         raise InputError(
             "TOO_FINE", "strategy.layer_height", f"{height:g} mm is too fine for curved layers of {name}, "
@@ -133,6 +133,7 @@ def _to(triangles: Array, points: Array, near: float) -> Array:
 def _stretched(piece: Piece, layer: int) -> Issue:
     share = 100.0 * piece.stretch
     return Issue(
-        NOTE if piece.stretch <= 3.0 * TOLD else WARNING, "DISTORTED", "a curved layer cannot be laid flat without "
+        NOTE if piece.stretch <= 3.0 * REPORTED_DISTORTION else WARNING, "DISTORTED",
+        "a curved layer cannot be laid flat without "
         f"distortion: beads are up to {share:.2g} % nearer together or farther apart than the bead spacing", layer,
     )

@@ -24,7 +24,7 @@ from .eikonal import Links, arrival, links
 from .level import Cubes
 from .voxels import Voxels, voxels
 
-NEAR = 2.5  # steps; nodes so near to the start know their distance from its triangles
+EXACT_STEPS = 2.5  # steps; nodes so near to the start know their distance from its triangles
 DEEP = 3  # nodes; farther inside nothing asks how far the surface is
 STRETCH = 0.15  # most that a piece is stretched or squeezed; what would be more is laid flat in two
 HALVINGS = 6
@@ -60,7 +60,7 @@ class GeodesicField:
         inside = _filled(self.depth.sampled(mesh.vertices)[0], -self.grid.step)
         inside[np.unique(mesh.border_edges)] = -self.grid.step
         for part, own in _connected(mesh, inside > 0.0):
-            yield from self._laid(part, inside[own], HALVINGS)
+            yield from self._flattened(part, inside[own], HALVINGS)
 
     def onto(self, points: Array, distance: float) -> Array:
         """Points (n, 3) moved along the way through the solid to where u is the distance."""
@@ -77,7 +77,7 @@ class GeodesicField:
         unit: Array = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-300)
         return unit
 
-    def _laid(self, mesh: Mesh, inside: Array, halvings: int) -> Iterator[Piece]:
+    def _flattened(self, mesh: Mesh, inside: Array, halvings: int) -> Iterator[Piece]:
         flat = flattened(mesh)
         within = np.where((inside[mesh.faces] > 0.0).any(axis=1), mesh.areas, 0.0)
         stretch = stretch_of(flat, within)
@@ -92,7 +92,7 @@ class GeodesicField:
                 return
         for half in _halves(mesh, inside, MARGIN * self.grid.step):
             for part, own in _connected(half.mesh, half.inside > 0.0):
-                yield from self._laid(part, half.inside[own], halvings - 1)
+                yield from self._flattened(part, half.inside[own], halvings - 1)
 
 
 class _Half(NamedTuple):
@@ -127,12 +127,12 @@ def _seeds(start: Array, places: Array, step: float) -> tuple[Index, Array]:
     """Nodes near the start and their distances from it."""
     if not len(start):
         return np.zeros(0, dtype=np.intp), np.zeros(0)
-    low, high = start.min(axis=(0, 1)) - NEAR * step, start.max(axis=(0, 1)) + NEAR * step
+    low, high = start.min(axis=(0, 1)) - EXACT_STEPS * step, start.max(axis=(0, 1)) + EXACT_STEPS * step
     near = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
     if not len(near):
         return near, np.zeros(0)
     away = _away(start, places[near], step)
-    close = np.abs(away) < NEAR * step
+    close = np.abs(away) < EXACT_STEPS * step
     return near[close], away[close]
 
 
@@ -140,7 +140,7 @@ def _away(start: Array, places: Array, step: float) -> Array:
     """How far (n,) mm places are from the start; near it, less than 0 on the side that is not the solid's."""
     chosen = SolidMesh(start.reshape(-1, 3), np.arange(3 * len(start)).reshape(-1, 3))
     away = -Search(chosen, 2.0 * step).signed(places)[0]
-    return np.where(np.abs(away) < NEAR * step, away, np.abs(away))
+    return np.where(np.abs(away) < EXACT_STEPS * step, away, np.abs(away))
 
 
 def _outside(searches: Sequence[Search], points: Array) -> Array:
@@ -183,7 +183,7 @@ def _smoothed(linked: Links, way: Array) -> Array:
     for _ in range(2):
         unit = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-300)
         padded = np.vstack([unit, np.zeros((1, 3))])
-        way = 2.0 * unit + padded[linked.beside].sum(axis=0)
+        way = 2.0 * unit + padded[linked.neighbours].sum(axis=0)
     smoothed: Array = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-300)
     return smoothed
 

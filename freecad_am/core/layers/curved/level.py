@@ -11,7 +11,7 @@ import numpy as np
 from ...geometry.mesh.triangle_mesh import Mesh
 from ...types import Array, Index, Mask
 
-NEAR = 0.08  # share of an edge; a surface that crosses it nearer to an end crosses it there: no triangle is all sliver
+AT_END = 0.08  # share of an edge; a surface that crosses it nearer to an end crosses it there: no triangle is all sliver
 
 
 def _tetrahedra() -> Index:
@@ -63,16 +63,16 @@ class Cubes:
 
     def _crossed(self, edges: Index, value: float) -> Array:
         a, b = self.field[edges[:, 0]], self.field[edges[:, 1]]
-        share = np.clip((value - a) / np.where(b == a, 1.0, b - a), NEAR, 1.0 - NEAR)[:, None]
+        share = np.clip((value - a) / np.where(b == a, 1.0, b - a), AT_END, 1.0 - AT_END)[:, None]
         one, other = (np.stack(np.unravel_index(edges[:, k], self.shape), axis=1) for k in (0, 1))
         at: Array = self.origin + self.step * (one + share * (other - one))
         return at
 
-    def _oriented(self, vertices: Array, faces: Index, beside: Index, sign: Array) -> Mesh:
+    def _oriented(self, vertices: Array, faces: Index, adjacent: Index, sign: Array) -> Mesh:
         """beside: a node (n,) of each triangle's tetrahedron, on the side of the higher values where sign is 1. The slope of
         the field does not tell the side where it has a ridge."""
         a, b, c = (vertices[faces[:, k]] for k in range(3))
-        node = self.origin + self.step * np.stack(np.unravel_index(beside, self.shape), axis=1)
+        node = self.origin + self.step * np.stack(np.unravel_index(adjacent, self.shape), axis=1)
         back = sign * (np.cross(b - a, c - a) * (node - a)).sum(axis=1) < 0.0
         faces[back] = faces[back][:, ::-1]
         return Mesh(vertices, faces)

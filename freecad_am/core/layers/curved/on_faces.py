@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.curves.outline import estimated
+from ...geometry.formatting import place
 from ...geometry.mesh.triangle_mesh import Mesh
 from ...geometry.regions.region import Region, regions
-from ...geometry.told import place
 from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...issues import InputError
@@ -50,7 +50,7 @@ class FaceLayer(Charted):
         """A usual edge of the mesh."""
         return self.chart.mesh.typical_edge
 
-    def laid(self, place: Place) -> tuple[Array, Array]:
+    def in_part(self, place: Place) -> tuple[Array, Array]:
         """The exact places above the faces, and their normals."""
         near = np.einsum("nk,nkc->nc", place.share, self.feet[self.chart.mesh.faces[place.triangle]])
         feet, normals = self.sheet.project(near)
@@ -97,7 +97,7 @@ def _along_x(layer: FaceLayer) -> FaceLayer:
         centres = flat[chart.mesh.faces].mean(axis=1)
         middle = centres[int(np.argmin(np.hypot(*centres.T)))]
         reach = max(PROBE * float(np.ptp(flat[:, 0])), layer.look)
-        points, normals = layer.laid(chart.find(middle + reach * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])))
+        points, normals = layer.in_part(chart.find(middle + reach * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])))
         first, second = axes(normals[2:])
         way = points[1] - points[0]
         angle = np.arctan2(second[0] @ way, first[0] @ way)

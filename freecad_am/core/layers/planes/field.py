@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.formatting import place
+from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base
-from ...geometry.surroundings import Body
-from ...geometry.told import place
 from ...issues import InputError
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
@@ -55,7 +55,7 @@ def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Itera
         )
     heights: Array = strategy.layer_height * (np.arange(number, dtype=np.float64) + strategy.share_of_cut)
     cuts = [
-        PlaneCuts(points, body.triangles).loops(beside_faces(points, body.triangles, heights, strategy))
+        PlaneCuts(points, body.triangles).loops(off_faces(points, body.triangles, heights, strategy))
         for points, body in zip(local, bodies, strict=True)
     ]
     below: list[list[Array]] = []
@@ -77,7 +77,7 @@ def _highest(base: Base, local: Sequence[Array]) -> str:
     return place(base.placed(points[points[:, 2].argmax()][None])[0])
 
 
-def beside_faces(vertices: Array, triangles: NDArray[np.int64], heights: Array, strategy: SolidParameters) -> Array:
+def off_faces(vertices: Array, triangles: NDArray[np.int64], heights: Array, strategy: SolidParameters) -> Array:
     """The heights, those moved up by a hair, or down where the top of a layer is cut, in whose plane facets lie: what a cut
     through such facets is, rounding decides."""
     aside = max(ASIDE * strategy.chord_error, ROUNDING * float(np.abs(vertices).max(initial=0.0)))

@@ -40,8 +40,8 @@ def slabs(group: Group, layer_height: float, points: Array, volumes: Array) -> S
     planes = layer_height * np.arange(count + 1)
     part = sum((np.diff(below(group.base.inside(body.vertices), body.triangles, planes)) for body in group.bodies),
                np.zeros(count))
-    laid: Array = np.bincount(layer[volumes > 0.0], volumes[volumes > 0.0], minlength=count).astype(np.float64)
-    return Slabs(part, laid)
+    deposited: Array = np.bincount(layer[volumes > 0.0], volumes[volumes > 0.0], minlength=count).astype(np.float64)
+    return Slabs(part, deposited)
 
 
 def below(vertices: Array, triangles: Index, heights: Sequence[float] | Array) -> Array:

@@ -11,21 +11,21 @@ from numpy.typing import NDArray
 
 from ...collision.inside import inside_of
 from ...geometry.columns import columns
+from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ...geometry.plane import Plane
-from ...geometry.surroundings import Body
 from ...issues import NOTE, Issue
 from ...parameters.filled import SolidParameters
 from ...types import Array
 
 AXES = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64)
 LARGEST = 12  # flat faces that the part may be laid on, beside the axes
-ALIKE = np.cos(np.radians(2.0))
+PARALLEL = np.cos(np.radians(2.0))
 STANDING = 0.5  # layer heights above the lowest place; what is no higher stands there
 CLOSE = 0.01  # of the area of the part; areas nearer together are the same
 LEVEL = 1e-3  # of a height; heights nearer together are the same, whatever chords a mesh has
 PLACES = 20_000  # on all facets of a part of several bodies, at which it is looked whether others cover them, about
-MOST = 64  # parts of an edge of a facet between such places
+MAX_PIECES = 64  # parts of an edge of a facet between such places
 
 
 class Stacked(NamedTuple):
@@ -42,7 +42,7 @@ def stacked(bodies: Sequence[Body], strategy: SolidParameters, label: str, issue
     asked = strategy.stacking()
     if asked is None:
         found = best(bodies, strategy)
-        way, issues = found[0].way, (*issues, _told(found, label, np.degrees(strategy.max_overhang)))
+        way, issues = found[0].way, (*issues, _note(found, label, np.degrees(strategy.max_overhang)))
     else:
         way = np.array(asked) / np.linalg.norm(asked)
     turned = upright(np.zeros(3), way)
@@ -89,7 +89,7 @@ def _free(
     bodies: Sequence[Body], own: NDArray[np.intp], corners: Array, normals: Array, areas: Array, slit: float
 ) -> Array:
     """The share (m,) of each triangle, of the body `own` (m,), a slit (mm) outside of which no other body is."""
-    parts = np.clip(np.ceil(np.sqrt(PLACES * areas / areas.sum())), 1, MOST).astype(np.intp)
+    parts = np.clip(np.ceil(np.sqrt(PLACES * areas / areas.sum())), 1, MAX_PIECES).astype(np.intp)
     covered = np.zeros(len(areas))
     insides = [inside_of(body) for body in bodies]
     for count in np.unique(parts):
@@ -126,7 +126,7 @@ def _candidates(normals: Array, areas: Array) -> list[Array]:
     # of faces as large as one another the first comes by its direction, of which a mesh has no more than some digits
     for k in np.lexsort(np.vstack([columns(faces.round(2)), -shares]))[: 4 * LARGEST]:
         way = -faces[k] / np.linalg.norm(faces[k])
-        if size[k] > CLOSE * areas.sum() and max(float(way @ other) for other in ways) < ALIKE:
+        if size[k] > CLOSE * areas.sum() and max(float(way @ other) for other in ways) < PARALLEL:
             ways.append(way)
         if len(ways) >= len(AXES) + LARGEST:
             break
@@ -142,7 +142,7 @@ def judged(way: Array, corners: Array, normals: Array, areas: Array, steep: floa
     return Stacked(way, float(areas[over].sum()), high - low)
 
 
-def _told(found: Sequence[Stacked], label: str, lean: float) -> Issue:
+def _note(found: Sequence[Stacked], label: str, lean: float) -> Issue:
     chosen = found[0]
     upright_one = next(one for one in found if one.way is AXES[0] or np.array_equal(one.way, AXES[0]))
     other = "" if chosen is upright_one else (

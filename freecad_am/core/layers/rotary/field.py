@@ -9,11 +9,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...geometry.developable import Developable
+from ...geometry.formatting import place
+from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, middle_azimuth
 from ...geometry.regions.region import Region, regions
 from ...geometry.regions.strip import Strip, strips
-from ...geometry.surroundings import Body
-from ...geometry.told import place
 from ...issues import InputError
 from ...parameters.filled import DevelopableParameters
 from ...slicing.solids.equidistant import Facets, Loop
@@ -50,13 +50,13 @@ def slices(base: Base, surface: Developable, body: Body, strategy: DevelopablePa
             covered = () if thick > min(layer, layers - 1 - layer) else None
             one = Slice(layer, RoundLayer(at), _all_round(near, at, strategy), (), covered)
         else:
-            beside = _beside(surface, below, ahead, height, thick)
-            flat = opened(at, [loop for _, some in [*near, *beside] for loop in some], centre, where)
+            adjacent = _adjacent(surface, below, ahead, height, thick)
+            flat = opened(at, [loop for _, some in [*near, *adjacent] for loop in some], centre, where)
             loops_flat = iter(flat.loops)
             lots = [(distance, [next(loops_flat) for _ in some]) for distance, some in near]
             one = Slice(layer, RoundLayer(at, flat.middle), *grown(lots, strategy.margin, error, layer))
             if thick:
-                there = [regions([next(loops_flat) for _ in some]) for _, some in beside]
+                there = [regions([next(loops_flat) for _ in some]) for _, some in adjacent]
                 one = one._replace(covered=under_and_over([
                     [part for one in found for part in one.grown(strategy.margin, ARCS * error)] for found in there
                 ]))
@@ -64,7 +64,7 @@ def slices(base: Base, surface: Developable, body: Body, strategy: DevelopablePa
             yield one
 
 
-def _beside(
+def _adjacent(
     base: Developable, below: Sequence[list[Loop]], ahead: Sequence[list[Loop]], height: float, thick: int
 ) -> list[tuple[int, list[Loop]]]:
     """The loops of so many layers under and over the last one below, moved to it, each lot with its number from there: none

@@ -24,7 +24,7 @@ from .kept import ArmKept, clearance_issue
 
 Place = tuple[int, int]
 
-FEW, TURNS = 4, 72  # candidates of a bead looked at before there is a map, and rotations of that
+FIRST_LOOK, TURNS = 4, 72  # candidates of a bead looked at before there is a map, and rotations of that
 ENDS = 3  # points of a bead looked at before all of them: where no rotation serves one of these, none serves the bead
 POINTS_PER_BEAD = 24  # and turn, at which the links are looked at
 SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way from where the local search began to what it found
@@ -37,8 +37,8 @@ def without_touching(task: Task, kept: ArmKept, points: Points, places: Sequence
     is clear the one that was best has next to none."""
     margin, each = found.margin.copy(), np.arange(points.beads)
     left = np.ones(points.beads, dtype=bool)
-    for attempt in range(3 * FEW):
-        if attempt == FEW:
+    for attempt in range(3 * FIRST_LOOK):
+        if attempt == FIRST_LOOK:
             margin[_mapped(task, kept, points, places, found.coefficients, left)] = UNREACHABLE
         best = Found(found.coefficients, found.objective, margin).best()
         left &= margin[best, each] >= 0.0

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...collision.bead_ends import LINK_GRAIN, Beads
-from ...geometry.rods import Rod
-from ...geometry.surroundings import Body
+from ...geometry.cylinders import Cylinder
+from ...geometry.obstacles import Body
 from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...kinematics.links.contact import BASE, PART, TORCH, ArmContact, Touches
@@ -21,7 +21,7 @@ from ..points import Points
 from ..rapids.clearance import evenly
 
 Place = tuple[int, int]
-Rods = Sequence[Sequence[Rod]]
+Cylinders = Sequence[Sequence[Cylinder]]
 
 CODE = "ARM_CLEARANCE"
 STEP, SLIDE = float(np.radians(2.0)), 10.0  # of the joint that moves most on rapids, rad and mm, between two looks
@@ -49,10 +49,10 @@ class ArmKept:
         return self.before.get(place, self.before[place[0], 0])
 
 
-def of_job(toolpath: Toolpath, cell: Cell, rods: Rods) -> ArmKept | None:
-    """What keeps the links, `rods` of each, clear in a job; None where that is not asked for, or no link known."""
+def of_job(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) -> ArmKept | None:
+    """What keeps the links, `cylinders` of each, clear in a job; None where that is not asked for, or no link known."""
     beads = [bead for _, _, bead in toolpath]
-    contact = contact_of(beads, cell, rods, toolpath.surroundings, toolpath.bead_width or toolpath.layer_height,
+    contact = contact_of(beads, cell, cylinders, toolpath.surroundings, toolpath.bead_width or toolpath.layer_height,
                          toolpath.layer_height)
     if contact is None:
         return None
@@ -61,23 +61,23 @@ def of_job(toolpath: Toolpath, cell: Cell, rods: Rods) -> ArmKept | None:
 
 
 def contact_of(
-    beads: Sequence[Bead], cell: Cell, rods: Rods, bodies: Sequence[Body], width: float, height: float
+    beads: Sequence[Bead], cell: Cell, cylinders: Cylinders, bodies: Sequence[Body], width: float, height: float
 ) -> ArmContact | None:
     """The links against bodies and all beads; width, height: mm, of those that do not tell theirs."""
-    if cell.arm_clearance is None or not rods:
+    if cell.arm_clearance is None or not cylinders:
         return None
-    laid = Beads.of(beads, width, height).solid(LINK_GRAIN)
-    return ArmContact(cell, rods, bodies, laid, cell.arm_clearance)
+    deposited = Beads.of(beads, width, height).solid(LINK_GRAIN)
+    return ArmContact(cell, cylinders, bodies, deposited, cell.arm_clearance)
 
 
-def on_moves(contact: ArmContact, start: Array, end: Array, laid: Index) -> tuple[Index, Touches]:
+def on_moves(contact: ArmContact, start: Array, end: Array, deposited: Index) -> tuple[Index, Touches]:
     """What links come too near on moves straight in the joints (k, axes), where so many points (k,) are laid: the move (l,)
     of each look, and what it found. Of moves whose joints are NaN nothing."""
     steps = np.where(contact.cell.machine.chain.sliding, SLIDE, STEP)
     far = np.nan_to_num(np.abs(end - start) / steps).max(axis=1, initial=0.0)
     move, share = evenly(1 + np.ceil(far).astype(np.intp))
     joints = start[move] + share[:, None] * (end - start)[move]
-    return move, contact.touches(joints, laid[move])
+    return move, contact.touches(joints, deposited[move])
 
 
 def clearance_issue(
@@ -85,7 +85,7 @@ def clearance_issue(
 ) -> Issue:
     """That a link, as `ArmContact.links` calls it, comes too near to something at a bead, or on the rapid way to it."""
     where = " on the rapid way to the bead" if on_way else ""
-    stands = what in [one.name for one in cell.beside]
+    stands = what in [one.name for one in cell.external_links]
     if link == NOZZLE:
         moved = "lift the part over it by cell.platform, or move it in cell.external" if stands else (
             "move it in cell.obstacles, the part or cell.deposition_point")

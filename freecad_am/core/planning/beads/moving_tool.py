@@ -25,7 +25,7 @@ from ..turns import configurations as following
 Rows = NDArray[np.int64]
 
 
-def kept_straight(motion: Motion, cell: Cell, chord_error: float, beads: Sequence[Bead]) -> Motion:
+def refined_to_chord_error(motion: Motion, cell: Cell, chord_error: float, beads: Sequence[Bead]) -> Motion:
     """The motion with as many points added to its beads as it takes to stay within the chord error (mm) of them.
 
     beads: all those of the motion, in its order. For the part on the robot. Added points lie on the curves of the beads,
@@ -58,7 +58,7 @@ def kept_straight(motion: Motion, cell: Cell, chord_error: float, beads: Sequenc
 
 
 def origins(motion: Motion, cell: Cell, chord_error: float) -> Rows:
-    """(m,) the row of the motion that each row of `kept_straight` is, or that it is on the way to."""
+    """(m,) the row of the motion that each row of `refined_to_chord_error` is, or that it is on the way to."""
     return np.repeat(np.arange(len(motion)), _pieces(motion, cell, chord_error))
 
 

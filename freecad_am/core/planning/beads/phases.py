@@ -24,7 +24,7 @@ from ..joint_path import BeadPath
 Rows = NDArray[np.intp]
 
 STEPS = 4  # of which each leaves a small share of what was off before
-NEAR = 1e-3  # mm; a point so near to where a phase ends is where it ends
+END_MM = 1e-3  # mm; a point so near to where a phase ends is where it ends
 CODE = "PHASE_LENGTH"
 _UNIT = ("build", "tool", "tangents")
 Condition = Callable[[Array, Array], Array]
@@ -38,14 +38,14 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition | None = None) ->
         return path, []
     first, _, last, _ = path.bead.ends
     along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
-    if first + last > along[-1] + NEAR:
+    if first + last > along[-1] + END_MM:
         return path, [Issue(
             ERROR, CODE, f"start and end take {first + last:.4g} mm of this bead of {along[-1]:.4g} mm; make process.start "
             "and process.end shorter, or those of its class", path.layer, path.index,
         )]
     borders = np.array([at for at, length in ((first, first), (along[-1] - last, last)) if length > 0.0])
-    borders = borders[np.abs(along[:, None] - borders).min(axis=0) > NEAR]
-    borders = borders[np.r_[True, np.diff(borders) > NEAR]] if len(borders) else borders
+    borders = borders[np.abs(along[:, None] - borders).min(axis=0) > END_MM]
+    borders = borders[np.r_[True, np.diff(borders) > END_MM]] if len(borders) else borders
     if len(borders):
         path = _with_points(cell, path, along, borders, condition_at)
         along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]

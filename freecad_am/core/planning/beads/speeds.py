@@ -112,7 +112,7 @@ def _slowed(path: BeadPath, ratio: Array, layer_height: float, law: SpeedLaw | N
     if not runs:
         return path, []
     speeds = np.r_[bead.speed[:1], speed]
-    slower = dataclasses.replace(bead, speed=speeds) if law is None else law.laid(bead, speeds)
+    slower = dataclasses.replace(bead, speed=speeds) if law is None else law.applied(bead, speeds)
     path = dataclasses.replace(path, bead=slower)
     wider, higher = _gains(bead, slower)
     return path, [

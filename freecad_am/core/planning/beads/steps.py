@@ -22,7 +22,7 @@ OFF = 0.4  # of the chord error, that points left out may lie off
 REACH = 2000.0  # mm; so far off an axis, at most, is what it turns
 
 
-def told(motion: Motion, controller: Controller, chord_error: float, blend: float) -> tuple[Motion, Rows]:
+def programmed(motion: Motion, controller: Controller, chord_error: float, blend: float) -> tuple[Motion, Rows]:
     """The motion that programs of a controller tell, and which rows (m,) of all these are. blend: percent."""
     step, blended = controller.least_step, controller.least_blend
     if not step:
@@ -80,9 +80,9 @@ def _with_needed(motion: Motion, kept: Mask, off: float) -> Mask:
         after = np.searchsorted(rows, gone)
         start, end = rows[after - 1], rows[after]
         way = motion.position[end] - motion.position[start]
-        beside = motion.position[gone] - motion.position[start]
-        share = np.einsum("nk,nk->n", beside, way) / np.maximum(np.einsum("nk,nk->n", way, way), 1e-300)
-        away = np.linalg.norm(beside - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1)
+        offset = motion.position[gone] - motion.position[start]
+        share = np.einsum("nk,nk->n", offset, way) / np.maximum(np.einsum("nk,nk->n", way, way), 1e-300)
+        away = np.linalg.norm(offset - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1)
         turn = np.linalg.norm(motion.joints[end] - motion.joints[start], axis=1)
         away = np.maximum(away, 0.125 * REACH * turn * turn)
         far = away > off

@@ -52,7 +52,7 @@ class Optimality:
 
 
 def summed(
-    task: Task, paths: Sequence[BeadPath], told: Callable[[float], None] = lambda share: None
+    task: Task, paths: Sequence[BeadPath], report: Callable[[float], None] = lambda share: None
 ) -> tuple[dict[str, object] | None, list[Issue]]:
     """Objective, bound and gap of a joint path as its report has them, with the bead whose own gap is the largest; none of
     arms that cannot be bounded, and a note that says so."""
@@ -61,7 +61,7 @@ def summed(
             NOTE, "NO_BOUND", "joints.certificate: several solutions of this arm bear the same configuration, so no lower "
             "bound is known; leave it out",
         )]
-    found = certified(task, paths, told)
+    found = certified(task, paths, report)
     worst = paths[int(found.gaps.argmax())]
     total, bound = float(found.objective.sum()), float(found.bound.sum())
     return {
@@ -71,7 +71,7 @@ def summed(
 
 
 def certified(
-    task: Task, paths: Sequence[BeadPath], told: Callable[[float], None] = lambda share: None
+    task: Task, paths: Sequence[BeadPath], report: Callable[[float], None] = lambda share: None
 ) -> Optimality:
     """The optimality of feasible paths, bead by bead, for the objective of the task; told(share) may raise to cancel.
 
@@ -81,7 +81,7 @@ def certified(
     """
     objective, bound = np.zeros(len(paths)), np.zeros(len(paths))
     for number, path in enumerate(paths):
-        told(number / len(paths))
+        report(number / len(paths))
         points = gather([path.bead], task.cell)
         if task.parameters.objective != "displacement":
             objective[number] = path.objective

@@ -89,7 +89,7 @@ def _goes_on(index: Index, phi: Array, half: float) -> NDArray[np.bool_]:
 def _within(task: Task, joints: Array, reach: Array) -> NDArray[np.bool_]:
     """Whether joints (n, axes), moved by up to `reach` and by whole turns, can be within the limits of each axis."""
     limits = task.cell.limits
-    beyond = np.abs(_short(joints - task.middle)) - np.where(task.endless, np.inf, 0.5 * (limits.upper - limits.lower))
+    beyond = np.abs(_short(joints - task.middle)) - np.where(task.continuous, np.inf, 0.5 * (limits.upper - limits.lower))
     return np.asarray((beyond <= reach).all(axis=1))
 
 

@@ -12,7 +12,7 @@ from ...types import Array, Index
 from .freedom import Bound, Freedom
 
 ROUNDS = 4  # each with the constraints added that the one before came close to
-NEAR = 0.1  # rows with so much more margin than asked for are not told to the optimiser at first
+ACTIVE = 0.1  # rows with so much more margin than asked for are not told to the optimiser at first
 ITERATIONS, TOLERANCE = 80, 1e-7
 LOST = 1e3  # the objective out of reach, in those of the start
 
@@ -87,23 +87,23 @@ def _solved(
         if here is None:
             break
         before, values = len(rows), kept(here, z)[0]
-        rows = np.union1d(rows, np.flatnonzero(values < NEAR if not before else values < 0.1 * NEAR))
+        rows = np.union1d(rows, np.flatnonzero(values < ACTIVE if not before else values < 0.1 * ACTIVE))
         if len(rows) == before and before:
             break
-        told = rows
+        reported = rows
 
-        def constraints(z: Array, told: Index = told) -> tuple[Array, Array]:
+        def constraints(z: Array, reported: Index = reported) -> tuple[Array, Array]:
             found = seen.at(z[:v])
             if found is None:
-                return np.full(len(told), -1.0), np.zeros((len(told), len(z)))
+                return np.full(len(reported), -1.0), np.zeros((len(reported), len(z)))
             values, slopes = kept(found, z)
-            return values[told], np.nan_to_num(slopes[told])
+            return values[reported], np.nan_to_num(slopes[reported])
 
         result: Any = minimize(
             lambda z: value(z)[0], z, jac=lambda z: value(z)[1], method="SLSQP",
             constraints=[{
                 "type": "ineq", "fun": lambda z: constraints(z)[0], "jac": lambda z: constraints(z)[1],
-            }] if len(told) else [],
+            }] if len(reported) else [],
             options={"ftol": TOLERANCE, "maxiter": ITERATIONS},
         )
         count += int(result.nit)

@@ -23,7 +23,7 @@ from .. import criteria
 from ..points import Points
 from ..task import Task
 
-FAR = 0.75  # a margin to the condition that nobody asks for: its derivatives are not told
+AMPLE = 0.75  # a margin to the condition that nobody asks for: its derivatives are not told
 STEEP = 0.9  # of its largest speed, what an external axis may be asked for
 
 
@@ -89,8 +89,8 @@ class Freedom:
         joints = task.joints(points, phi)
         if np.isnan(joints).any():
             return None
-        spin, matrix = task.spin_rates(points.frames.at(phi), joints)
-        rates = [spin * phi_rate[:, None], *(one * unit for one, unit in zip(
+        rate, matrix = task.rotation_rates(points.frames.at(phi), joints)
+        rates = [rate * phi_rate[:, None], *(one * unit for one, unit in zip(
             external_rates(task.cell, points.position, joints), self.unit, strict=True))]
         slope = np.concatenate([criteria.rate(task, points, joints, one, matrix) @ self.shape for one in rates])
         margins, margin_slopes = self._margins(joints, rates, matrix)
@@ -104,7 +104,7 @@ class Freedom:
         offset = rows.offset(joints)
         ratio = np.maximum(jac.condition(matrix, length), 1e-12)
         values = np.concatenate([1.0 - offset, 1.0 + offset, (1.0 - self.thresholds / ratio)[:, None]], axis=1)
-        near, slopes = values[:, -1] < FAR, []
+        near, slopes = values[:, -1] < AMPLE, []
         for one in rates:
             along, turned = one @ rows.matrix.T / rows.half, np.zeros(len(ratio))
             if near.any():
@@ -169,11 +169,11 @@ def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
     own, count = cell.robot.chain.axes, cell.machine.chain.axes
     stands = cell.station @ frames.inverse(cell.mount)
     whole = jac.jacobian(cell.machine.chain, joints, position @ stands[:3, :3].T + stands[:3, 3])
-    robot, beside = whole[:, :, :own], whole[:, :, own:]
+    robot, external = whole[:, :, :own], whole[:, :, own:]
     try:
-        follows = -np.linalg.solve(robot, beside)
+        follows = -np.linalg.solve(robot, external)
     except np.linalg.LinAlgError:
-        follows = -np.linalg.pinv(robot) @ beside
+        follows = -np.linalg.pinv(robot) @ external
     rates = []
     for j in range(count - own):
         rate = np.zeros((len(joints), count))

@@ -41,7 +41,7 @@ def levelled(cell: Cell, toolpath: Toolpath) -> tuple[list[Bead], list[Issue]]:
     allowed = _allowed(toolpath)
     seen = [on_face(cell, bead.tool) for bead in beads]
     one = _middle(np.concatenate(seen))
-    laid: list[Bead] = []
+    done: list[Bead] = []
     issues: list[Issue] = []
     before = np.zeros(external.axes)
     hold = not external.turning or (one is not None and float(tilt_from(np.concatenate(seen), one).max()) <= min(allowed))
@@ -54,8 +54,8 @@ def levelled(cell: Cell, toolpath: Toolpath) -> tuple[list[Bead], list[Issue]]:
         if tilt[worst] > most + ROUNDING:
             issues.append(_not_level(bool(external.turning), float(tilt[worst]), most, *place, worst))
         before = values[-1]
-        laid.append(dataclasses.replace(bead, external=values))
-    return laid, issues
+        done.append(dataclasses.replace(bead, external=values))
+    return done, issues
 
 
 def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:

@@ -40,7 +40,7 @@ SLIDING = np.array([-0.2, -0.1, 0.1, 0.2])  # shares of the arm's reach
 
 def optimised(
     task: Task, paths: Sequence[BeadPath], directions: Callable[[Array], Array], allowed: Mapping[int, float],
-    told: Callable[[float], None] = lambda share: None,
+    report: Callable[[float], None] = lambda share: None,
 ) -> list[BeadPath]:
     """The paths with better ones in the place of those there are: less objective, and no less margin.
 
@@ -55,7 +55,7 @@ def optimised(
     result = list(paths)
     starts = _elsewhere(task, [paths[k] for k in usable], directions, allowed)
     for number, (k, start) in enumerate(zip(usable, starts, strict=True)):
-        told(number / len(usable))
+        report(number / len(usable))
         result[k] = _bead(task, paths[k], start, directions, allowed[paths[k].layer])
     return result
 

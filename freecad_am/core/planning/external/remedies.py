@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...geometry import frames
-from ...geometry.surroundings import enclosed
+from ...geometry.obstacles import enclosed
 from ...kinematics import external, offered
 from ...kinematics.arrangement import of_setup
 from ...kinematics.machines import machine as machines
@@ -28,7 +28,7 @@ Cells = Iterator[tuple[str, CellParameters]]
 # of the arm's reach, how far the face is ahead of the shoulder, and, mm, higher than it is
 AHEAD = ((0.75, 0.0), (0.6, 0.0), (0.9, 0.0), (0.75, 300.0), (0.6, -300.0))
 TRIED = 2  # positioners, the likeliest
-LONG = 0.6  # of the reach; along a part as long as that a track may help
+TRACK_SHARE = 0.6  # of the reach; along a part as long as that a track may help
 NOT_LEVEL, AUTO = "NOT_LEVEL", " and `cell.branch: auto`"
 
 
@@ -47,8 +47,8 @@ def moved(settings: CellParameters, folders: Sequence[str]) -> Cells:
             x, y, z, a, b, c = named[k].pose
             moved = np.round((x, y, z) + (place - face))
             others[k] = dataclasses.replace(named[k], pose=(float(moved[0]), float(moved[1]), float(moved[2]), a, b, c))
-        told = " and ".join(f"`{WHERE}[{k}].pose: {_shown(others[k].pose)}`" for k in carriers)
-        yield told, dataclasses.replace(settings, external=_text(others))
+        remedy = " and ".join(f"`{WHERE}[{k}].pose: {_shown(others[k].pose)}`" for k in carriers)
+        yield remedy, dataclasses.replace(settings, external=_text(others))
 
 
 def added(
@@ -69,18 +69,18 @@ def added(
             for place in _before(robot, platform[:2], float(face[2]))[:3]:
                 x, y, _ = place - face
                 one = External(suited.id, (float(round(x)), float(round(y)), 0.0, 0.0, 0.0, 0.0), PART)
-                yield _told(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
+                yield _key_text(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
         return
     spans = np.ptp(points, axis=0)
     longest = int(spans.argmax())
-    if spans[longest] < LONG * robot.arm.reach:
+    if spans[longest] < TRACK_SHARE * robot.arm.reach:
         return
     along = frames.bryant(settings.deposition_point)[:3, :3][:, longest]
     turn = math.atan2(along[1], along[0]) if math.hypot(along[0], along[1]) > 0.5 else 0.5 * math.pi
     for track in offered.tracks(robot, folders)[:1]:
         height = float(track.chain.forward(np.zeros(1))[2, 3])
         one = External(track.id, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
-        yield _told(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
+        yield _key_text(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
 
 
 def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
@@ -111,7 +111,7 @@ def _text(named: Sequence[External]) -> str:
     return f"{MORE} ".join(map(str, named))
 
 
-def _told(one: External) -> str:
+def _key_text(one: External) -> str:
     return f"`{WHERE}: [{{machine: {one.machine}, pose: {_shown(one.pose)}, carries: {one.carries}}}]`"
 
 

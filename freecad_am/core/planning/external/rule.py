@@ -40,14 +40,14 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
 
 def bettered(
     task: Task, toolpath: Toolpath, level: Found, planned: Sequence[BeadPath], finish: Callable[[list[BeadPath]], Found],
-    told: Callable[[float], None],
+    report: Callable[[float], None],
 ) -> tuple[Found, dict[str, object]]:
     """What is planned with all external axes optimised, and the figures of `level`, which stays where it is no worse.
 
     level: what was found with it; planned: its beads before points were added and turns counted on, which `finish` does.
     """
     paths = list(planned)
-    tried = optimised(task, paths, lambda tool: on_face(task.cell, tool), allowed_by_layer(toolpath), told)
+    tried = optimised(task, paths, lambda tool: on_face(task.cell, tool), allowed_by_layer(toolpath), report)
     found = finish(tried)
     if not _better(task, found, level):
         wrong = _worse(task, found, level)

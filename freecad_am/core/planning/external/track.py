@@ -22,8 +22,8 @@ from ..reserve import RESERVE
 
 # shares of the arm's reach: the window, and how far the robot stands before or behind the deposit along the track
 WINDOWS = (0.6, 0.3, 0.0)
-BESIDE = (0.0, 0.4, -0.4)
-MOST = 3  # that are worth planning
+OFFSETS = (0.0, 0.4, -0.4)
+MAX_TRIALS = 3  # that are worth planning
 
 
 def placed(beads: Sequence[Bead], cell: Cell, served: Callable[[Sequence[Bead]], float]) -> Iterator[list[Bead]]:
@@ -38,15 +38,15 @@ def placed(beads: Sequence[Bead], cell: Cell, served: Callable[[Sequence[Bead]],
     assert arm is not None  # resolve() refuses other machines
     given, best, most = 0, list(beads), -1.0
     for window in WINDOWS:
-        for beside in BESIDE:
-            moved = _along(beads, ways, cell, window * arm.reach, beside * arm.reach)
+        for offset in OFFSETS:
+            moved = _along(beads, ways, cell, window * arm.reach, offset * arm.reach)
             share = served(moved)
             if share > most:
                 best, most = moved, share
             if share == 1.0:
                 yield moved
                 given += 1
-            if given == MOST:
+            if given == MAX_TRIALS:
                 return
     if not given:
         yield best
@@ -65,8 +65,8 @@ def _at_points(bead: Bead, cell: Cell) -> Array:
     return np.asarray(seen @ external.along)
 
 
-def _along(beads: Sequence[Bead], ways: Sequence[Array], cell: Cell, window: float, beside: float) -> list[Bead]:
-    """The beads with the robot at most half a window from `beside` the deposit along the track, all mm, as far as the track
+def _along(beads: Sequence[Bead], ways: Sequence[Array], cell: Cell, window: float, offset: float) -> list[Bead]:
+    """The beads with the robot at most half a window from `offset` the deposit along the track, all mm, as far as the track
     goes."""
     external = cell.external
     assert external is not None and external.slides is not None
@@ -75,8 +75,8 @@ def _along(beads: Sequence[Bead], ways: Sequence[Array], cell: Cell, window: flo
     low, high = min(float(way.min()) for way in ways), max(float(way.max()) for way in ways)
     whole = max(high - low, 1e-9)
     share = min(max(0.0, 1.0 - window / whole), (upper - lower) / whole)
-    room = 0.5 * share * whole
-    middle = float(np.clip(0.5 * (low + high) - beside, lower + room, upper - room))
+    margin = 0.5 * share * whole
+    middle = float(np.clip(0.5 * (low + high) - offset, lower + margin, upper - margin))
     moved = []
     for bead, way in zip(beads, ways, strict=True):
         assert bead.external is not None

@@ -23,7 +23,7 @@ Progress = Callable[[float, str], None]
 
 TRIED, FINE = 360, 21
 LOOKED = 72  # of these, at which links are looked at, where they are kept clear
-FEW = 8  # a point in so many is looked at before the others
+EVERY = 8  # a point in so many is looked at before the others
 
 Clear = Callable[[float], bool]  # whether no link comes too near with an RZ, rad
 
@@ -77,7 +77,7 @@ def _keeps_clear(task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, 
     assert task.kept is not None
     kept, points = task.kept, gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
     few = np.zeros(len(points), dtype=bool)
-    few[::FEW] = True
+    few[::EVERY] = True
 
     def clear(rz: float) -> bool:
         phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
@@ -106,7 +106,7 @@ def _paths(
     task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], points: Points, threshold: Array, rz: float
 ) -> list[BeadPath]:
     phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
-    phi = _counted_on(phi, points)
+    phi = _unwrapped(phi, points)
     joints = task.joints(points, phi)
     return bead_paths(task, beads, places, points, threshold, phi, joints, f"constant RZ {np.degrees(rz):.4f} deg")
 
@@ -129,7 +129,7 @@ def bead_paths(
     ]
 
 
-def _counted_on(phi: Array, points: Points) -> Array:
+def _unwrapped(phi: Array, points: Points) -> Array:
     step = np.diff(phi, prepend=phi[:1])
     step = shortest(step)
     step[points.first] = 0.0

@@ -25,7 +25,7 @@ from ...types import Array
 from ..beads.retreat import gone_back
 from ..joint_path import BeadPath
 from ..reserve import RESERVE
-from ..turns import fit_five_axis as table_room
+from ..turns import fit_five_axis
 from ..turns.rotary_courses import continuous, kept
 from ..turns.unwrap import seam_note, split_note
 
@@ -61,7 +61,7 @@ def plan(
         progress(number / len(beads), f"bead {number + 1} of {len(beads)}")
         index = index if paths and paths[-1].layer == layer else 0
         task = _Task(arm, cell, lock, toolpath.chord_error, toolpath.overlap, toolpath.retreat)
-        runs = _laid(task, bead, before, (layer, index))
+        runs = _runs_of(task, bead, before, (layer, index))
         if len(runs) > 1 or runs[0].bead.points[0].tolist() != bead.points[0].tolist():
             helped[len(runs) > 1].append(layer)
         for run in runs:
@@ -97,13 +97,13 @@ class _Run(NamedTuple):
     issues: list[Issue]
 
 
-def _laid(task: _Task, bead: Bead, before: Array | None, place: tuple[int, int]) -> list[_Run]:
+def _runs_of(task: _Task, bead: Bead, before: Array | None, place: tuple[int, int]) -> list[_Run]:
     """The bead as it is, or where a turning axis has no room for it, from another seam or in pieces."""
     whole = _bead(task, gone_back(bead, task.retreat).run_on(task.overlap), before, place)
     limits, turning = task.cell.limits, task.arm.turning
-    if not has_errors(whole.issues) or not table_room.short_of(limits, turning, whole.axes, RESERVE):
+    if not has_errors(whole.issues) or not fit_five_axis.short_of(limits, turning, whole.axes, RESERVE):
         return [whole]
-    for parts in table_room.ways(limits, turning, _courses(task, bead), bead, task.overlap):
+    for parts in fit_five_axis.ways(limits, turning, _courses(task, bead), bead, task.overlap):
         runs, last = list[_Run](), before
         for number, part in enumerate(parts):
             # a closed one begun elsewhere is one part, and runs on instead
@@ -255,8 +255,8 @@ def _path(cell: Cell, bead: Bead, axes: Array, place: tuple[int, int]) -> BeadPa
     count, none = len(bead), np.full(len(bead), np.nan)
     limits = cell.limits
     half = 0.5 * (limits.upper - limits.lower)
-    room = np.minimum(axes - limits.lower, limits.upper - axes) / np.where(np.isfinite(half), half, 1.0)
-    margin = float(np.where(np.isfinite(half), room, np.inf).min()) if np.isfinite(axes).all() else -math.inf
+    shares = np.minimum(axes - limits.lower, limits.upper - axes) / np.where(np.isfinite(half), half, 1.0)
+    margin = float(np.where(np.isfinite(half), shares, np.inf).min()) if np.isfinite(axes).all() else -math.inf
     moved = np.abs(np.diff(axes, axis=0)).sum(axis=0) / np.where(np.isfinite(half), half, TURN)
     return BeadPath(
         place[0], place[1], bead, np.zeros(count), axes, none, none, float(np.linalg.norm(moved)),
@@ -291,10 +291,10 @@ def _residual_issue(arm: FiveAxis, cell: Cell, lock: Lock, worst: Stray, allowed
     name = cell.machine.axes[arm.turning[lock.axis]]
     stands, off, most = (math.degrees(angle) for angle in (lock.angle, worst.angle, allowed))
     place = worst.layer, worst.bead, worst.point
-    told = f"axis {name} stands at {stands:.4g} deg; the tool is up to {off:.3g} deg off the direction asked for"
+    text = f"axis {name} stands at {stands:.4g} deg; the tool is up to {off:.3g} deg off the direction asked for"
     if worst.angle <= allowed:
-        return Issue(NOTE, "FOUR_AXES", told, *place)
+        return Issue(NOTE, "FOUR_AXES", text, *place)
     return Issue(
-        ERROR, "FOUR_AXES", f"{told}, more than joints.max_residual allows ({most:.3g} deg); lock the other axis, elsewhere "
+        ERROR, "FOUR_AXES", f"{text}, more than joints.max_residual allows ({most:.3g} deg); lock the other axis, elsewhere "
         "or none", *place,
     )

@@ -19,7 +19,7 @@ from ..points import gather
 from ..rotation import given, refine, search, ties
 from ..rotation.evaluation import judged
 from ..task import FITS, Task
-from ..turns import fit as room
+from ..turns import fit
 
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
@@ -41,7 +41,7 @@ def plan(
     free = [k for k in range(len(beads)) if k not in fixed]
     paths, helped = _searched(task, [beads[k] for k in free], [places[k] for k in free], progress) if free else ([], {})
     of_bead = dict(zip(free, paths)) | given.paths(task, beads, places, fixed)
-    together, issues = room.put_in(
+    together, issues = fit.put_in(
         task, [of_bead[k] for k in range(len(beads))], {free[k]: some for k, some in helped.items()}
     )
     return together, issues
@@ -63,7 +63,7 @@ def _searched(
     start = found.coefficients[best, each]
     # a bead that no rotation serves from its own seam may do from another: cheaper to try than a local search
     hopeless = [int(k) for k in np.flatnonzero(found.margin[best, each] < 0.0)]
-    roomy = room.for_beads(task, [beads[k] for k in hopeless], [places[k] for k in hopeless])
+    roomy = fit.for_beads(task, [beads[k] for k in hopeless], [places[k] for k in hopeless])
     helped = {k: paths for k, paths in zip(hopeless, roomy) if paths is not None}
     joined = task.joined & full.closed
     starts = _with_other_turns(start, found) if joined.any() else start[None]
@@ -75,8 +75,8 @@ def _searched(
         task, full, threshold, starts, wanted, lambda share: progress(0.4 + 0.3 * share, "refining layers")
     )
     progress(0.7, "settling")
-    settled = ties.settle(task, coarse, coarse_threshold, refined.coefficients)
-    paths = judged(task, beads, places, full, threshold, settled, refined)
+    resolved = ties.resolve(task, coarse, coarse_threshold, refined.coefficients)
+    paths = judged(task, beads, places, full, threshold, resolved, refined)
     equal = ties.as_good(task, [path.objective for path in paths], refined.objective)
     if not equal.all() or any(path.margin < FITS for path in paths):
         # settling looks at few points of a bead: where all of them say otherwise, the optimum stays as it was found
@@ -96,7 +96,7 @@ def _searched(
     helped = {k: some for k, some in helped.items() if len(some) == 1 or not joined[k] or paths[k].margin < FITS}
     late = [int(k) for k in each if paths[k].margin < FITS and k not in helped and k not in hopeless]
     helped.update({
-        k: found for k, found in zip(late, room.for_beads(task, [beads[k] for k in late], [places[k] for k in late]))
+        k: found for k, found in zip(late, fit.for_beads(task, [beads[k] for k in late], [places[k] for k in late]))
         if found is not None
     })
     return paths, helped

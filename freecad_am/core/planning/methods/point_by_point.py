@@ -36,17 +36,17 @@ def plan(
     threshold = task.thresholds(points)
     counts = np.diff(np.append(points.first, len(points)))
     kept = task.kept
-    laid = np.array([0 if kept is None else kept.moment(place) for place in places], dtype=np.int64)
+    deposited = np.array([0 if kept is None else kept.moment(place) for place in places], dtype=np.int64)
     phi = np.zeros(len(points))
     joints = np.full((len(points), len(task.weights)), np.nan)
     for number in range(counts.max()):
         index = points.first[counts > number] + number
         at = points.each(index)
         if number == 0:
-            phi[index], joints[index] = _searched(task, at, threshold[index], laid[points.bead[index]], None)
+            phi[index], joints[index] = _searched(task, at, threshold[index], deposited[points.bead[index]], None)
             continue
         phi[index], joints[index] = _step(
-            task, at, threshold[index], laid[points.bead[index]], phi[index - 1], joints[index - 1])
+            task, at, threshold[index], deposited[points.bead[index]], phi[index - 1], joints[index - 1])
         if number % 20 == 0:
             progress(0.1 + 0.8 * number / counts.max(), "going from point to point")
     joints = task.in_range(unwrapped(joints, points), points)
@@ -54,7 +54,7 @@ def plan(
 
 
 def _step(
-    task: Task, at: Points, threshold: Array, laid: Index, phi: Array, before: Array
+    task: Task, at: Points, threshold: Array, deposited: Index, phi: Array, before: Array
 ) -> tuple[Array, Array]:
     phi = phi.copy()
     for _ in range(STEPS):
@@ -63,16 +63,16 @@ def _step(
         if not good.any():
             break
         part = at.each(np.flatnonzero(good))
-        rates, _ = task.spin_rates(part.frames.at(phi[good]), joints[good])
+        rates, _ = task.rotation_rates(part.frames.at(phi[good]), joints[good])
         away = joints[good] - before[good]
         curvature = (rates * rates) @ task.weights
         phi[good] -= np.clip(((away * rates) @ task.weights) / np.maximum(curvature, 1e-15), -0.2, 0.2)
     joints = _near(task, at, phi, before)
     bad = _margin(task, at, phi, joints, threshold) < 0.0
     if task.kept is not None:
-        bad |= task.kept.contact.touches(joints, laid).any
+        bad |= task.kept.contact.touches(joints, deposited).any
     if bad.any():
-        phi[bad], joints[bad] = _searched(task, at.each(np.flatnonzero(bad)), threshold[bad], laid[bad], before[bad])
+        phi[bad], joints[bad] = _searched(task, at.each(np.flatnonzero(bad)), threshold[bad], deposited[bad], before[bad])
     return phi, joints
 
 
@@ -89,7 +89,7 @@ def _margin(task: Task, at: Points, phi: Array, joints: Array, threshold: Array)
 
 
 def _searched(
-    task: Task, at: Points, threshold: Array, laid: Index, before: Array | None
+    task: Task, at: Points, threshold: Array, deposited: Index, before: Array | None
 ) -> tuple[Array, Array]:
     """The best of a whole turn of candidates: the least motion among the feasible, of these among those with which links are
     clear, where there are any; else the largest margin. laid: (k,) how many points of the deposit are there."""
@@ -105,7 +105,7 @@ def _searched(
     )
     if task.kept is not None:
         looked = np.where((margin >= 0.0)[..., None], joints, np.nan)
-        near = task.kept.contact.touches(looked.reshape(-1, looked.shape[2]), np.tile(laid, CANDIDATES)).any
+        near = task.kept.contact.touches(looked.reshape(-1, looked.shape[2]), np.tile(deposited, CANDIDATES)).any
         clear = (margin >= 0.0) & ~near.reshape(margin.shape)
         margin = np.where(clear.any(axis=0) & ~clear, UNREACHABLE, margin)
     best = first_most(margin, axis=0)

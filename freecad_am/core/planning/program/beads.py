@@ -34,12 +34,12 @@ def deposited(
             "machine, and that arc instructions do not was not confirmed; use output, or leave the schedules of start and "
             "end out",
         )
-    told = numbers[0] if by == ARC and not parameters.dry_run else None
-    on = DepositOn(own.lead_on, None if moves[0].wire is None else float(moves[0].wire[0]), told)
+    schedule = numbers[0] if by == ARC and not parameters.dry_run else None
+    on = DepositOn(own.lead_on, None if moves[0].wire is None else float(moves[0].wire[0]), schedule)
     blocks: list[Block] = [*_ahead(numbers[0], parameters), on, moves[0]]
     for run, number in runs[1:]:  # posts may stop between runs, so that there are no more of them than schedules
         blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
-    return [*blocks, DepositOff(own.lead_off, told)]
+    return [*blocks, DepositOff(own.lead_off, schedule)]
 
 
 def parted(phase: Roles, own: ProcessParameters) -> list[tuple[slice, int | None]]:

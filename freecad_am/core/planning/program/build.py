@@ -73,7 +73,7 @@ def without_moves(cell: Cell, parameters: ProgramParameters, controller: Control
         name=name,
         machine=cell.machine.title,
         blocks=(),
-        endless=tuple(bool(e) for e in cell.limits.endless),
+        continuous=tuple(bool(e) for e in cell.limits.continuous),
         motion=parameters.motion,
         setup=cell.setup,
         max_points=parameters.max_points,
@@ -227,12 +227,12 @@ class _Blocks:
                 rotation, own = seen[:, :3, :3], motion.joints[rows, : cell.robot.chain.axes]
                 configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(own))
         wire = motion.wire[rows]
-        told = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
+        with_wire = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
         return Moves(
             kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
             joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
             position=position, rotation=rotation, configuration=configuration, direction=direction,
-            wire=wire if told else None, flange=flange,
+            wire=wire if with_wire else None, flange=flange,
             interpolation=LINEAR_MOVE if kind == DEPOSIT and parameters.motion == "cartesian" else JOINT_MOVE,
             stops=motion.stops[rows], halt=motion.halt[rows], role=_roles(motion.role[rows]),
         )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.surroundings import Body
+from ...geometry.obstacles import Body
 from ...kinematics.cell import Cell
 from ...toolpath import Bead
 from .retract_ways import DIRECTIONS
@@ -18,7 +18,7 @@ from .retracts import STRAY_MM
 HIGHER = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 FURTHER = 1.5
 # of a retract distance of nothing, mm
-FIRST_LIFT = 2.0
+FIRST_RETRACT = 2.0
 # how near to the straight line a retract is held that meets something on its way, mm
 FINE_MM = 0.02
 # retract distances in directions other than the tool axis, as shares of the one asked for
@@ -34,7 +34,7 @@ class Attempt:
     tolerance: float = STRAY_MM
 
 
-def attempts(cell: Cell, lift: float, beads: Sequence[Bead], bodies: Sequence[Body]) -> list[Attempt]:
+def attempts(cell: Cell, retract: float, beads: Sequence[Bead], bodies: Sequence[Body]) -> list[Attempt]:
     """What is tried in turn after the way asked for, up to where the nozzle is beyond the sphere about all that is there."""
     radius = 0.5 * cell.platform_diameter
     x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
@@ -43,12 +43,12 @@ def attempts(cell: Cell, lift: float, beads: Sequence[Bead], bodies: Sequence[Bo
     points = np.vstack([*(bead.points for bead in beads), platform, *(body.vertices for body in all_)])
     # from anywhere inside, a way of the diameter along any direction leads out of it
     furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
-    base = lift or FIRST_LIFT
-    heights = [*([] if lift else [base]), *(factor * base for factor in HIGHER)]
+    base = retract or FIRST_RETRACT
+    heights = [*([] if retract else [base]), *(factor * base for factor in HIGHER)]
     while heights[-1] < furthest:
         heights.append(min(FURTHER * heights[-1], furthest))
     return [
-        *([Attempt(lift, 0, FINE_MM)] if lift else []),
+        *([Attempt(retract, 0, FINE_MM)] if retract else []),
         *(Attempt(height) for height in heights),
         *(Attempt(share * base, direction) for direction in DIRECTIONS for share in ASIDE),
     ]

@@ -18,7 +18,7 @@ from ...collision.bead_ends import BeadEnds, Beads, Size
 from ...collision.bodies import Bodies
 from ...collision.nozzle import Nozzle
 from ...collision.scene import scene
-from ...geometry.surroundings import Body, disc
+from ...geometry.obstacles import Body, disc
 from ...kinematics.cell import Cell
 from ...types import Array, Index, Mask
 
@@ -39,11 +39,11 @@ class Moves(NamedTuple):
 
     start: Array
     end: Array
-    laid: Index
+    deposited: Index
 
     def of(self, rows: Index) -> Moves:
         """Those of the rows."""
-        return Moves(self.start[rows], self.end[rows], self.laid[rows])
+        return Moves(self.start[rows], self.end[rows], self.deposited[rows])
 
 
 class Looks(NamedTuple):
@@ -55,7 +55,7 @@ class Looks(NamedTuple):
     share: Array
 
 
-class Surroundings:
+class RapidObstacles:
     """What is in the way of rapids: beads of their width and height, with the row from which they are there, platform and
     bodies."""
 
@@ -63,10 +63,10 @@ class Surroundings:
         self.cell = cell
         platform = [disc(cell.platform_diameter, cell.mount, "the platform")] if cell.platform_diameter > 0.0 else []
         self.bodies = (*bodies, *platform, *cell.in_part())
-        self.laid = deposit.solid()
+        self.deposited = deposit.solid()
         nozzle = cell.nozzle
         self._size = Size(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length)
-        self._ends = BeadEnds(deposit, self.laid, self._size)
+        self._ends = BeadEnds(deposit, self.deposited, self._size)
         self._box = np.array([[np.inf] * 3, [-np.inf] * 3])
         self._bodies = scene((), deposit.points, 0.0).bodies
 
@@ -110,7 +110,7 @@ class Surroundings:
         return found
 
     def _deposit_touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
-        found: Mask = self.laid.touched(nozzle.deposit, looks.tip, looks.axis, moves.laid[looks.move])
+        found: Mask = self.deposited.touched(nozzle.deposit, looks.tip, looks.axis, moves.deposited[looks.move])
         return found
 
     def _around(self, tip: Array) -> Bodies:
@@ -129,7 +129,7 @@ class Surroundings:
 
     def _nozzle(self, moves: Moves, looks: Looks) -> Nozzle:
         """The nozzle at each look, less what touches rightly near the ends of beads."""
-        return self._ends.nozzle(looks.tip, moves.laid[looks.move])
+        return self._ends.nozzle(looks.tip, moves.deposited[looks.move])
 
 
 def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:

@@ -16,12 +16,12 @@ def findings(ways: RapidWays) -> tuple[Issue, ...]:
     """An error for each bead that cannot be come to or left, and notes about what was taken in place of what was asked."""
     met: list[Issue] = []
     for k in ways.met:
-        names, arm = ways.told(k), ways.arm_issue(k)
+        names, arm = ways.reasons(k), ways.arm_issue(k)
         if names or arm is None:
             met.append(_collision(names, ways.place(k).layer, ways.place(k).index))
         if arm is not None:
             met.append(arm)
-    return (*met, *_failures(ways), *_lifted(ways), *_others(ways))
+    return (*met, *_failures(ways), *_raised(ways), *_others(ways))
 
 
 def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
@@ -36,12 +36,12 @@ def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
 def _failures(ways: RapidWays) -> list[Issue]:
     """One issue for each bead, for its first reason."""
     found: dict[tuple[int, int], Issue] = {}
-    told = [(ways.beads[end // 2], failure) for end, failure in sorted(ways.failures.items())]
-    told += [
+    failed = [(ways.beads[end // 2], failure) for end, failure in sorted(ways.failures.items())]
+    failed += [
         (ways.place(k), Failure(SINGULAR, 0, way.singular, ways.retracts.floor))
         for k, way in enumerate(ways.ways) if way.singular is not None and ways.retracts.sound[ways.ends(k)].all()
     ]
-    for path, failure in told:
+    for path, failure in failed:
         found.setdefault((path.layer, path.index), _failed(failure, path, ways.cell))
     return list(found.values())
 
@@ -70,13 +70,13 @@ def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
     return Issue(ERROR, f"RAPID_{failure.kind}", text, path.layer, path.index)
 
 
-def _lifted(ways: RapidWays) -> list[Issue]:
+def _raised(ways: RapidWays) -> list[Issue]:
     """Notes about other ways taken because something was met."""
     raised, aside, highest = [], [], 0.0
-    for k in sorted(ways.lifted):
+    for k in sorted(ways.raised):
         legs = [leg for end in ways.ends(k) if (leg := ways.legs[end]) is not None]
         height = max((leg.height for leg in legs), default=0.0)
-        if height > ways.lift:
+        if height > ways.retract:
             raised.append(ways.place(k).layer)
             highest = max(highest, height)
         if any(leg.choice != ASKED for leg in legs):
@@ -85,7 +85,7 @@ def _lifted(ways: RapidWays) -> list[Issue]:
     if raised:
         notes.append(Issue(
             NOTE, "RAPID_LIFTED", f"before {len(raised)} beads the tool is withdrawn by up to {highest:.3g} mm instead of "
-            f"{ways.lift:g} mm to pass clear", raised[0]))
+            f"{ways.retract:g} mm to pass clear", raised[0]))
     if aside:
         notes.append(Issue(
             NOTE, "RAPID_ASIDE", f"before {len(aside)} beads the tool is retracted in another direction than along its "
@@ -99,7 +99,7 @@ def _lifted(ways: RapidWays) -> list[Issue]:
 
 def _others(ways: RapidWays) -> list[Issue]:
     """A note about other ways taken because the machine cannot go those asked for."""
-    cleared = {end for k in (*ways.lifted, *ways.led.ways) for end in ways.ends(k)}
+    cleared = {end for k in (*ways.raised, *ways.led.ways) for end in ways.ends(k)}
     other: list[tuple[int, Leg]] = [
         (end, leg) for end, leg in ways.legs.items() if leg is not None and leg.choice != ASKED and end not in cleared
     ]
@@ -109,7 +109,7 @@ def _others(ways: RapidWays) -> list[Issue]:
     leaning = sum(leg.choice.direction != ASKED.direction for _, leg in other)
     turning = sum((leg.choice.turn, leg.choice.lean) != (ASKED.turn, ASKED.lean) for _, leg in other)
     return [Issue(
-        NOTE, "RAPID_OTHER", f"at {len(other)} ends of beads the retract of {ways.lift:g} mm would leave limits, reach or "
-        f"condition; it is {min(heights):.3g} to {max(heights):.3g} mm there, {leaning} times in another direction than "
+        NOTE, "RAPID_OTHER", f"at {len(other)} ends of beads the retract of {ways.retract:g} mm would leave limits, reach "
+        f"or condition; it is {min(heights):.3g} to {max(heights):.3g} mm there, {leaning} times in another direction than "
         f"along the tool axis and {turning} times with the tool turned", ways.beads[other[0][0] // 2].layer,
     )]

@@ -34,7 +34,7 @@ class LedRound:
         self._known: list[Array] = []  # places of the last ways found, there and back: the next one often leads the same way
 
     def found(
-        self, ends: Mapping[int, Array], legs: Mapping[int, Leg | None], attempts: Sequence[Attempt], laid: int
+        self, ends: Mapping[int, Array], legs: Mapping[int, Leg | None], attempts: Sequence[Attempt], deposited: int
     ) -> tuple[Legs, Array] | None:
         """Legs off the ends of beads, with the joints (axes,) at the ends by their number, and the places (m, axes) by which
         a way leads from one to the other, so many points being laid; None where there is none. legs: those tried before."""
@@ -43,11 +43,11 @@ class LedRound:
         own: Legs = {}
         far: list[Array] = []
         for end, joints in ends.items():
-            off = self._off(end, joints, legs[end], attempts, laid)
+            off = self._off(end, joints, legs[end], attempts, deposited)
             if off is not None:
                 own[end] = off[0]
                 far.append(off[1])
-        places = self._between(far[0], far[1], laid) if len(far) == len(ends) else None
+        places = self._between(far[0], far[1], deposited) if len(far) == len(ends) else None
         if places is None:
             self._lost += 1
             return None
@@ -55,14 +55,14 @@ class LedRound:
         return own, places
 
     def _off(
-        self, end: int, joints: Array, before: Leg | None, attempts: Sequence[Attempt], laid: int
+        self, end: int, joints: Array, before: Leg | None, attempts: Sequence[Attempt], deposited: int
     ) -> tuple[Leg | None, Array] | None:
         """A clear way off the end of a bead, none where it needs none, and where that leads to; None without any."""
-        if before is None and self._clear(joints[None], joints[None], laid)[0]:
+        if before is None and self._clear(joints[None], joints[None], deposited)[0]:
             return None, joints
         for leg in self._others(end, before, attempts):
             rows = np.vstack([joints, leg.joints])
-            if self._clear(rows[:-1], rows[1:], laid).all():
+            if self._clear(rows[:-1], rows[1:], deposited).all():
                 return leg, leg.joints[-1]
         return None
 
@@ -76,20 +76,20 @@ class LedRound:
             if found[0] is not None:
                 yield found[0]
 
-    def _between(self, start: Array, goal: Array, laid: int) -> Array | None:
+    def _between(self, start: Array, goal: Array, deposited: int) -> Array | None:
         """The places of a way round."""
         for known in self._known:
             whole = np.vstack([start, known, goal])
-            if self._clear(whole[:-1], whole[1:], laid).all():
+            if self._clear(whole[:-1], whole[1:], deposited).all():
                 return known
-        return way_round(start, goal, self._ranges(start, goal), lambda a, b: self._clear(a, b, laid), self._fits)
+        return way_round(start, goal, self._ranges(start, goal), lambda a, b: self._clear(a, b, deposited), self._fits)
 
-    def _clear(self, start: Array, end: Array, laid: int) -> Mask:
+    def _clear(self, start: Array, end: Array, deposited: int) -> Mask:
         """(k,) whether moves can be driven, and meet nothing."""
-        endless = self.cell.limits.endless
-        short: Mask = (np.abs(end - start)[:, endless] <= LARGEST_TURN).all(axis=1)
+        continuous = self.cell.limits.continuous
+        short: Mask = (np.abs(end - start)[:, continuous] <= LARGEST_TURN).all(axis=1)
         rows = np.flatnonzero(short)
-        short[rows] = self.clear(Moves(start[rows], end[rows], np.full(len(rows), laid, dtype=np.intp)))
+        short[rows] = self.clear(Moves(start[rows], end[rows], np.full(len(rows), deposited, dtype=np.intp)))
         return short
 
     def _ranges(self, start: Array, goal: Array) -> Ranges:
@@ -98,8 +98,8 @@ class LedRound:
         limits, own = self.cell.limits, self.cell.robot.chain.axes
         least, most = np.minimum(start, goal), np.maximum(start, goal)
         kept = self.retracts.kept(RESERVE)[: limits.axes]
-        low = np.where(limits.endless, least - np.pi, limits.lower + kept)
-        high = np.where(limits.endless, most + np.pi, limits.upper - kept)
+        low = np.where(limits.continuous, least - np.pi, limits.lower + kept)
+        high = np.where(limits.continuous, most + np.pi, limits.upper - kept)
         low[own:], high[own:] = least[own:], most[own:]
         return Ranges(low, high, self.cell.machine.max_speed)
 

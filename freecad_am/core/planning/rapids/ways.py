@@ -11,17 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.bead_ends import Beads
-from ...geometry.surroundings import Body
+from ...geometry.obstacles import Body
 from ...issues import Issue
 from ...kinematics.cell import Cell
 from ...motion import APPROACH, RETRACT, TRAVEL
 from ...parameters.joints import JointParameters
 from ...types import Array, Mask
-from .. import nozzle_beside
-from ..arm.kept import Rods, clearance_issue, contact_of, on_moves
+from .. import nozzle_obstacles
+from ..arm.kept import Cylinders, clearance_issue, contact_of, on_moves
 from ..joint_path import BeadPath, JointPath
 from .attempts import Attempt, attempts
-from .clearance import Moves, Surroundings
+from .clearance import Moves, RapidObstacles
 from .led_round import LARGEST_TURN, LedRound
 from .retract_ways import Ends, Failure, Leg
 from .retracts import Retracts, branch_of
@@ -45,24 +45,24 @@ class RapidWays:
     """Ways for all beads of a joint path; way k leads to bead k, the last one away from the last bead."""
 
     def __init__(
-        self, joint_path: JointPath, cell: Cell, lift: float, bodies: Sequence[Body], parameters: JointParameters,
-        width: float = 0.0, height: float = 0.0, rods: Rods = (),
+        self, joint_path: JointPath, cell: Cell, retract: float, bodies: Sequence[Body], parameters: JointParameters,
+        width: float = 0.0, height: float = 0.0, cylinders: Cylinders = (),
     ) -> None:
         """width, height: mm, of beads that do not tell theirs."""
-        self.beads, self.cell, self.lift = joint_path.beads, cell, lift
+        self.beads, self.cell, self.retract = joint_path.beads, cell, retract
         self.retracts = Retracts(cell, Ends.of(self.beads), branch_of(joint_path.branch), parameters)
         # by number of the end of a bead, as `Ends` counts them
         self.legs: dict[int, Leg | None] = dict.fromkeys(range(2 * len(self.beads)))
         self.failures: dict[int, Failure] = {}
-        if lift > 0.0:
+        if retract > 0.0:
             self._ask()
         self.ways = [self._way(k, self.legs) for k in range(len(self.beads) + 1)]
         self.rows = np.concatenate([[0], np.cumsum([len(path.bead) for path in self.beads])])
         beads = [path.bead for path in self.beads]
-        self.surroundings = Surroundings(cell, Beads.of(beads, width, height), bodies)
-        self.arm = contact_of(beads, cell, rods, bodies, width, height)
-        self.attempts = attempts(cell, lift, beads, bodies)
-        self.lifted: list[int] = []
+        self.obstacles = RapidObstacles(cell, Beads.of(beads, width, height), bodies)
+        self.arm = contact_of(beads, cell, cylinders, bodies, width, height)
+        self.attempts = attempts(cell, retract, beads, bodies)
+        self.raised: list[int] = []
         met, hopeless = self._clear()
         self.led = LedRound(cell, self.retracts, self._clear_moves)
         self.met = sorted({*self._lead_round(met), *hopeless})
@@ -70,13 +70,13 @@ class RapidWays:
     def _ask(self) -> None:
         """The legs as asked for, or what comes nearest where the machine cannot go them."""
         sound = np.flatnonzero(self.retracts.sound)
-        legs, failures = self.retracts.found(sound, np.full(len(sound), self.lift))
+        legs, failures = self.retracts.found(sound, np.full(len(sound), self.retract))
         for end, leg, failure in zip(sound.tolist(), legs, failures):
             self.legs[end] = leg
             if leg is None and failure is not None:
                 self.failures[end] = failure
         lost = np.array([end for end, leg in self.legs.items() if leg is None], dtype=np.intp)
-        for end, leg in zip(lost.tolist(), self.retracts.asked(lost, np.full(len(lost), self.lift))):
+        for end, leg in zip(lost.tolist(), self.retracts.asked(lost, np.full(len(lost), self.retract))):
             self.legs[end] = leg
 
     def ends(self, k: int) -> list[int]:
@@ -108,8 +108,8 @@ class RapidWays:
         """The way with more rows, straight in the joints, where an endless axis would turn too far at once."""
         assert way.start is not None
         whole = np.vstack([way.start, way.joints])
-        endless = self.cell.limits.endless
-        turn = np.nan_to_num(np.abs(np.diff(whole[:, endless], axis=0))).max(axis=1, initial=0.0)
+        continuous = self.cell.limits.continuous
+        turn = np.nan_to_num(np.abs(np.diff(whole[:, continuous], axis=0))).max(axis=1, initial=0.0)
         if turn.max() <= LARGEST_TURN:
             return way
         rows: list[Array] = []
@@ -153,9 +153,9 @@ class RapidWays:
 
     def _clear_moves(self, moves: Moves) -> Mask:
         """(k,) whether nothing is met on moves."""
-        met = self.surroundings.met(moves)
-        if self.cell.part_moves or self.cell.beside:
-            met |= nozzle_beside.met(self.cell, moves.start, moves.end).any(axis=0)
+        met = self.obstacles.met(moves)
+        if self.cell.part_moves or self.cell.external_links:
+            met |= nozzle_obstacles.met(self.cell, moves.start, moves.end).any(axis=0)
         left = np.flatnonzero(~met)
         if self.arm is not None and len(left):
             move, touched = on_moves(self.arm, *moves.of(left))
@@ -206,7 +206,7 @@ class RapidWays:
     def _without_cleared(self, met: Sequence[int], attempt: Attempt) -> list[int]:
         """Takes an attempt for the ways where nothing is met with it; the others."""
         # without a retract distance the machine stays where the last bead ends
-        some = [k for k in met if self.lift > 0.0 or k < len(self.beads)]
+        some = [k for k in met if self.retract > 0.0 or k < len(self.beads)]
         ends = np.array(sorted({end for k in some for end in self.ends(k)}), dtype=np.intp)
         found, _ = self.retracts.found(
             ends, np.full(len(ends), attempt.height), attempt.direction, attempt.tolerance, thorough=False)
@@ -220,21 +220,21 @@ class RapidWays:
                 for end in self.ends(k):
                     self.legs[end] = legs[end]
                     self.failures.pop(end, None)
-                self.lifted.append(k)
+                self.raised.append(k)
         return [k for k in met if k not in tried or k in still]
 
     def place(self, k: int) -> BeadPath:
         """The bead that way k is told of: that which it leads to, or the last one."""
         return self.beads[min(k, len(self.beads) - 1)]
 
-    def told(self, k: int) -> list[str]:
+    def reasons(self, k: int) -> list[str]:
         """What the nozzle meets on way k."""
         moves = self._moves(k, self.ways[k])
-        found = self.surroundings.names(moves)
-        if self.cell.part_moves or self.cell.beside:
-            met = nozzle_beside.met(self.cell, moves.start, moves.end)
-            beside = [name for name, here in zip(nozzle_beside.in_the_way(self.cell), met) if here.any()]
-            found += [name for name in beside if name not in found]
+        found = self.obstacles.names(moves)
+        if self.cell.part_moves or self.cell.external_links:
+            met = nozzle_obstacles.met(self.cell, moves.start, moves.end)
+            adjacent = [name for name, here in zip(nozzle_obstacles.in_the_way(self.cell), met) if here.any()]
+            found += [name for name in adjacent if name not in found]
         return found
 
     def arm_issue(self, k: int) -> Issue | None:

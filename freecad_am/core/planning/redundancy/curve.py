@@ -82,7 +82,7 @@ def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Arr
     if high - low < TURN - 1e-9:
         good &= (phi >= low - ROUNDING) & (phi <= high + ROUNDING)
     wound = margin < -ROUNDING
-    turns = np.where(task.endless, 0.0, np.round((task.middle - joints[wound]) / TURN))
+    turns = np.where(task.continuous, 0.0, np.round((task.middle - joints[wound]) / TURN))
     wound[wound] = task.given_rows.margin(joints[wound] + TURN * turns) >= -ROUNDING
     return Followed(phi, joints, margin, condition, criteria.displacement(task, points, joints), ratio, good, wound)
 

@@ -3,7 +3,7 @@
 
 Every cell is judged as the planner judges a point that stands for itself: the closed form of all branches at once, limited
 axes in the turn nearest to the middle of their range. What a curve on the map means besides, such as an axis that runs out
-of turns along a bead, is told by `spin_curve`.
+of turns along a bead, is told by `curve`.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from ...collision import nozzle as nozzles
 from ...collision.scene import scene
 from ...geometry import frames
 from ...geometry.angles import TURN, shortest
-from ...geometry.surroundings import Body, disc
+from ...geometry.obstacles import Body, disc
 from ...kinematics.cell import Cell
 from ...kinematics.links.contact import ArmContact
 from ...toolpath import Bead
 from ...types import Array, Index, Mask
 from ..findings import ROUNDING
 from ..points import Points
-from ..task import UNREACHABLE, LimitRows, Task, beside
+from ..task import UNREACHABLE, LimitRows, Task, with_external
 
 RZ, ROTATION = "rz", "rotation"
-ROWS, MOST = 181, 300
+ROWS, MAX_COLUMNS = 181, 300
 LEAST = 12  # points of a bead, fewer of which would not show what a curve does
 
 
@@ -46,7 +46,7 @@ class Columns:
 
 
 @dataclass(frozen=True)
-class SpinMap:
+class RedundancyMap:
     """Cells of `values` (R,) rad by columns C. axis: what the values are, RZ or ROTATION.
 
     phi: (R, C) rotation about the tool axis. margin: (8, R, C) of each branch the share left to the nearest limit, 1 in
@@ -103,7 +103,7 @@ class Picture:
         return self.reachable & ~self.beyond & ~self.singular & ~self.outside
 
 
-def columns(beads: Sequence[Bead], cell: Cell, most: int = MOST) -> Columns:
+def columns(beads: Sequence[Bead], cell: Cell, most: int = MAX_COLUMNS) -> Columns:
     """Points of the beads, evenly among all, at most `most`; the ends of beads are among them.
 
     Of more beads than have room for LEAST points each, as many as do, evenly among them.
@@ -152,9 +152,9 @@ def alone(cell: Cell, position: Array, tool: Array, parameter: Array, external: 
     )
 
 
-def spin_map(
+def redundancy_map(
     task: Task, at: Columns, axis: str = RZ, bodies: Sequence[Body] = (), values: Array | None = None
-) -> SpinMap:
+) -> RedundancyMap:
     """The map of all branches for the columns, of a job's cell, limits and rotation range; bodies in part coordinates.
 
     values: (R,) rad of the rows, else the whole turn.
@@ -167,10 +167,10 @@ def spin_map(
     outside = np.zeros(phi.shape, dtype=bool)
     if high - low < TURN - 1e-9:
         outside = (phi - low) % TURN > high - low + ROUNDING
-    return SpinMap(at, axis, values, phi, margin, _touching(task.cell, at.points, bodies), outside)
+    return RedundancyMap(at, axis, values, phi, margin, _touching(task.cell, at.points, bodies), outside)
 
 
-def picture(task: Task, of: SpinMap, branch: int) -> Picture:
+def picture(task: Task, of: RedundancyMap, branch: int) -> Picture:
     """One branch of a map, with its condition."""
     own = dataclasses.replace(task, branch=branch)
     points = of.columns.points
@@ -182,7 +182,7 @@ def picture(task: Task, of: SpinMap, branch: int) -> Picture:
 
 
 def arm_touched(
-    task: Task, of: SpinMap, branch: int, arm: ArmContact, moment: Index, every: int = 1
+    task: Task, of: RedundancyMap, branch: int, arm: ArmContact, moment: Index, every: int = 1
 ) -> Mask:
     """(R, C) the cells of a branch in which a link of the robot touches nozzle, platform, a body or the deposit there is.
 
@@ -195,7 +195,7 @@ def arm_touched(
     points = of.columns.points
     joints = own.arm.inverse_branch(points.frames.at(of.phi[rows]).reshape(-1, 4, 4), branch)
     if points.external is not None:
-        joints = beside(joints, np.tile(points.external, (len(rows), 1)))
+        joints = with_external(joints, np.tile(points.external, (len(rows), 1)))
     looked = (of.margin[branch] >= -ROUNDING) & ~of.outside & ~of.touching
     joints[~looked[rows].ravel()] = np.nan
     found = arm.touches(joints, np.tile(moment, len(rows))).any.reshape(len(rows), -1)
@@ -234,7 +234,7 @@ def in_turns(values: Array, starts: Mask) -> Array:
 def joints_at(task: Task, at: Columns, column: int, phi: float) -> Array:
     """(8, axes) joints of all branches at one cell, in the turn that the map counts with; NaN out of reach."""
     joints = _of_all_branches(task, at.points.each(np.array([column])), np.array([[phi]]))[:, 0, 0]
-    turns = np.where(task.endless, 0.0, np.round((task.middle - joints) / TURN))
+    turns = np.where(task.continuous, 0.0, np.round((task.middle - joints) / TURN))
     turns[:, task.cell.robot.chain.axes :] = 0.0  # external axes are where they are said to be
     return np.asarray(joints + TURN * turns)
 
@@ -245,7 +245,7 @@ def _of_all_branches(task: Task, points: Points, phi: Array) -> Array:
     assert arm is not None  # resolve() refuses other machines
     joints = arm.inverse(points.frames.at(phi).reshape(-1, 4, 4))[:8]
     joints = joints.reshape(len(joints), *phi.shape, -1)
-    return joints if points.external is None else beside(joints, points.external)
+    return joints if points.external is None else with_external(joints, points.external)
 
 
 def _margin(task: Task, rows: LimitRows, joints: Array) -> Array:
@@ -253,7 +253,7 @@ def _margin(task: Task, rows: LimitRows, joints: Array) -> Array:
     angle = []
     for axis in range(joints.shape[-1]):
         value = joints[..., axis]
-        if axis < task.cell.robot.chain.axes and not task.endless[axis]:
+        if axis < task.cell.robot.chain.axes and not task.continuous[axis]:
             turns = np.round((task.middle[axis] - value) / TURN)
             value = value + TURN * turns if np.nan_to_num(turns).any() else value
         angle.append(value)

@@ -14,7 +14,7 @@ from ...types import Array
 from ..joint_path import BeadPath
 
 PARTED = 0.75  # of a turn, from where a step is one between pieces
-NEAR = 1e-6  # mm, of a piece's ends to points of the bead it was cut from
+END_MM = 1e-6  # mm, of a piece's ends to points of the bead it was cut from
 
 
 def rotation_along(
@@ -39,7 +39,7 @@ def rotation_along(
 
 
 def _cut_from(bead: Bead, piece: Bead) -> bool:
-    return all(np.linalg.norm(bead.points - piece.points[end], axis=1).min() < NEAR for end in (0, -1))
+    return all(np.linalg.norm(bead.points - piece.points[end], axis=1).min() < END_MM for end in (0, -1))
 
 
 def _along(pieces: Sequence[BeadPath], bead: Bead, parameter: Array) -> Array:

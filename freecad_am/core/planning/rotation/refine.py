@@ -43,7 +43,7 @@ class Refined:
 
 def refine(
     task: Task, points: Points, thresholds: Array, starts: Array, wanted: NDArray[np.bool_] | None = None,
-    told: Callable[[float], None] = lambda share: None,
+    report: Callable[[float], None] = lambda share: None,
 ) -> Refined:
     """Improve the coefficients of every bead, or of the wanted (B,); points are all points of the beads.
 
@@ -62,7 +62,7 @@ def refine(
     directions = basis.changes(task, points, starts.shape[2] - 1)
     left = np.flatnonzero(~done)
     for number, bead in enumerate(left):
-        told(number / len(left))
+        report(number / len(left))
         part, chosen = points.only(int(bead))
         tried = [
             _climbed(_Bead(task, part, thresholds[chosen]), start, directions[bead])
@@ -192,10 +192,10 @@ def _tightest(values: Array, points: int) -> NDArray[np.int64]:
     value = values.reshape(-1, points)
     padded = np.pad(value, ((0, 0), (1, 1)), constant_values=np.inf)
     lowest = (value <= padded[:, :-2]) & (value <= padded[:, 2:])
-    beside = lowest.copy()
-    beside[:, 1:] |= lowest[:, :-1]
-    beside[:, :-1] |= lowest[:, 1:]
-    return np.flatnonzero(beside.ravel())
+    tried = lowest.copy()
+    tried[:, 1:] |= lowest[:, :-1]
+    tried[:, :-1] |= lowest[:, 1:]
+    return np.flatnonzero(tried.ravel())
 
 
 def _at_all_points(
@@ -205,7 +205,7 @@ def _at_all_points(
     joints = task.joints(points, phi)
     if np.isnan(joints).any():
         return None
-    rates, matrix = task.spin_rates(points.frames.at(phi), joints)
+    rates, matrix = task.rotation_rates(points.frames.at(phi), joints)
     rates = rates * phi_rate[:, None]
     value = values_of(task, thresholds, phi, joints, jac.condition(matrix, task.parameters.characteristic_length))
     slope = slopes_of(task, phi, phi_rate, joints, rates, matrix)

@@ -26,7 +26,7 @@ FLAT = 1e-6
 CLOSE = 0.01
 
 
-def settle(task: Task, points: Points, thresholds: Array, coefficients: Array) -> Array:
+def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) -> Array:
     """(B, degree + 1) coefficients moved along their valley; unchanged where the optimum is the only one.
 
     points may be thinned; coefficients (B, degree + 1) are the optimum found.

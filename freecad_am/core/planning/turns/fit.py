@@ -34,18 +34,18 @@ def for_beads(task: Task, beads: Sequence[Bead], places: Sequence[Place]) -> lis
     """
     usable = [k for k, bead in enumerate(beads) if not turns.is_spiral(bead)]
     result: list[list[BeadPath] | None] = [None] * len(beads)
-    if task.endless.all() or not usable:
+    if task.continuous.all() or not usable:
         return result
-    free = dataclasses.replace(task, cell=_last_endless(task.cell))
+    free = dataclasses.replace(task, cell=_last_continuous(task.cell))
     coarse = gather([beads[k] for k in usable], task.cell, search.POINTS_PER_BEAD)
     threshold = task.thresholds(coarse)
     # only with slopes of whole turns can a seam be moved after the planning
     found = search.everywhere(free, coarse, threshold, search.CLOSING_SLOPES, OFFSETS)
     best, each = found.best(), np.arange(len(usable))
-    settled = ties.settle(free, coarse, threshold, found.coefficients[best, each])
+    resolved = ties.resolve(free, coarse, threshold, found.coefficients[best, each])
     for number, k in enumerate(usable):
         if found.margin[best[number], number] >= 0.0:
-            result[k] = _fitted(task, free, beads[k], places[k], settled[number : number + 1])
+            result[k] = _fitted(task, free, beads[k], places[k], resolved[number : number + 1])
     return result
 
 
@@ -58,7 +58,7 @@ def put_in(
     for k, path in enumerate(paths):
         result += helped.get(k, [path])
         lost = k not in helped and path.margin < FITS and turns.is_spiral(path.bead)
-        if lost and _would_fit_endless(task, path):
+        if lost and _would_fit_continuous(task, path):
             issues.append(Issue(
                 ERROR, "SPIRAL_LIMITED",
                 "a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with "
@@ -70,13 +70,13 @@ def put_in(
     return _numbered(result), issues
 
 
-def _would_fit_endless(task: Task, path: BeadPath) -> bool:
+def _would_fit_continuous(task: Task, path: BeadPath) -> bool:
     """Whether the end of the last axis is what keeps a spiral from its limits: it turns an axis that ends, or all limits
     would hold if the last one had none. Of the least evils the search may have taken one at another axis.
     """
     if turns.turning_axis(task, path.joints) is not None:
         return True
-    free = dataclasses.replace(task, cell=_last_endless(task.cell))
+    free = dataclasses.replace(task, cell=_last_continuous(task.cell))
     coarse = gather([path.bead], task.cell, search.POINTS_PER_BEAD)
     return bool((search.everywhere(free, coarse, task.thresholds(coarse)).margin >= 0.0).any())
 
@@ -116,7 +116,7 @@ def _one(task: Task, bead: Bead, place: Place, coefficients: Array, reason: str)
     return judged(task, [bead], [place], points, task.thresholds(points), coefficients, given)[0]
 
 
-def _last_endless(cell: Cell) -> Cell:
+def _last_continuous(cell: Cell) -> Cell:
     limits = cell.limits
     last = np.arange(limits.axes) >= cell.robot.chain.axes - 1
     free = dataclasses.replace(

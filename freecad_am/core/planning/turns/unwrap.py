@@ -29,7 +29,7 @@ ROUNDING = 1e-6
 USABLE = 0.98
 
 
-def counted_on(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
+def unwrapped(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with whole turns added so that each starts as near to the end of the one before as its margin allows."""
     result: list[BeadPath] = []
     back: dict[int, list[int]] = {}
@@ -58,7 +58,7 @@ def counted_on(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[
 def _turns(task: Task, path: BeadPath, before: Array) -> Array:
     """(axes,) whole turns that bring a bead nearest to the joints before without costing it any of its margin."""
     limits = task.cell.limits
-    half = np.where(task.endless, 0.0, 0.5 * (limits.upper - limits.lower))
+    half = np.where(task.continuous, 0.0, 0.5 * (limits.upper - limits.lower))
     kept = 0.0 if path.margin < 0.0 else (path.margin - 1e-9) * half
     by_axis = np.ascontiguousarray(path.joints.T)
     lowest = np.ceil((limits.lower + kept - by_axis.min(axis=1)) / TURN - 1e-12)

@@ -13,14 +13,14 @@ from ...geometry.walls.part_depths import PartDepths
 from ...issues import NOTE, WARNING, Issue
 from ...toolpath import Toolpath
 
-LEFT_OUT, BESIDE, TWICE = "NOT_DEPOSITED", "DEPOSITED_BESIDE", "DEPOSITED_TWICE"
-CODES = (LEFT_OUT, BESIDE, TWICE)
+LEFT_OUT, OUTSIDE, TWICE = "NOT_DEPOSITED", "DEPOSITED_BESIDE", "DEPOSITED_TWICE"
+CODES = (LEFT_OUT, OUTSIDE, TWICE)
 MUCH = 0.1  # of a part that is filled, laid over beads of the same layer
-ROOM = 1.25  # bead widths; a wall about as thick as a bead is deposited by one
+SINGLE_BEAD_WIDTHS = 1.25  # bead widths; a wall about as thick as a bead is deposited by one
 UNFILLED = 0.03  # of a part that is filled
-LITTLE = 0.02  # of a part
-SMALL = 0.01  # of the area of the faces that beads do not run on
-MOST = 8  # faces and solids named in a message
+NEGLIGIBLE = 0.02  # of a part
+SMALL_SHARE = 0.01  # of the area of the faces that beads do not run on
+MAX_NAMED = 8  # faces and solids named in a message
 MM3 = 1000.0  # in a cm3
 
 
@@ -35,7 +35,7 @@ class Balance:
     part: float | None
     left_out: float | None
     beads: float | None = None
-    beside: float | None = None
+    outside: float | None = None
     faces: tuple[str, ...] = ()
     solids: tuple[tuple[str, float], ...] = ()
     width: float = 0.0
@@ -57,14 +57,14 @@ def of_toolpath(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
     """The same once there are beads, which know better what they cover where they fill a part."""
     if toolpath.volumes is None:
         return _of_beads(value, toolpath, width)
-    part, left, beside = toolpath.volumes
+    part, left, outside = toolpath.volumes
     own = value.own if isinstance(value, SolidsOnHub) else None
     hub = own.hub if own else 0.0
     if own:  # what else of the part is within the surface that solids stand on
         left += max(own.volume - hub - part, 0.0)
         part = max(own.volume - hub, part)
     return Balance(
-        value.label, part + hub, left + hub, part - left + beside, beside, solids=own.apart if own else (),
+        value.label, part + hub, left + hub, part - left + outside, outside, solids=own.apart if own else (),
         width=toolpath.bead_width or 0.0, filled=True, twice=toolpath.twice, hub=hub,
     )
 
@@ -88,11 +88,11 @@ def together(balances: Sequence[Balance | None]) -> Balance | None:
         return balances[0] if balances else None
 
     def total(name: str) -> float | None:
-        told = [value for one in known if (value := getattr(one, name)) is not None]
-        return sum(told) if told else None
+        values = [value for one in known if (value := getattr(one, name)) is not None]
+        return sum(values) if values else None
 
     return Balance(
-        ", ".join(one.label for one in known), total("part"), total("left_out"), total("beads"), total("beside"),
+        ", ".join(one.label for one in known), total("part"), total("left_out"), total("beads"), total("outside"),
         tuple(f"{one.label} {face}" for one in known for face in one.faces),
         tuple(solid for one in known for solid in one.solids), width=known[0].width, thick=known[0].thick,
         filled=all(one.filled for one in known), twice=total("twice"), hub=total("hub") or 0.0,
@@ -105,18 +105,19 @@ def of_wall(depths: PartDepths, width: float) -> Balance:
     total = sum(depths.face_areas)
     faces = tuple(
         name for name, deep, area in zip(depths.faces, depths.face_depths, depths.face_areas, strict=True)
-        if deep > ROOM * width and area > SMALL * total
+        if deep > SINGLE_BEAD_WIDTHS * width and area > SMALL_SHARE * total
     )
     if not depths.volume:
         return Balance(depths.label, None, None, faces=faces, solids=depths.aside, width=width)
-    beside, beads = depths.beside(width), depths.area * width
+    outside, beads = depths.outside(width), depths.area * width
     thick = float(depths.thickness[len(depths.thickness) // 2]) if len(depths.thickness) else 0.0
     left = depths.volume - depths.within(width)
-    if not faces and not depths.aside and depths.volume - depths.within(ROOM * width) < LITTLE * depths.volume:
+    rest = depths.volume - depths.within(SINGLE_BEAD_WIDTHS * width)
+    if not faces and not depths.aside and rest < NEGLIGIBLE * depths.volume:
         left = 0.0
-    if beside < (ROOM - 1.0) / ROOM * beads:
-        beside = 0.0
-    return Balance(depths.label, depths.volume, left, beads, beside, faces, depths.aside, width, thick)
+    if outside < (SINGLE_BEAD_WIDTHS - 1.0) / SINGLE_BEAD_WIDTHS * beads:
+        outside = 0.0
+    return Balance(depths.label, depths.volume, left, beads, outside, faces, depths.aside, width, thick)
 
 
 def _of_solids(solids: SolidsOnHub) -> Balance | None:
@@ -135,16 +136,16 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
         return _of_filling(balance)
     found = []
     left = balance.left_out or 0.0
-    share = left > LITTLE * (balance.part or 0.0) and left > 0.0
+    share = left > NEGLIGIBLE * (balance.part or 0.0) and left > 0.0
     if balance.solids or balance.faces or share:
         why = f"a wall of one bead, {balance.width:.4g} mm wide, is planned" if balance.width else (
             "solids are built up on the hub, which is there before"
         )
         found.append(Issue(WARNING, LEFT_OUT, f"{_left_out(balance, share)}: {why}"))
-    if balance.beside:
+    if balance.outside:
         assert balance.beads is not None
         found.append(Issue(
-            WARNING, BESIDE, f"about {balance.beside / MM3:.3g} of {balance.beads / MM3:.3g} cm3 of beads lie beside "
+            WARNING, OUTSIDE, f"about {balance.outside / MM3:.3g} of {balance.beads / MM3:.3g} cm3 of beads lie beside "
             f"{balance.label}, which is {balance.thick:.2g} mm thick there, and beads are {balance.width:.4g} mm wide; give "
             "process.bead_width, or machine it off",
         ))
@@ -165,17 +166,17 @@ def _much(twice: float, whole: float) -> str:
 def _of_filling(of: Balance) -> tuple[Issue, ...]:
     found: list[Issue] = []
     part = (of.part or 0.0) - of.hub
-    if of.hub > LITTLE * (of.part or 0.0):
-        found += issues(replace(of, left_out=of.hub, beside=None, twice=None, width=0.0, filled=False))
+    if of.hub > NEGLIGIBLE * (of.part or 0.0):
+        found += issues(replace(of, left_out=of.hub, outside=None, twice=None, width=0.0, filled=False))
     of = replace(of, part=part, left_out=(of.left_out or 0.0) - of.hub)
     if (of.left_out or 0.0) > UNFILLED * part:
         found.append(Issue(
             WARNING, LEFT_OUT, f"{_left_out(of, True)}: beads of {of.width:.4g} mm do not reach into what is "
             "narrower, layers not above the last cut, and nothing is laid within a hub; use narrower beads, or lower layers",
         ))
-    if (of.beside or 0.0) > UNFILLED * part:
+    if (of.outside or 0.0) > UNFILLED * part:
         found.append(Issue(
-            WARNING, BESIDE, f"about {(of.beside or 0.0) / MM3:.3g} cm3 of beads lie beside the {part / MM3:.3g} cm3 of "
+            WARNING, OUTSIDE, f"about {(of.outside or 0.0) / MM3:.3g} cm3 of beads lie beside the {part / MM3:.3g} cm3 of "
             f"{of.label}: beads of {of.width:.4g} mm stand out where it is narrower; use narrower beads, or machine it off",
         ))
     twice = of.twice or 0.0
@@ -194,7 +195,7 @@ def as_dict(balance: Balance | None) -> dict[str, Any] | None:
         return None
     left = None if balance.part is None or balance.left_out is None else balance.part - balance.left_out
     volumes = {
-        "part_cm3": balance.part, "deposited_cm3": left, "left_out_cm3": balance.left_out, "beside_cm3": balance.beside,
+        "part_cm3": balance.part, "deposited_cm3": left, "left_out_cm3": balance.left_out, "beside_cm3": balance.outside,
         "twice_cm3": balance.twice,
     }
     return {
@@ -225,4 +226,4 @@ def _left_out(of: Balance, share: bool) -> str:
 
 
 def _names(names: Sequence[str]) -> str:
-    return ", ".join(names[:MOST]) + (", ..." if len(names) > MOST else "")
+    return ", ".join(names[:MAX_NAMED]) + (", ..." if len(names) > MAX_NAMED else "")

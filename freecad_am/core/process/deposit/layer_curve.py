@@ -27,7 +27,7 @@ SMOOTH = 1e-3  # rad; where the tangents of a bead are known, a corner is a poin
 _ALL = 15_000  # pairs of points and segments that are looked at one by one: of more a tree finds the near ones sooner
 _CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
 _TIE = 1e-9  # mm; where two chords meet both are the nearest: rounding does not choose between them
-_NEAR = 8  # segments that are tried first
+_FIRST_TRIED = 8  # segments that are tried first
 _BEYOND = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
 
 
@@ -59,7 +59,7 @@ def distance(points: Array, curve: Curve) -> Array:
 
     reach = 0.5 * float(lengths(curve.end - curve.start).max()) + 2.0 * float(bow.max())
     middles = cKDTree(0.5 * (curve.start + curve.end))
-    apart, near = middles.query(points, _NEAR)
+    apart, near = middles.query(points, _FIRST_TRIED)
     radius: Array = (apart[:, 0] + reach) * (1.0 + 1e-9)
     found = np.empty(len(points))
     # where all that may be nearest are among those few, as nearly everywhere, no others need be looked for
@@ -199,8 +199,8 @@ def _corners(before: Array, after: Array, closed: bool) -> NDArray[np.bool_]:
     turn = np.arctan2(lengths(np.cross(before, after)), np.einsum("ij,ij->i", before, after))
     if not closed:
         turn[0] = 0.0
-    beside = np.maximum(np.roll(turn, 1), np.roll(turn, -1))
-    corners: NDArray[np.bool_] = (turn >= CORNER) | ((turn > SLIGHT) & (turn > SUDDEN * beside))
+    adjacent = np.maximum(np.roll(turn, 1), np.roll(turn, -1))
+    corners: NDArray[np.bool_] = (turn >= CORNER) | ((turn > SLIGHT) & (turn > SUDDEN * adjacent))
     return corners
 
 

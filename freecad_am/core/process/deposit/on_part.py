@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.told import place
+from ...geometry.formatting import place
 from ...issues import ERROR, Issue
 from ...toolpath import Toolpath
 from ...types import Array, Index
 
 CODE = "OFF_PART"
-MOST = 20_000  # places looked at, where beads are not more
+MAX_PLACES = 20_000  # places looked at, where beads are not more
 ROUNDED = 0.02  # mm that a wall may be off its faces beside the chord error: tables, fits, imported surfaces
 
 
@@ -33,7 +33,7 @@ def places(toolpath: Toolpath) -> Places:
     beads = list(toolpath)
     size = np.array([len(bead) for _, _, bead in beads])
     start = np.cumsum(size) - size
-    step = max(1, int(np.ceil(size.sum() / MOST)))
+    step = max(1, int(np.ceil(size.sum() / MAX_PLACES)))
     chosen = np.unique(np.concatenate([start, start + size // 2, start + size - 1, np.arange(0, size.sum(), step)]))
     of = np.searchsorted(start, chosen, side="right") - 1
     points, build = (np.concatenate(every)[chosen] for every in zip(*((bead.points, bead.build) for _, _, bead in beads)))

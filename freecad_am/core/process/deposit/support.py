@@ -26,13 +26,13 @@ Ground = Callable[[Array, Array], Mask]
 
 CODE = "UNSUPPORTED"
 REACH = 1.5  # layer heights that what carries a bead may be below it
-BESIDE = 0.1  # layer heights; what is no farther below than this is beside
+LEVEL_WITH = 0.1  # layer heights; what is no farther below than this is beside
 GRACE = 0.05  # of the width that counts; pieces have places, and chords are not arcs
 PIECE = 0.25  # of the width: no piece of a bead is longer, but for the chord error, by which beads count as wider
 SIDE = 0.25  # of the width, from the middle of a bead to those of its halves
 BACK = 1.5  # how much longer than REACH the way back along a bead has to be, for it to lie on itself as a spiral does
-MOST_TOLD = 10  # layers
-NEAR = 8  # pieces about the place below that are asked before all
+MOST_NAMED = 10  # layers
+FIRST_ASKED = 8  # pieces about the place below that are asked before all
 PAIRS = 2_000_000  # of pieces looked at together; bounds the memory
 
 
@@ -98,7 +98,7 @@ def _alone(
     if not len(left):
         return np.zeros(0, dtype=np.intp)
     tree = cKDTree(pieces.middle)
-    near = np.asarray(tree.query(at[left] - height * pieces.build[some[left]], k=min(NEAR, len(pieces)))[1])
+    near = np.asarray(tree.query(at[left] - height * pieces.build[some[left]], k=min(FIRST_ASKED, len(pieces)))[1])
     for column in near.reshape(len(left), -1).T:  # a spiral lies on itself
         mine = some[left]
         done[left[_earlier(pieces, mine, column, toolpath) & _below(pieces, mine, at[left], column, toolpath)]] = True
@@ -106,9 +106,9 @@ def _alone(
     if not len(left):
         return np.zeros(0, dtype=np.intp)
     wide = 0.5 * float(pieces.width.max()) * (1.0 + 2.0 * GRACE)
-    radius = math.hypot(wide, 0.5 * (REACH - BESIDE) * height) + toolpath.chord_error
+    radius = math.hypot(wide, 0.5 * (REACH - LEVEL_WITH) * height) + toolpath.chord_error
     radius = max(radius, REACH * height * (1.0 + 1e-9)) if pieces.closing.any() else radius
-    centre = at[left] - 0.5 * (REACH + BESIDE) * height * pieces.build[some[left]]
+    centre = at[left] - 0.5 * (REACH + LEVEL_WITH) * height * pieces.build[some[left]]
     centre[pieces.closing[some[left]]] = at[left][pieces.closing[some[left]]]
     carried = np.zeros(len(left), dtype=bool)
     for rows in _chunks(tree, centre, radius):
@@ -151,7 +151,7 @@ def _below(pieces: Pieces, mine: Index, at: Array, other: Index, toolpath: Toolp
     height = toolpath.layer_height
     far = REACH * height * (1.0 + 1e-6) + toolpath.chord_error
     held = 0.5 * pieces.width[other] * (1.0 + 2.0 * GRACE) + toolpath.chord_error
-    under = (deep >= BESIDE * height) & (deep <= far) & (aside <= held)
+    under = (deep >= LEVEL_WITH * height) & (deep <= far) & (aside <= held)
     found: Mask = under | (pieces.closing[mine] & (square <= far * far))
     return found
 
@@ -191,9 +191,9 @@ def _issues(runs: list[_Run], toolpath: Toolpath, reach: float) -> list[Issue]:
     for run in runs:
         layers.setdefault(run.layer, []).append(run)
     total = {layer: math.fsum(run.length for run in some) for layer, some in layers.items()}
-    told = sorted(sorted(total, key=lambda layer: (-total[layer], layer))[:MOST_TOLD])
+    worst = sorted(sorted(total, key=lambda layer: (-total[layer], layer))[:MOST_NAMED])
     found = []
-    for layer in told:
+    for layer in worst:
         longest = max(layers[layer], key=lambda run: run.length)
         found.append(Issue(
             WARNING, CODE, f"{total[layer]:.4g} mm of beads lie over nothing, {longest.length:.4g} mm of them in a row from "
@@ -201,9 +201,9 @@ def _issues(runs: list[_Run], toolpath: Toolpath, reach: float) -> list[Issue]:
             "deposit what carries them first, let the part grow from another side, or leave them out",
             layer, longest.bead, longest.point,
         ))
-    if len(total) > len(told):
-        rest = math.fsum(length for layer, length in total.items() if layer not in told)
+    if len(total) > len(worst):
+        rest = math.fsum(length for layer, length in total.items() if layer not in worst)
         found.append(Issue(
-            WARNING, CODE, f"{len(total) - len(told)} layers more have beads over nothing, {rest:.5g} mm of them",
+            WARNING, CODE, f"{len(total) - len(worst)} layers more have beads over nothing, {rest:.5g} mm of them",
         ))
     return found

@@ -23,7 +23,7 @@ ACROSS = 0.3  # cosine of the angle between beads that cross rather than run bes
 BEYOND = 0.75  # of a piece's length from its middle along it; what is farther is past the end of a bead
 
 
-def laid_twice(toolpath: Toolpath) -> float:
+def deposited_twice(toolpath: Toolpath) -> float:
     """mm3 of beads that lie where others of their layer do, or the same bead does."""
     pieces = joined(cut(toolpath, PIECE), PIECE)
     ends = np.searchsorted(pieces.layer, np.arange(len(toolpath.layers) + 1))
@@ -41,7 +41,7 @@ def _shared(pieces: Pieces, layer: slice, around: Array, level: float) -> float:
     middle, width = pieces.middle[layer], pieces.width[layer]
     pairs: Index = cKDTree(middle).query_pairs(float(width.max()), output_type="ndarray").astype(np.intp)
     one, other = np.vstack([pairs, pairs[:, ::-1]]).T
-    kept = _beside(pieces, layer.start + one, layer.start + other, around)
+    kept = _side_by_side(pieces, layer.start + one, layer.start + other, around)
     one, other = one[kept], other[kept]
     build, travel = pieces.build[layer][one], pieces.travel[layer][one]
     way = middle[other] - middle[one]
@@ -61,7 +61,7 @@ def _shared(pieces: Pieces, layer: slice, around: Array, level: float) -> float:
     return float(0.5 * np.minimum(most.sum(axis=0), width) @ pieces.length[layer])
 
 
-def _beside(pieces: Pieces, one: Index, other: Index, around: Array) -> Mask:
+def _side_by_side(pieces: Pieces, one: Index, other: Index, around: Array) -> Mask:
     """Which pairs of pieces are of two beads, or of one that comes beside itself."""
     arc = np.abs(pieces.along[one] - pieces.along[other])
     arc = np.minimum(arc, around[pieces.bead[one]] - arc)

@@ -62,14 +62,14 @@ class BeadModel:
     radii: tuple[float, float]
     wire_feed: float
     feeds: tuple[float, float] | None = field(default=None, repr=False)
-    paces: tuple[float, float] | None = field(default=None, repr=False)
+    speed_ratios: tuple[float, float] | None = field(default=None, repr=False)
 
     def at_feed(self, feed: float) -> BeadModel:
         """The model of beads at another wire feed, mm/s; the same where nothing like it was measured."""
-        if self.feeds is None or self.paces is None or not self.feeds[0] <= feed <= self.feeds[1]:
+        if self.feeds is None or self.speed_ratios is None or not self.feeds[0] <= feed <= self.feeds[1]:
             return self
         more = float(np.cbrt(feed / self.wire_feed))
-        low, high = (feed * pace for pace in self.paces)
+        low, high = (feed * ratio for ratio in self.speed_ratios)
         return replace(
             self, width=replace(self.width, m=more * self.width.m), height=replace(self.height, m=more * self.height.m),
             speeds=(max(low, self.speeds[0]), min(high, self.speeds[1])), wire_feed=feed,
@@ -133,23 +133,23 @@ def fit(
     for name, (column, unit) in columns.items():
         wrong = np.flatnonzero(~((np.isfinite(column) | (column is radius)) & (column > 0.0)))
         if len(wrong):
-            told = f"{name} {column[wrong[0]]:.9g} {unit} is not a positive number; mend the row, or leave it out"
-            raise InputError("BAD_TABLE", row_name(label, int(wrong[0]), lines), told)
-    counted = speed if feeds is None else speed * (wire_feed / feeds)
-    terms = np.stack([np.cbrt(1.0 / (MINUTE * counted)), np.ones(len(radius))], axis=1)
+            text = f"{name} {column[wrong[0]]:.9g} {unit} is not a positive number; mend the row, or leave it out"
+            raise InputError("BAD_TABLE", row_name(label, int(wrong[0]), lines), text)
+    equivalent = speed if feeds is None else speed * (wire_feed / feeds)
+    terms = np.stack([np.cbrt(1.0 / (MINUTE * equivalent)), np.ones(len(radius))], axis=1)
     if np.isfinite(radius).any():
         terms = np.insert(terms, 1, 1.0 / radius, axis=1)
     scaled = terms / np.linalg.norm(terms, axis=0)
     singular = np.linalg.svd(scaled, compute_uv=False)
     if singular[-1] < FLATTEST * singular[0]:
-        raise InputError("COLLINEAR_TABLE", label, _alike(radius, speed, counted))
+        raise InputError("COLLINEAR_TABLE", label, _alike(radius, speed, equivalent))
     fits = [_fit(terms, column) for column in (width, height)]
     if fits[0].m <= 0.0:
         raise InputError("NO_MODEL", label, f"beads get wider with speed (m = {fits[0].m:.4g}); check the table's columns")
     made = BeadModel(
         fits[0], fits[1], (float(speed.min()), float(speed.max())), (float(radius.min()), float(radius.max())), wire_feed
     )
-    return made if feeds is None else replace(made, feeds=_ends(feeds), paces=_ends(speed / feeds))
+    return made if feeds is None else replace(made, feeds=_ends(feeds), speed_ratios=_ends(speed / feeds))
 
 
 def _ends(values: Array) -> tuple[float, float]:
@@ -161,7 +161,7 @@ def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
     return f"{label} row {row + 1}" + (f" (line {lines[row]})" if len(lines) else "")
 
 
-def _alike(radius: Array, speed: Array, counted: Array) -> str:
+def _alike(radius: Array, speed: Array, equivalent: Array) -> str:
     """Why speeds and radii of a table do not determine the coefficients, and what to measure."""
     straight = np.isinf(radius).all()
     same = [
@@ -169,10 +169,10 @@ def _alike(radius: Array, speed: Array, counted: Array) -> str:
         for name, column, unit in (("radius", radius, "mm"), ("travel speed", MINUTE * speed, "mm/min"))
         if not np.isinf(column).any() and np.ptp(column) <= FLATTEST * column.max()
     ]
-    if not same and np.ptp(counted) <= FLATTEST * counted.max():
+    if not same and np.ptp(equivalent) <= FLATTEST * equivalent.max():
         return "all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed"
-    told = ", and ".join(same) or "speeds and radii vary only together"
-    return f"{told}; measure at least two speeds{'' if straight else ' and two radii'}"
+    text = ", and ".join(same) or "speeds and radii vary only together"
+    return f"{text}; measure at least two speeds{'' if straight else ' and two radii'}"
 
 
 def _fit(terms: Array, values: Array) -> Fit:

@@ -25,7 +25,7 @@ def radii(flat: Array, closed: bool, window: float) -> Array:
     return _radii(np.linalg.norm(step, axis=1), heading, last, window)
 
 
-def radii_beside(points: Array, build: Array, closed: bool, window: float) -> Array:
+def side_radii(points: Array, build: Array, closed: bool, window: float) -> Array:
     """The same of a bead in space, points (n, 3): how it bends about its build directions (n, 3), to its sides."""
     step = np.diff(points, axis=0)
     before, after, up = step[:-1], step[1:], build[1:-1]

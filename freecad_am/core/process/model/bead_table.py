@@ -72,8 +72,8 @@ def measured(name: str, folder: Path | None = None) -> Measured:
             "NO_FILE", name, f"the calibration table cannot be read ({why}); give none, csw or the path of one",
         ) from None
     numbered = enumerate(text.splitlines(), 1)
-    told = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
-    lines, numbers = [line for _, line in told], tuple(number for number, _ in told[1:])
+    filled = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
+    lines, numbers = [line for _, line in filled], tuple(number for number, _ in filled[1:])
     rows = list(csv.DictReader(lines))
     header = [] if not lines else next(csv.reader(lines[:1]))
     missing = [column for column in COLUMNS if column not in header]
@@ -104,5 +104,5 @@ def _number(row: dict[str, str | None], column: str, where: str) -> float:
     try:
         return float(text)
     except ValueError:
-        told = f"{column} {text!r} is not a number" if text else f"there is no {column}"
-        raise InputError("BAD_TABLE", where, f"{told}; mend the row, or leave it out") from None
+        what = f"{column} {text!r} is not a number" if text else f"there is no {column}"
+        raise InputError("BAD_TABLE", where, f"{what}; mend the row, or leave it out") from None

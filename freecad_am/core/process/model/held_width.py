@@ -12,7 +12,7 @@ from ...parameters.process import ProcessParameters
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Mask
 from .bead_model import BeadModel
-from .bead_speed import followed, radii_beside
+from .bead_speed import followed, side_radii
 from .notes import of_model
 from .wire import with_model
 
@@ -56,12 +56,12 @@ def held(toolpath: Toolpath, process: ProcessParameters, model: BeadModel) -> To
         some = [_held(bead, process, model) for bead in layer.beads]
         made += some
         layers.append(replace(layer, beads=tuple(one.bead for one in some)))
-    told = of_model(made, toolpath.layer_height, process, model)
+    widened = of_model(made, toolpath.layer_height, process, model)
     return replace(
-        toolpath, layers=tuple(layers), law=model.law(process.acceleration), issues=(*toolpath.issues, *told),
+        toolpath, layers=tuple(layers), law=model.law(process.acceleration), issues=(*toolpath.issues, *widened),
     )
 
 
 def _held(bead: Bead, process: ProcessParameters, model: BeadModel) -> AtSpeed:
-    radius = radii_beside(bead.points, bead.build, bead.closed, process.bead_width)
+    radius = side_radii(bead.points, bead.build, bead.closed, process.bead_width)
     return at_speed(bead, radius, bead.points, bead.closed, process, model)

@@ -15,7 +15,7 @@ CODE = "MATERIAL_SPEED"
 ROUNDING = 1e-6  # of a speed
 
 
-def speeds_told(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+def with_speed_issues(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     """The toolpath with a warning where beads are slower or faster than their material is laid, at the worst of them.
     InputError BAD_VALUE for a slowest speed above the fastest."""
     slowest, fastest = process.material.slowest or 0.0, process.material.fastest

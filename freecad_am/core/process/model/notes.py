@@ -13,7 +13,7 @@ from ...parameters.process import ProcessParameters
 from ...toolpath import Bead
 from ...types import Array, Mask
 from .bead_model import MINUTE, BeadModel
-from .predicted import heights_told
+from .predicted import with_heights
 from .wire import with_model
 
 CLAMPED = 0.05  # of the length
@@ -44,7 +44,7 @@ def of_model(made: Sequence[Held], layer_height: float, process: ProcessParamete
         f"{speed.max():.4g} mm/min",
     )]
     found += _outside(made, length, process.bead_width, model)
-    found.append(heights_told([one.bead for one in made], layer_height, process, model))
+    found.append(with_heights([one.bead for one in made], layer_height, process, model))
     feed = with_model(process, model)
     if abs(feed - model.wire_feed) > 0.01 * model.wire_feed:
         low, high = model.feeds or (model.wire_feed, model.wire_feed)

@@ -34,17 +34,17 @@ class Segments:
 
 def segments(beads: Sequence[Bead]) -> Segments:
     """Of the beads that a bead model set the speed of."""
-    told = [(bead, bead.width, bead.height) for bead in beads if bead.width is not None and bead.height is not None]
-    if not told:
+    known = [(bead, bead.width, bead.height) for bead in beads if bead.width is not None and bead.height is not None]
+    if not known:
         return Segments(*(np.empty(0) for _ in range(5)))
-    speed = [bead.speed[1:] for bead, _, _ in told]
+    speed = [bead.speed[1:] for bead, _, _ in known]
     return Segments(
-        np.concatenate([np.linalg.norm(np.diff(bead.points, axis=0), axis=1) for bead, _, _ in told]),
+        np.concatenate([np.linalg.norm(np.diff(bead.points, axis=0), axis=1) for bead, _, _ in known]),
         MINUTE * np.concatenate(speed),
-        np.concatenate([0.5 * (width[1:] + width[:-1]) for _, width, _ in told]),
-        np.concatenate([0.5 * (height[1:] + height[:-1]) for _, _, height in told]),
+        np.concatenate([0.5 * (width[1:] + width[:-1]) for _, width, _ in known]),
+        np.concatenate([0.5 * (height[1:] + height[:-1]) for _, _, height in known]),
         np.concatenate([(np.nan if bead.wire_share is None else bead.wire_share) * some
-                        for (bead, _, _), some in zip(told, speed)]),
+                        for (bead, _, _), some in zip(known, speed)]),
     )
 
 
@@ -77,7 +77,7 @@ def beads(toolpath: Toolpath, numbers: Sequence[int] | NDArray[np.intp] | None =
     }
 
 
-def heights_told(
+def with_heights(
     beads: Sequence[Bead], layer_height: float, process: ProcessParameters, model: BeadModel, as_run: bool = False
 ) -> Issue:
     """How high beads of the model are predicted at their speeds, against the layers. as_run: axes can follow these."""

@@ -59,10 +59,10 @@ def _of_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     off = [one for one in taken_of(toolpath) if by_wire(one, process) and abs(given - one.rate) > TOLERANCE * one.rate]
     if not off:
         return toolpath
-    told = ", ".join(f"{one.name} {one.rate:.4g}" for one in off)
+    text = ", ".join(f"{one.name} {one.rate:.4g}" for one in off)
     return replace(toolpath, issues=(*toolpath.issues, Issue(
         WARNING, CODE, f"the wire feeds {given:.4g} mm3/s, but beads of these classes, at their own travel speeds, take "
-        f"{told} mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the "
+        f"{text} mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the "
         "travel speed of the others", off[0].layer, off[0].bead,
     )))
 

@@ -10,12 +10,12 @@ from scipy.spatial import cKDTree
 
 from ...geometry.columns import dots
 from ...geometry.fitted import PredictedShape
-from ...geometry.told import place
+from ...geometry.formatting import place
 from ...issues import WARNING, Issue
 from ...types import Array, Index, Mask
 from .faces import Faces
 from .grid import Grid
-from .laying import Laid
+from .laying import PredictedDeposit
 
 CODE, DRIFT = "ALLOWANCE", "LAYER_DRIFT"
 MUCH = 0.5  # of a layer height: layers that end farther off than this are told
@@ -25,7 +25,7 @@ STEP = 0.5  # of a cube's edge, between places that are asked along a normal
 REACH = 2.0  # widths and layer heights that the deposit is looked for, outwards and inwards
 STANDS = 0.25  # layer heights above where a first layer begins, up to which a face that looks down stands there
 DOWN = 0.5  # cosine against the build direction of such a face
-NEAR = 1.5  # widths from a first layer's bead, beyond which nothing is known of what it stands on
+KNOWN_WIDTHS = 1.5  # widths from a first layer's bead, beyond which nothing is known of what it stands on
 AT_ONCE = 4_000
 
 
@@ -48,7 +48,7 @@ class Compared:
         return found
 
 
-def compared(of: Laid, faces: Faces) -> Compared:
+def compared(of: PredictedDeposit, faces: Faces) -> Compared:
     """The deposit from all faces, but those on which the part stands and what lies below where it begins."""
     pieces = of.pieces
     kept = faces.rows(_to_be_covered(of, faces))
@@ -64,15 +64,15 @@ def compared(of: Laid, faces: Faces) -> Compared:
     return Compared(kept, out, bare, reach, piece)
 
 
-def _to_be_covered(of: Laid, faces: Faces) -> Mask:
+def _to_be_covered(of: PredictedDeposit, faces: Faces) -> Mask:
     """Which places are not below a first layer, nor on faces that stand on what that lies on."""
     begins = of.pieces.rows(np.flatnonzero(of.pieces.first))
     away, near = cKDTree(begins.middle).query(faces.points)
     build, height = begins.build[near], begins.height[near]
     up = dots(faces.points - begins.middle[near], build)
-    beside = np.sqrt(np.maximum(away * away - up * up, 0.0)) < NEAR * begins.width[near]
+    adjacent = np.sqrt(np.maximum(away * away - up * up, 0.0)) < KNOWN_WIDTHS * begins.width[near]
     down = dots(faces.normals, build) < -DOWN
-    below = beside & ((up < -STANDS * height) | ((up < STANDS * height) & down))
+    below = adjacent & ((up < -STANDS * height) | ((up < STANDS * height) & down))
     found: Mask = ~below
     return found
 
@@ -113,7 +113,7 @@ def _first_change(grid: Grid, points: Array, ways: Array, steps: Array, inside: 
     return length
 
 
-def figures(of: Laid, found: Compared, allowance: float) -> PredictedShape:
+def figures(of: PredictedDeposit, found: Compared, allowance: float) -> PredictedShape:
     """What it comes to, for an allowance of so many mm on all faces. ValueError without faces to be covered."""
     if not len(found.faces):
         raise ValueError("there are no faces to be covered")
@@ -125,7 +125,7 @@ def figures(of: Laid, found: Compared, allowance: float) -> PredictedShape:
         return float(area[some].sum()) / whole
 
     return PredictedShape(
-        of.fed, of.laid, of.grid.edge, of.drift, allowance, len(area), float(found.deviation[worst]),
+        of.fed, of.deposited, of.grid.edge, of.drift, allowance, len(area), float(found.deviation[worst]),
         float(found.deviation @ area) / whole, float(found.deviation.max()), share(found.deviation < allowance - known),
         share(found.deviation < -known), share(found.bare), found.reach, found.faces.points[worst],
         int(pieces.layer[piece]), int(of.bead_in_layer[piece]), int(pieces.point[piece]),
@@ -141,17 +141,17 @@ def issues(found: PredictedShape, layer_heights: Array, first: Mask, remedy: str
         return drifts
     lacks = found.allowance - found.least
     if found.least <= -found.reach:
-        told = f"there is none within {found.reach:.3g} mm"
+        text = f"there is none within {found.reach:.3g} mm"
     elif found.least < 0.0:
-        told = f"the part sticks out by {-found.least:.3g} mm"
+        text = f"the part sticks out by {-found.least:.3g} mm"
     else:
-        told = f"{found.least:.3g} mm are left to machine"
+        text = f"{found.least:.3g} mm are left to machine"
     low = any(" mm below where " in issue.message for issue in drifts)  # more of it would be needed everywhere
     remedy = "Lay layers as high as they come out first" if low else remedy.format(f"{lacks:.3g}")
     return (*drifts, Issue(
         WARNING, CODE, f"on {100.0 * found.short:.3g} % of the faces the predicted deposit does not reach "
         f"{found.allowance:g} mm beyond the part, on {100.0 * found.outside:.3g} % it ends within the part: at "
-        f"{place(found.worst)} {told}. {remedy}", found.layer, found.bead, found.point,
+        f"{place(found.worst)} {text}. {remedy}", found.layer, found.bead, found.point,
     ))
 
 

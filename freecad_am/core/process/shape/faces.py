@@ -12,7 +12,7 @@ from ...geometry.mesh.solid import spread
 from ...types import Array, Index, Mask
 
 PLACES = 20_000  # about
-MOST = 2 * PLACES
+LEAF_SIZE = 2 * PLACES
 OUTSIDE, BOTH = "outside", "both"
 
 
@@ -50,7 +50,7 @@ def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
 def thinned(some: Faces) -> Faces:
     """Of faces with many more places than PLACES as many as stand for about equal areas: slivers go with their normals, of
     which nobody can be sure."""
-    if len(some) <= MOST:
+    if len(some) <= LEAF_SIZE:
         return some
     ends = np.cumsum(some.areas)
     chosen = np.unique(np.searchsorted(ends, (np.arange(PLACES) + 0.5) / PLACES * ends[-1]))

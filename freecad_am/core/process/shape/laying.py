@@ -26,14 +26,14 @@ from .footprint import Footprint, footprint
 from .grid import Grid
 from .strands import Strands, strands, together
 
-MOST = 400_000  # cubes, about, of a deposit
+MAX_CUBES = 400_000  # cubes, about, of a deposit
 FINEST = 0.5  # of a layer height, and half of that of a bead's width: no cube is smaller
 PARABOLA = 1.5  # height of a parabola over the mean of it
 FLAT = 0.738  # of a width: beads no farther apart have a flat surface between them
-BESIDE = 1.05  # of the mean of two widths: what is farther apart has nothing between
+NEIGHBOUR_WIDTHS = 1.05  # of the mean of two widths: what is farther apart has nothing between
 SAG = 0.5  # layer heights that a bead fills at most below where it should lie
 LOOKED = 2.0  # layer heights above and below, within which what a layer lies on is looked for
-ROOM = 1.0  # layer heights that a bead is looked for above where it should end
+SEARCH_HEIGHT = 1.0  # layer heights that a bead is looked for above where it should end
 AGAIN = 4  # times that more room is looked for, twice as much each time
 POOL = 1.5  # widths over which a melt levels itself
 ROUNDS = 10  # in which levels are found
@@ -54,7 +54,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Laid:
+class PredictedDeposit:
     """A deposit. grid: what is filled. fed, laid: mm3 that the wire fed, and that found a place. pieces: all that was laid,
     with level (n,): mm of the surface in their middle above the path, and bead_in_layer (n,). drift: (layers,) mm by which
     the surface of each layer, in the mean, ends above where the next one should begin, NaN where it has no beads."""
@@ -64,7 +64,7 @@ class Laid:
     level: Array
     bead_in_layer: Index
     fed: float
-    laid: float
+    deposited: float
     drift: Array
 
 
@@ -76,10 +76,10 @@ def parts_of(toolpath: Toolpath, processes: Sequence[ProcessParameters]) -> tupl
 def edge_of(pieces: Strands) -> float:
     """mm of the cubes for a deposit of these pieces: fine against layers and beads, as far as their number allows."""
     fine = FINEST * min(float(pieces.height.min()), 0.5 * float(pieces.width.min()))
-    return max(fine, float(np.cbrt(pieces.volume.sum() / MOST)))
+    return max(fine, float(np.cbrt(pieces.volume.sum() / MAX_CUBES)))
 
 
-def laid(parts: Sequence[Part], report: Report, edge: float | None = None) -> Laid:
+def predicted_deposit(parts: Sequence[Part], report: Report, edge: float | None = None) -> PredictedDeposit:
     """The deposit of features, one after the other. edge: mm of the cubes it is told in, as `edge_of` where it is left out.
     ValueError where it is not known how wide beads count."""
     each = [strands(part.toolpath, part.process) for part in parts]
@@ -105,7 +105,7 @@ def laid(parts: Sequence[Part], report: Report, edge: float | None = None) -> La
             beads.append(some.bead - some.bead[0])
             below = some, over
     numbered = np.concatenate([part.numbers[own.layer] for part, own in zip(parts, each, strict=True)])
-    return Laid(
+    return PredictedDeposit(
         grid, replace(pieces, layer=numbered), np.concatenate(levels), np.concatenate(beads), float(pieces.volume.sum()),
         total, drift,
     )
@@ -153,7 +153,7 @@ class _Layer:
 
     def lay(self) -> float:
         """Fill the grid with what is fed to the layer; mm3 that found a place."""
-        high = self.base + self.rise + (1.0 + ROOM) * self.pieces.height
+        high = self.base + self.rise + (1.0 + SEARCH_HEIGHT) * self.pieces.height
         fed = float(self.pieces.volume.sum())
         placed, wanted = 0.0, self.pieces.volume
         for _ in range(AGAIN):
@@ -206,14 +206,14 @@ class _Layer:
         pool = _pools(pieces)
         cube, level = edge**3, pool @ (self.base + self.rise) / pool.sum(axis=1).A1 + pieces.height
 
-        def room(at: Array) -> Array:
+        def margin(at: Array) -> Array:
             found: Array = near.summed(filled(at), len(pieces)) * cube
             return found
 
         for _ in range(ROUNDS):
-            here = room(level)
+            here = margin(level)
             # what a surface a quarter of a cube higher and lower would hold more
-            area = (room(level + 0.25 * edge) - room(level - 0.25 * edge)) / (0.5 * edge)
+            area = (margin(level + 0.25 * edge) - margin(level - 0.25 * edge)) / (0.5 * edge)
             step = (pool @ (wanted - here)) / np.maximum(pool @ area, LEAST * (pool @ (pieces.width * pieces.length)))
             level = np.minimum(level + np.clip(step, -pieces.height, pieces.height), high)
         found: Array = level
@@ -230,7 +230,8 @@ def _free_sides(pieces: Strands) -> Array:
     """(n, 2) of how much of a parabola's fall the surface has to the left and to the right of pieces of a layer: all of it
     where no other bead lies beside, none where one lies close."""
     free = np.ones((len(pieces), 2))
-    pairs = cKDTree(pieces.middle).query_pairs(BESIDE * float(pieces.width.max()), output_type="ndarray").astype(np.intp)
+    reach = NEIGHBOUR_WIDTHS * float(pieces.width.max())
+    pairs = cKDTree(pieces.middle).query_pairs(reach, output_type="ndarray").astype(np.intp)
     if not len(pairs):
         return free
     one, other = np.vstack([pairs, pairs[:, ::-1]]).T
@@ -240,9 +241,9 @@ def _free_sides(pieces: Strands) -> Array:
     aside, ahead = dots(way, pieces.side[one]), dots(way, pieces.along[one])
     mean = 0.5 * (pieces.width[one] + pieces.width[other])
     share = np.abs(aside) / mean
-    beside = (np.abs(ahead) <= 0.5 * (pieces.length[one] + pieces.length[other])) & (share <= BESIDE)
+    adjacent = (np.abs(ahead) <= 0.5 * (pieces.length[one] + pieces.length[other])) & (share <= NEIGHBOUR_WIDTHS)
     valley = np.where(pieces.real[one], np.clip((share - FLAT) / (1.0 - FLAT), 0.0, 1.0), 0.0)
-    np.minimum.at(free, (one[beside], (aside < 0.0).astype(np.intp)[beside]), valley[beside])
+    np.minimum.at(free, (one[adjacent], (aside < 0.0).astype(np.intp)[adjacent]), valley[adjacent])
     return free
 
 

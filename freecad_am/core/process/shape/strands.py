@@ -74,8 +74,8 @@ def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Arra
         return fed
     wide = np.full(len(bead), toolpath.bead_width or 0.0) if bead.width is None else bead.width
     tall = np.full(len(bead), toolpath.layer_height) if bead.height is None else bead.height
-    counted = wide * tall
-    middle: Array = 0.5 * (counted[1:] + counted[:-1])
+    unwrapped = wide * tall
+    middle: Array = 0.5 * (unwrapped[1:] + unwrapped[:-1])
     return middle
 
 

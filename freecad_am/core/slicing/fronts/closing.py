@@ -32,7 +32,7 @@ SAMPLED = 0.05  # of the height; places along the beads
 ROUNDS = 4
 SEEN = 0.02  # of the height; gaps deeper by this than half the spacing of layers are looked at
 LEFT = 0.005  # of the height, likewise; what is left open
-SAME = 1e-5  # mm; what is nearer to an edge of the mesh lies on it
+ON_EDGE_MM = 1e-5  # mm; what is nearer to an edge of the mesh lies on it
 UNSURE = 0.07  # of the height; how far off the depth of a gap may be that is told by the vertices of the fine mesh
 AROUND, CLIMB, SHORTER = 8, 14, 0.7  # ways in which deeper places are sought, how often, how much shorter each time
 
@@ -62,8 +62,8 @@ def closing(
     deep = deep.any(axis=1)
     # the gap ends within a layer height of where it is deep
     size = np.linalg.norm(np.ptp(corners[deep], axis=1), axis=1).max()
-    beside = cKDTree(corners[deep].mean(axis=1)).query(corners.mean(axis=1))[0] < height + 2.0 * size
-    fine = finer(mesh.vertices, faces[beside], FINE * height)
+    adjacent = cKDTree(corners[deep].mean(axis=1)).query(corners.mean(axis=1))[0] < height + 2.0 * size
+    fine = finer(mesh.vertices, faces[adjacent], FINE * height)
     depth = np.asarray(near.query(fine.vertices)[0])
     asked = np.ones(len(depth), dtype=bool)
     cut = np.setdiff1d(fine.border_edges, _on_rims(mesh, np.unique(faces), fine))
@@ -202,7 +202,7 @@ def _on_rims(mesh: Mesh, vertices: Index, fine: Mesh) -> Index:
     along, ahead = (end - start)[near], fine.vertices[border][:, None] - start[near]
     share = np.clip((along * ahead).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
     off = np.linalg.norm(ahead - share[..., None] * along, axis=-1).min(axis=1)
-    on: Index = border[off < SAME]
+    on: Index = border[off < ON_EDGE_MM]
     return on
 
 

@@ -15,7 +15,7 @@ from ...types import Array, Index
 
 STEPS = 12
 ROUNDS = 12
-SETTLED = 1e-6  # of the height; points off by more have not found their place
+CONVERGED = 1e-6  # of the height; points off by more have not found their place
 SAME_PLACE = 1e-5  # mm; of two nodes nearer than this one goes, and it is not the corner
 SMOOTH = 1.0 - 1e-9  # cosine of the turn at a node that is not a corner
 WITHIN = 5e-5  # mm; at INSIDE, where arcs are off by more than half of what they are anywhere between the nodes
@@ -76,9 +76,9 @@ def exact(
     not find their distance: between fronts that meet.
     """
     start = points
-    points, normal, below = _settled(wall, fronts, height, points, None if closed else rims)
+    points, normal, below = _converged(wall, fronts, height, points, None if closed else rims)
     far = 2.0 * np.median(np.linalg.norm(np.diff(start, axis=0), axis=1))
-    sound = (np.abs(below.distance - height) < SETTLED * height) & (np.linalg.norm(points - start, axis=1) < 4.0 * far)
+    sound = (np.abs(below.distance - height) < CONVERGED * height) & (np.linalg.norm(points - start, axis=1) < 4.0 * far)
     known = np.flatnonzero(np.isfinite(ends).all(axis=1))
     if not closed and len(known):
         place = np.array([0, len(points) - 1])[known]
@@ -105,8 +105,8 @@ def exact(
         corner = _corners(wall, fronts, height, nodes, bad)
         rest = bad[~np.isin(bad, corner[0])]
         middle = curve.at(curve.w[rest] + 0.5 * curve.span[rest])[0]
-        spot, spot_normal, spot_below = _settled(wall, fronts, height, middle, None)
-        sound = np.abs(spot_below.distance - height) < SETTLED * height
+        spot, spot_normal, spot_below = _converged(wall, fronts, height, middle, None)
+        sound = np.abs(spot_below.distance - height) < CONVERGED * height
         rest, spot, spot_normal = rest[sound], spot[sound], spot_normal[sound]
         spot_below = _those(spot_below, sound)
         along = unit(np.cross(spot_below.away, spot_normal))
@@ -130,7 +130,7 @@ class _Nodes(NamedTuple):
     below: Feet
 
 
-def _settled(
+def _converged(
     wall: Wall, fronts: list[SpaceCurve], height: float, points: Array, rims: Array | None
 ) -> tuple[Array, Array, Feet]:
     """Points moved within the wall, straight away from the front below, until their distance is the height; the ends of
@@ -144,9 +144,9 @@ def _settled(
             break
         step = (error / np.maximum(dot(slope, slope), 0.05))[:, None] * slope
         if rims is not None:
-            pace = dot(below.away[[0, -1]], rims)
-            least = np.where(pace < 0.0, -0.1, 0.1)
-            step[[0, -1]] = (error[[0, -1]] / np.where(np.abs(pace) < 0.1, least, pace))[:, None] * rims
+            rate = dot(below.away[[0, -1]], rims)
+            least = np.where(rate < 0.0, -0.1, 0.1)
+            step[[0, -1]] = (error[[0, -1]] / np.where(np.abs(rate) < 0.1, least, rate))[:, None] * rims
         points, normal = wall.project(points + step)
     return points, normal, feet(fronts, points)
 

@@ -17,7 +17,7 @@ from .on_wall import on_wall
 
 STRAIGHT = 1.2  # of the height; shorter beads are
 ROUND = 0.8  # of the height; standard deviation of the mean that rounds a bead
-ALIKE = 6  # decimals of mm to which vertices of the fine mesh are told apart
+DECIMALS = 6  # decimals of mm to which vertices of the fine mesh are told apart
 
 
 def middle(wall: Wall, borders: list[Array], height: float) -> SpaceCurve | None:
@@ -26,7 +26,7 @@ def middle(wall: Wall, borders: list[Array], height: float) -> SpaceCurve | None
     longest = max(borders, key=len)
     if len(borders) == 2:
         other = next(border for border in borders if border is not longest)
-        return _through(wall, 0.5 * (longest + _beside(longest, other)), height, True)
+        return _through(wall, 0.5 * (longest + _opposite(longest, other)), height, True)
     ahead = longest - longest.mean(axis=0)
     one = int(np.argmax(np.linalg.norm(ahead, axis=1)))
     line = np.roll(longest, -one, axis=0)
@@ -34,11 +34,11 @@ def middle(wall: Wall, borders: list[Array], height: float) -> SpaceCurve | None
     if other_end < 1 or other_end > len(line) - 1:
         return None
     side, back = line[: other_end + 1], np.vstack([line[other_end:], line[:1]])
-    middle = 0.5 * (side + _beside(side, back))
+    middle = 0.5 * (side + _opposite(side, back))
     return _through(wall, np.vstack([line[:1], middle[1:-1], line[other_end : other_end + 1]]), height, False)
 
 
-def _beside(points: Array, line: Array) -> Array:
+def _opposite(points: Array, line: Array) -> Array:
     """The nearest places (n, 3) of a polyline, sampled."""
     share = np.linspace(0.0, 1.0, 8, endpoint=False)[None, :, None]
     dense = np.vstack([((1.0 - share) * line[:-1, None] + share * line[1:, None]).reshape(-1, 3), line[-1:]])
@@ -106,5 +106,5 @@ def finer(vertices: Array, faces: Index, longest: float) -> Mesh:
     share, parts = shares(corners, longest)
     points = np.einsum("sk,mkc->msc", share, corners).reshape(-1, 3)
     every = (np.arange(len(faces))[:, None, None] * len(share) + parts[None]).reshape(-1, 3)
-    _, first, same = np.unique(np.round(points, ALIKE) + 0.0, axis=0, return_index=True, return_inverse=True)
+    _, first, same = np.unique(np.round(points, DECIMALS) + 0.0, axis=0, return_index=True, return_inverse=True)
     return Mesh(points[first], np.ravel(same)[every].astype(np.intp))

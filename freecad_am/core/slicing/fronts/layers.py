@@ -25,7 +25,7 @@ from ...geometry.mesh.triangle_mesh import Mesh, thinned
 from ...geometry.walls.patch_wall import FirstCurve, Rim
 from ...geometry.walls.surface import dot
 from ...types import Array, Index, Mask
-from ..backstop import refuse_endless
+from ..backstop import refuse_too_many
 from ..banded import HEAVY
 from .closing import closing
 from .curve import exact, feet
@@ -36,8 +36,8 @@ SHORTEST = 0.2  # of the layer height; shorter fronts are no bead
 SLIVER, OFF = 10.0, 5e-4  # layer heights; mm. Fronts shorter than this may be off by no more between their nodes
 THIN = 0.3  # of the typical edge; nearer points of a level line are one
 BEHIND = 1e-3  # mm; vertices nearer to a first curve lie on it
-SAME = 1e-4  # mm; vertices nearer to a front lie on it, so that the last layer may lie on the wall's edge
-BESIDE = 12  # vertices near a place of a first curve that tell on which side the wall is
+ON_FRONT_MM = 1e-4  # mm; vertices nearer to a front lie on it, so that the last layer may lie on the wall's edge
+NEIGHBOURS = 12  # vertices near a place of a first curve that tell on which side the wall is
 
 
 class FrontWall(Protocol):
@@ -102,9 +102,9 @@ def step(wall: FrontWall, rims: Rims, state: State, height: float, smoothing: Sm
     behind = state.behind[band]
     below = feet(state.fronts, mesh.vertices)
     value = np.where(behind, -below.distance, below.distance) - height
-    low = mesh.joined(value < -SAME, behind)  # near in space is not enough: the wall must lead there
+    low = mesh.joined(value < -ON_FRONT_MM, behind)  # near in space is not enough: the wall must lead there
     value = np.where(low, np.minimum(value, -1e-9 * height), np.maximum(value, 1e-9 * height))
-    ends = rims.reached(state.fronts, height, spots, reach, SAME)
+    ends = rims.reached(state.fronts, height, spots, reach, ON_FRONT_MM)
     fronts = []
     for line in cut_at_rims(mesh.level_lines(value, np.arange(len(mesh.faces))), ends, wall.mesh.longest_edge):
         points = thinned(line.points, line.closed, THIN * wall.mesh.typical_edge)
@@ -146,7 +146,7 @@ def _passed(
     left = np.cross(wall.project(points)[1], slope)
     side = dot(points - place.point, left / np.linalg.norm(left, axis=1, keepdims=True))
     near = moved[place.front] & (place.distance < 2.0 * far)
-    return np.where(near, side < -SAME, low)
+    return np.where(near, side < -ON_FRONT_MM, low)
 
 
 class Sliced(NamedTuple):
@@ -179,7 +179,7 @@ def layers(
             closed.append(gaps)
         if not state.fronts:
             break
-        refuse_endless(len(done), height, wall.label)
+        refuse_too_many(len(done), height, wall.label)
         done.append(state.fronts)
     return Sliced(done, closed)
 
@@ -217,6 +217,6 @@ def _facing(wall: FrontWall, curve: SpaceCurve) -> SpaceCurve:
     place, slope, _ = curve.at(curve.w[:-1] + 0.5 * curve.span)
     left = np.cross(wall.project(place)[1], slope)
     mesh = wall.mesh
-    beside = np.asarray(mesh.tree.query(place, k=min(BESIDE, len(mesh.vertices)))[1])
-    ahead = np.where(wall.behind[beside], 0.0, dot(mesh.vertices[beside] - place[:, None], left[:, None]))
+    adjacent = np.asarray(mesh.tree.query(place, k=min(NEIGHBOURS, len(mesh.vertices)))[1])
+    ahead = np.where(wall.behind[adjacent], 0.0, dot(mesh.vertices[adjacent] - place[:, None], left[:, None]))
     return curve if ahead.sum() >= 0.0 else curve.reversed()

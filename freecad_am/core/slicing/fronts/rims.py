@@ -123,8 +123,8 @@ class Rims:
             off = below.distance - height
             upper = (off > 0.0) != falls
             low, high = np.where(upper, low, at), np.where(upper, at, high)
-            pace = dot(below.away, slope)
-            new = at - off / np.where(np.abs(pace) > 1e-9, pace, np.inf)
+            rate = dot(below.away, slope)
+            new = at - off / np.where(np.abs(rate) > 1e-9, rate, np.inf)
             new = np.where((new <= low) | (new >= high), 0.5 * (low + high), new)
             if np.abs(off).max() < CONVERGED * height or (high - low).max() < CONVERGED * height:
                 break

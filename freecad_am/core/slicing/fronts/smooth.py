@@ -31,7 +31,7 @@ WIDEST = 1.0 / 16.0  # of the front, the same
 REACH = 1.5  # layer heights; the exact front is not farther from the rounded one
 STEPS = 40
 FOUND = 1e-6  # of the height
-ROOM = 0.4  # of the way to the next front of the layer; no front runs farther ahead
+MAX_AHEAD = 0.4  # of the way to the next front of the layer; no front runs farther ahead
 FINER = 4  # places per arc at which the result is measured
 ENDS = np.array([0, -1])
 SPREAD = 4.0  # layer heights over which the slide of an end is spread
@@ -87,7 +87,7 @@ def smoothed(
         return kept
     wanted, low, high = levels
     if others:
-        high = np.minimum(high, wanted + ROOM * feet(others, line.points + wanted[:, None] * line.across).distance)
+        high = np.minimum(high, wanted + MAX_AHEAD * feet(others, line.points + wanted[:, None] * line.across).distance)
     least, most = (1.0 - smoothing.band) * height, (1.0 + smoothing.band) * height
 
     def trial(index: int) -> SmoothFront | None:
@@ -134,13 +134,13 @@ class _Line:
         bend, sliding = dot(after - 2.0 * points + before, across), np.zeros(2, dtype=bool)
         if not front.closed:
             off, _, along = rims.nearest(points[ENDS])
-            pace = dot(along, across[ENDS])
-            sliding = (off < ON_RIM) & (np.abs(pace) > SLIDES)
+            rate = dot(along, across[ENDS])
+            sliding = (off < ON_RIM) & (np.abs(rate) > SLIDES)
             length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
             away = np.linspace(0.0, length, len(points)) / min(SPREAD * height, 0.5 * length)
             for end, s in ((0, away), (1, away[::-1])):
                 if sliding[end]:  # what the end slides along the front is spread over its neighbours
-                    aside = along[end] / pace[end] - across[ENDS[end]]
+                    aside = along[end] / rate[end] - across[ENDS[end]]
                     across = across + np.maximum(1.0 - s, 0.0)[:, None] * aside
         return cls(points, across, bend, front.closed, sliding)
 

@@ -28,7 +28,7 @@ Edges = NDArray[np.int32]
 NEWTON = 60
 HALVINGS = 14  # of the cut through one facet
 SHORTEST = 1e-9  # mm; points nearer together are one
-SAME = 1e-12  # of what is added up; less is rounding
+ROUNDING = 1e-12  # of what is added up; less is rounding
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class Facets:
         rise = np.tan(self.base.taper) * (z.take(end) - z.take(start))
         # rho times the slope at either end, over cos(a); rounding is a hair of what goes into it
         begins, ends = across - one * one + rise * one, other * other - across + rise * other
-        hair = SAME * (one + other + np.abs(rise)) * (one + other)
+        hair = ROUNDING * (one + other + np.abs(rise)) * (one + other)
         return np.flatnonzero((begins < hair) & (ends > -hair))
 
     def _pierced(self) -> tuple[Index, Array]:

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...geometry.formatting import place
 from ...geometry.mesh.solid import Search, SolidMesh, spread
+from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group
-from ...geometry.surroundings import Body
-from ...geometry.told import place
 from ...issues import InputError
 from ...types import Array
 

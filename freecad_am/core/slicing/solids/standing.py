@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.formatting import place
+from ...geometry.obstacles import Body
 from ...geometry.on_hub import Group, Seat, SolidsOnHub, downwards, middle_azimuth
-from ...geometry.surroundings import Body
-from ...geometry.told import place
 from ...issues import InputError, Issue
 from ...types import Array
 from .equidistant import Facets
@@ -18,7 +18,7 @@ from .overlap import refuse_overlaps
 from .unrolled import cut
 
 UNITS = ((25.4, "inches"), (10.0, "cm"), (1000.0, "m"))  # mm of one
-NEAR = 0.05  # mm past the ends of a face at which a solid still stands on it
+PAST_END_MM = 0.05  # mm past the ends of a face at which a solid still stands on it
 
 
 def on_hub(
@@ -50,7 +50,7 @@ def on_hub(
 
 
 def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bool = False) -> int:
-    contact, beside = np.zeros(len(seats)), np.zeros(len(seats))
+    contact, adjacent = np.zeros(len(seats)), np.zeros(len(seats))
     away = np.zeros((len(seats), 2))
     for k, seat in enumerate(seats):
         # seats are on cylinders and cones
@@ -60,21 +60,21 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
             step = np.linalg.norm(np.roll(loop.points, -1, axis=0) - loop.points, axis=1)
             middle = 0.5 * (loop.points + np.roll(loop.points, -1, axis=0))
             contact[k] += step[_near(seat, middle)].sum()
-            beside[k] += step[_near(seat, middle, all_round=True)].sum() if seat.chosen else 0.0
-    contact = contact if contact.any() else beside
+            adjacent[k] += step[_near(seat, middle, all_round=True)].sum() if seat.chosen else 0.0
+    contact = contact if contact.any() else adjacent
     best = int(np.argmax(contact))
     if contact[best] > 0.0:
         return best
     nearest = int(np.argmin(np.where(away[:, 1] > 0.0, np.maximum(away[:, 0], 0.0), np.inf)))
     where = place(body.vertices[np.argmin(seats[nearest].base.surface.distance(seats[nearest].base.inside(body.vertices)))])
     if (away[:, 1] <= 0.0).all():
-        told = "it lies inside of the hub"
+        text = "it lies inside of the hub"
     elif away[nearest, 0] > 0.0:
-        told = f"it begins {away[nearest, 0]:.4g} mm outside of {seats[nearest].base.name}, at {where}"
+        text = f"it begins {away[nearest, 0]:.4g} mm outside of {seats[nearest].base.name}, at {where}"
     else:
-        told = f"it passes {seats[nearest].base.name} beside the face, near {where}"
+        text = f"it passes {seats[nearest].base.name} beside the face, near {where}"
     hint = _of_units(body, seats) if unitless else ""
-    raise InputError("NOT_ON_HUB", body.name, f"it does not stand on the hub: {told}; move it, or choose its base{hint}")
+    raise InputError("NOT_ON_HUB", body.name, f"it does not stand on the hub: {text}; move it, or choose its base{hint}")
 
 
 def _of_units(body: Body, seats: Sequence[Seat]) -> str:
@@ -84,8 +84,8 @@ def _of_units(body: Body, seats: Sequence[Seat]) -> str:
             vertices = seat.base.inside(factor * body.vertices)
             away = seat.base.surface.distance(vertices)
             z = vertices[:, 2]
-            beside = any(face.low <= z.max() and face.high >= z.min() for face in seat.faces)
-            if away.min() <= NEAR < away.max() and beside:
+            adjacent = any(face.low <= z.max() and face.high >= z.min() for face in seat.faces)
+            if away.min() <= PAST_END_MM < away.max() and adjacent:
                 return (
                     f". Times {factor:g} it would reach {seat.base.name}: is its file in {unit}? Then export it in mm, or "
                     f"give scale: {factor:g} mm with it, as part.scale (in the window: Meshes, Scale)"
@@ -94,7 +94,7 @@ def _of_units(body: Body, seats: Sequence[Seat]) -> str:
 
 
 def _near(seat: Seat, points: Array, all_round: bool = False) -> NDArray[np.bool_]:
-    return np.asarray(np.any([face.near(points, NEAR, all_round) for face in seat.faces], axis=0), dtype=np.bool_)
+    return np.asarray(np.any([face.near(points, PAST_END_MM, all_round) for face in seat.faces], axis=0), dtype=np.bool_)
 
 
 def hub_among(bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_error: float, label: str) -> int:

@@ -15,12 +15,12 @@ import numpy as np
 from ...geometry.walls.surface import Surface
 from ...issues import InputError
 from ...types import Array
-from ..backstop import refuse_endless
+from ..backstop import refuse_too_many
 from ..refinement import ROUNDS, finer_grid
 from .offset import Offset, Places
 from .wall_layer import WallLayer
 
-SAME = 1e-9  # of the period; a grid point this near to a corner is the corner
+AT_CORNER = 1e-9  # of the period; a grid point this near to a corner is the corner
 ABOVE = 1e-9  # of u: a third branch that overtops a crossing by more means that it is not the corner
 NARROWEST = 1e-9  # of the period; a change of branch in a narrower stretch is a corner in its middle
 
@@ -35,7 +35,7 @@ def next_layer(surface: Surface, below: WallLayer, height: float, grid: Array, l
     period = grid[-1] - grid[0]
     ends = grid[0] + np.mod(np.array(offset.fan_ends) - grid[0], period)
     v = np.unique(np.r_[grid, ends])
-    v = v[np.r_[True, np.diff(v) > SAME * period]]
+    v = v[np.r_[True, np.diff(v) > AT_CORNER * period]]
     v[-1] = grid[-1]
     places = _asked(offset, v, height, label)
     for _ in range(ROUNDS * 3):
@@ -59,7 +59,7 @@ def layers(
     grid = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
     done = [first]
     while done[-1].u.min() < u_end:
-        refuse_endless(len(done), height, label)
+        refuse_too_many(len(done), height, label)
         done.append(next_layer(surface, done[-1], height, grid, label))
     return done
 
@@ -129,9 +129,9 @@ def _assembled(
         gap = np.minimum(
             np.abs(v - ordered[np.clip(near - 1, 0, len(where) - 1)]), np.abs(v - ordered[np.clip(near, 0, len(where) - 1)])
         )
-    keep = gap > SAME * period
+    keep = gap > AT_CORNER * period
     keep[[0, -1]] = True
-    seam = np.minimum(np.abs(where - start), np.abs(where - end)) <= SAME * period
+    seam = np.minimum(np.abs(where - start), np.abs(where - end)) <= AT_CORNER * period
     columns = np.stack([v, places.u, places.slope, places.slope])[:, keep]
     if seam.any():
         k = np.flatnonzero(seam)[0]

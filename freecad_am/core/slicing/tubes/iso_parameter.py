@@ -8,7 +8,7 @@ import numpy as np
 from ...geometry.walls.surface import Surface, dot
 from ...issues import InputError
 from ...types import Array
-from ..backstop import refuse_endless
+from ..backstop import refuse_too_many
 from ..refinement import ROUNDS, finer_grid
 from .wall_layer import WallLayer
 
@@ -39,7 +39,7 @@ def layers(
     """All layers from the first to the first one wholly past u_end."""
     done = [first]
     while done[-1].u.min() < u_end:
-        refuse_endless(len(done), height, label)
+        refuse_too_many(len(done), height, label)
         done.append(next_layer(surface, done[-1], height, label))
     return done
 
@@ -53,8 +53,8 @@ def _stepped(
     for _ in range(STEPS):
         point, rise, turn = surface.derivatives(new, v)
         chord = point - base
-        pace = 2.0 * dot(chord, rise)
-        step = (dot(chord, chord) - height * height) / np.where(pace > 0.0, pace, np.inf)
+        rate = 2.0 * dot(chord, rise)
+        step = (dot(chord, chord) - height * height) / np.where(rate > 0.0, rate, np.inf)
         new = new - step
         if np.abs(step * np.linalg.norm(rise, axis=1)).max() < 1e-12 * max(1.0, height):
             break

@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 from ...geometry.walls.surface import Surface, dot
 from ...issues import InputError
 from ...types import Array
-from ..backstop import refuse_endless
+from ..backstop import refuse_too_many
 from .wall_layer import WallLayer
 
 SECTIONS, AROUND = 401, 256  # sections of the wall from whose middles the centreline is taken, and points of each
@@ -43,8 +43,8 @@ def centreline(surface: Surface, low: float, high: float) -> Centreline:
     middle = CubicSpline(u, (points * share).sum(axis=1) / share.sum(axis=1))
     x, weight = np.polynomial.legendre.leggauss(5)
     step = np.diff(u)[:, None]
-    pace = np.linalg.norm(middle(u[:-1, None] + 0.5 * step * (x + 1.0), 1), axis=-1)
-    length = np.r_[0.0, np.cumsum((pace * 0.5 * weight * step).sum(axis=1))]
+    rate = np.linalg.norm(middle(u[:-1, None] + 0.5 * step * (x + 1.0), 1), axis=-1)
+    length = np.r_[0.0, np.cumsum((rate * 0.5 * weight * step).sum(axis=1))]
     return Centreline(middle, CubicSpline(length, u))
 
 
@@ -63,7 +63,7 @@ def layers(
     v = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
     done: list[WallLayer] = []
     while not done or done[-1].u.min() < u_end:
-        refuse_endless(len(done), height, label)
+        refuse_too_many(len(done), height, label)
         along = len(done) * height
         if along > place.x[-1]:
             break

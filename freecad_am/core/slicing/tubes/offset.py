@@ -191,8 +191,8 @@ class Offset:
         v = curve.w[arc] + t * curve.span[arc]
         u = u[arc] + t * (u[arc + 1] - u[arc])
         _, along, around = self.surface.derivatives(u, v)
-        pace = dot(slope, slope)
-        up = along - (dot(along, slope) / pace)[:, None] * slope
+        rate = dot(slope, slope)
+        up = along - (dot(along, slope) / rate)[:, None] * slope
         up *= (h / np.linalg.norm(up, axis=1))[:, None]
         a, b, c = dot(along, along), dot(along, around), dot(around, around)
         p, q = dot(up, along), dot(up, around)
@@ -207,8 +207,8 @@ class Offset:
             u, v = u - du, v - dv
             if np.abs(rest).max() < CONVERGED * h * h and np.abs(dv).max() < 1e-11:
                 break
-        sound = (np.abs(rest) < 1e-8 * h * h) & (np.abs(skew) < 1e-7 * h * np.sqrt(pace))
-        return np.where(sound, u, np.nan), np.where(sound, v, np.nan), 1.0 - dot(reach, bend) / pace
+        sound = (np.abs(rest) < 1e-8 * h * h) & (np.abs(skew) < 1e-7 * h * np.sqrt(rate))
+        return np.where(sound, u, np.nan), np.where(sound, v, np.nan), 1.0 - dot(reach, bend) / rate
 
     def _samples(self, u: Array) -> tuple[Index, Array, Array, Array, Array]:
         """Arc, t, u, v, focusing number of samples along the curve below: nodes, and more where the front gathers."""

@@ -33,8 +33,8 @@ class WallLayer:
     def slopes(self, surface: Surface) -> tuple[Array, Array]:
         """du/dv (m,) on either side of each node."""
         _, along, around = surface.derivatives(self.u, self.v)
-        pace = dot(along, along)
-        return dot(self.curve.into - around, along) / pace, dot(self.curve.out - around, along) / pace
+        rate = dot(along, along)
+        return dot(self.curve.into - around, along) / rate, dot(self.curve.out - around, along) / rate
 
     def heights(self, surface: Surface, v: Array) -> tuple[Array, Array, Array]:
         """u (n,) and its slopes du/dv on either side at v (n,) from the first node to the last."""

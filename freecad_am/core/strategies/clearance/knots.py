@@ -12,16 +12,16 @@ import dataclasses
 import numpy as np
 
 from ...types import Array, Index, Mask
-from .places import Room
+from .places import Space
 
-MOST = 2500  # points of a bead at which tilts are searched
+MAX_POINTS = 2500  # points of a bead at which tilts are searched
 
 
 def of_bead(row: Index) -> Index:
     """The points of a bead, of its points `row` in order, at which tilts are searched: evenly many, both ends among them."""
-    if len(row) <= MOST:
+    if len(row) <= MAX_POINTS:
         return row
-    knots: Index = row[np.unique(np.round(np.linspace(0, len(row) - 1, MOST)).astype(np.intp))]
+    knots: Index = row[np.unique(np.round(np.linspace(0, len(row) - 1, MAX_POINTS)).astype(np.intp))]
     return knots
 
 
@@ -33,15 +33,15 @@ def free_about(row: Index, knots: Index, free: Mask) -> Mask:
     return about
 
 
-def spread_out(room: Room, row: Index, knots: Index, asked: Array, axes: Array) -> tuple[Array, Index]:
+def spread_out(space: Space, row: Index, knots: Index, asked: Array, axes: Array) -> tuple[Array, Index]:
     """Axes (m, 3) at all points of a bead, those (k, 3) at its knots and even between; and the points that touch there."""
-    points = room.points[row]
+    points = space.points[row]
     along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     at = along[np.searchsorted(row, knots)]
     lean = axes - asked[knots]
     found = asked[row] + np.stack([np.interp(along, at, column) for column in lean.T], axis=1)
     found /= np.linalg.norm(found, axis=1, keepdims=True)
-    between = dataclasses.replace(room, nozzle=room.nozzle.halfway())
+    between = dataclasses.replace(space, nozzle=space.nozzle.halfway())
     others = np.setdiff1d(row, knots, assume_unique=True)
     touching: Index = others[~between.clear(others, found[np.searchsorted(row, others)])]
     return found, touching

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...collision.bodies import of_bodies
-from ...geometry.surroundings import Body
+from ...geometry.obstacles import Body
 from ...issues import ERROR, Issue
 from ...parameters.cell import NozzleParameters
 from ...toolpath import Toolpath
 from .notes import place
-from .places import beads_of, halfway, nozzle_of, room_of
+from .places import beads_of, halfway, nozzle_of, space_of
 
 
 @dataclass(frozen=True)
@@ -32,13 +32,13 @@ def looked_at(
 ) -> Looked:
     """Whether the nozzle touches bodies, the platform one of them, or what is deposited by then, beads as wide and high as
     they are, at so many points at most, evenly spread. feature: of several features, the one whose points are looked at."""
-    room = room_of(toolpath, bodies, nozzle, np.pi, often=False, feature=feature or 0)
+    space = space_of(toolpath, bodies, nozzle, np.pi, often=False, feature=feature or 0)
     beads = list(toolpath)
     starts = np.cumsum([0, *(len(bead) for _, _, bead in beads)])
     mine = np.flatnonzero(np.repeat(beads_of(toolpath, feature), np.diff(starts)))
     rows = mine[np.unique(np.round(np.linspace(0, len(mine) - 1, min(most, len(mine)))).astype(np.intp))]
     tool = np.concatenate([bead.tool for _, _, bead in beads])
-    hit = rows[~room.clear(rows, tool[rows])]
+    hit = rows[~space.clear(rows, tool[rows])]
     if not len(hit):
         return Looked(len(rows), 0, None)
     bead = int(np.searchsorted(starts, hit[0], side="right")) - 1

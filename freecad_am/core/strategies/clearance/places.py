@@ -17,7 +17,7 @@ from ...collision import deposit
 from ...collision.nozzle import Nozzle, depositing
 from ...collision.scene import Scene, scene
 from ...geometry.columns import columns
-from ...geometry.surroundings import Body
+from ...geometry.obstacles import Body
 from ...geometry.walls.surface import dot
 from ...parameters.cell import NozzleParameters
 from ...toolpath import Bead, Toolpath
@@ -28,7 +28,7 @@ SEAM = 1e-6  # rad that a closed bead's end may be past a turn
 
 
 @dataclass(frozen=True)
-class Room:
+class Space:
     """Everything that decides whether an axis at a point is clear: points (n, 3) in the order of deposit, own (n,) the first
     point of those beads that each overlaps by intention where it is next to them."""
 
@@ -53,10 +53,10 @@ def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0, lean: float = 
     return depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height, lean)
 
 
-def room_of(
+def space_of(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float, often: bool = True,
     feature: int = 0,
-) -> Room:
+) -> Space:
     """The room of all points of a toolpath, in order, among bodies; max_tilt: rad. Where it is asked but once it takes less
     memory. feature: of several features, the one whose points are asked about."""
     beads = [bead for _, _, bead in toolpath]
@@ -74,10 +74,10 @@ def room_of(
         own = np.concatenate([first + _turn_before(bead.parameter) for first, bead in zip(own[starts], beads, strict=True)])
     looked = nozzle_of(nozzle, float(heights.max()), lean)
     made = deposit.of_beads if often else deposit.in_parts
-    laid = made(points, build, toolpath.widths, heights, starts, beside=looked.foot)
+    obstacles = made(points, build, toolpath.widths, heights, starts, foot=looked.foot)
     # a bead that closes a gap overlaps those about the gap, of layers below too
     own = np.where(np.repeat([bead.closing for bead in beads], counts), 0, own)
-    return Room(points, own, scene(bodies, points, looked.reach, laid), looked, max_tilt)
+    return Space(points, own, scene(bodies, points, looked.reach, obstacles), looked, max_tilt)
 
 
 def beads_of(toolpath: Toolpath, feature: int | None) -> Mask:
@@ -106,12 +106,12 @@ def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:
     return np.concatenate(points), np.concatenate(axes)
 
 
-def touched_between(room: Room, beads: Sequence[Bead], tool: Array, free: Mask) -> Mask:
+def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask) -> Mask:
     """The points (n,) that are free as the next of their bead is, and the nozzle touches halfway to it."""
     points, axes = halfway(beads, tool)
     both = free & np.r_[free[1:], False]
     both[np.cumsum([len(bead) for bead in beads]) - 1] = False
-    midway = dataclasses.replace(room, points=points, nozzle=room.nozzle.halfway(), max_tilt=float(np.pi))
+    midway = dataclasses.replace(space, points=points, nozzle=space.nozzle.halfway(), max_tilt=float(np.pi))
     touched = np.zeros(len(points), dtype=bool)
     rows = np.flatnonzero(both)
     touched[rows] = ~midway.clear(rows, axes[rows])

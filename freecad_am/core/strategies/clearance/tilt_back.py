@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.surroundings import Body
+from ...geometry.obstacles import Body
 from ...geometry.walls.surface import dot
 from ...issues import InputError, Issue
 from ...parameters.build_direction import BuildDirectionParameters
@@ -29,7 +29,7 @@ from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from . import knots as clearance_knots
 from .notes import tilt_issues, turn_issues
-from .places import Room, beads_of, halved, room_of, touched_between
+from .places import Space, beads_of, halved, space_of, touched_between
 from .tilt_search import SPREAD, TiltSearch
 
 SLOWER = 6  # times that a bead is tilted anew where it turns too fast
@@ -39,7 +39,7 @@ HALVINGS = 3  # of a segment halfway on which the nozzle touches
 
 def kept_clear(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None = None, feature: int | None = None, told: Callable[[int, int], None] = lambda *_: None,
+    plane: Array | None = None, feature: int | None = None, report: Callable[[int, int], None] = lambda *_: None,
 ) -> Toolpath:
     """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
 
@@ -51,7 +51,7 @@ def kept_clear(
     """
     known: list[_Way | None] = [None for _ in toolpath]
     for last in (False,) * HALVINGS + (True,):
-        found, between, ways = _tilted(toolpath, bodies, nozzle, build, plane, feature, last, told, known)
+        found, between, ways = _tilted(toolpath, bodies, nozzle, build, plane, feature, last, report, known)
         if not between.any():
             break
         marks = np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1])
@@ -70,7 +70,7 @@ class _Way(NamedTuple):
 
 def _tilted(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None, feature: int | None, last: bool, told: Callable[[int, int], None], known: list[_Way | None],
+    plane: Array | None, feature: int | None, last: bool, report: Callable[[int, int], None], known: list[_Way | None],
 ) -> tuple[Toolpath, Mask, list[_Way | None]]:
     """The toolpath tilted clear at its points, the points (n,) after which the nozzle touches halfway to the next, none at
     the `last` try, where an issue says so, and what was found bead by bead. Where it touches with the axes asked for,
@@ -78,24 +78,24 @@ def _tilted(
     beads = [bead for _, _, bead in toolpath]
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
     asked = np.concatenate([bead.tool for bead in beads])
-    room = room_of(toolpath, bodies, nozzle, build.max_tilt, feature=feature or 0)
+    space = space_of(toolpath, bodies, nozzle, build.max_tilt, feature=feature or 0)
     mine = np.repeat(beads_of(toolpath, feature), np.diff(begin))
     free = ~mine
-    free[mine] = room.clear(np.flatnonzero(mine), asked[mine])
-    between = touched_between(room, beads, asked, free & mine)
+    free[mine] = space.clear(np.flatnonzero(mine), asked[mine])
+    between = touched_between(space, beads, asked, free & mine)
     if between.any() and not last:
         return toolpath, between, known
     blocked = [k for k in range(len(beads)) if not (free & ~between)[begin[k] : begin[k + 1]].all()]
     if not blocked:
         return toolpath, between, known
-    (tool, tilt, lost), turned = _ways(room, beads, begin, blocked, asked, plane, free, build.turn(), told, known)
+    (tool, tilt, lost), turned = _ways(space, beads, begin, blocked, asked, plane, free, build.turn(), report, known)
     ways: list[_Way | None] = [None for _ in beads]
     for k in blocked:
         row = slice(begin[k], begin[k + 1])
         ways[k] = _Way(tool[row], tilt[row], lost[row].copy())
     # no more points for beads that are lost: they are told of at those they have
     sound = mine & ~np.repeat(np.logical_or.reduceat(lost, begin[:-1]), np.diff(begin))
-    between = touched_between(room, beads, tool, sound)
+    between = touched_between(space, beads, tool, sound)
     if between.any() and not last:
         return toolpath, between, ways
     lost |= between
@@ -117,8 +117,8 @@ def _with_tools(toolpath: Toolpath, tools: Sequence[Array], issues: tuple[Issue,
 
 
 def _ways(
-    room: Room, beads: Sequence[Bead], begin: Index, blocked: list[int], asked: Array, plane: Array | None, free: Mask,
-    most: float, told: Callable[[int, int], None], known: list[_Way | None],
+    space: Space, beads: Sequence[Bead], begin: Index, blocked: list[int], asked: Array, plane: Array | None, free: Mask,
+    most: float, report: Callable[[int, int], None], known: list[_Way | None],
 ) -> tuple[_Way, float]:
     """Axes, tilts and points that touch even so, of all points, and the fastest turn (rad/mm) that is left of beads that
     turn faster than `most` with their tilts though what was asked does not. What is known of a bead stays while clear."""
@@ -126,28 +126,28 @@ def _ways(
     kept, anew = [], []
     for k in blocked:
         row, way = np.arange(begin[k], begin[k + 1]), known[k]
-        if way is None or not (room.clear(row, way.tool) | way.lost).all():
+        if way is None or not (space.clear(row, way.tool) | way.lost).all():
             anew.append((row, beads[k].closed))
             continue
         tool[row], tilt[row], lost[row] = way
         kept.append(row)
-    turned = max((_fastest(room, kept[k], tool) for k in _too_fast(room, kept, asked, most, tool, lost)), default=0.0)
+    turned = max((_fastest(space, kept[k], tool) for k in _too_fast(space, kept, asked, most, tool, lost)), default=0.0)
     if not anew:
         return _Way(tool, tilt, lost), turned
     rows = [row for row, _ in anew]
     flat = np.concatenate(rows)
-    told(len(flat), 1)
-    found, leant, stuck = _cleared(room, rows, np.array([loop for _, loop in anew]), asked, plane, free)
+    report(len(flat), 1)
+    found, leant, stuck = _cleared(space, rows, np.array([loop for _, loop in anew]), asked, plane, free)
     tool[flat], tilt[flat] = found[flat], leant[flat]
     lost[stuck] = True
-    fast = _too_fast(room, rows, asked, most, tool, lost)
+    fast = _too_fast(space, rows, asked, most, tool, lost)
     if fast:
-        told(sum(len(rows[k]) for k in fast), SLOWER)
-    return _Way(tool, tilt, lost), max(turned, _slowed(room, [anew[k] for k in fast], asked, plane, most, tool, tilt))
+        report(sum(len(rows[k]) for k in fast), SLOWER)
+    return _Way(tool, tilt, lost), max(turned, _slowed(space, [anew[k] for k in fast], asked, plane, most, tool, tilt))
 
 
 def _cleared(
-    room: Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask, spread: float = SPREAD
+    space: Space, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask, spread: float = SPREAD
 ) -> tuple[Array, Array, Index]:
     """Axes (n, 3) of all points, those of the beads with the rows tilted clear; tilts (n,) rad; the points that touch even
     so."""
@@ -156,7 +156,7 @@ def _cleared(
         if len(some) < len(row):
             free = free.copy()
             free[some] = clearance_knots.free_about(row, some, free)
-    search = TiltSearch(room, knots, closed, asked, plane, free, spread)
+    search = TiltSearch(space, knots, closed, asked, plane, free, spread)
     offset, stuck = search.found()
     tool, tilt = asked.copy(), np.zeros(len(asked))
     flat = np.concatenate(knots)
@@ -164,29 +164,30 @@ def _cleared(
     touching = [flat[stuck]]
     for row, some in zip(rows, knots, strict=True):
         if len(some) < len(row):
-            tool[row], more = clearance_knots.spread_out(room, row, some, asked, tool[some])
+            tool[row], more = clearance_knots.spread_out(space, row, some, asked, tool[some])
             tilt[row] = np.arctan2(np.linalg.norm(np.cross(asked[row], tool[row]), axis=1), dot(asked[row], tool[row]))
             touching.append(more)
     return tool, tilt, np.concatenate(touching)
 
 
-def _fastest(room: Room, row: Index, axes: Array) -> float:
+def _fastest(space: Space, row: Index, axes: Array) -> float:
     """The fastest turn (rad/mm) along the bead with the points `row`."""
-    return float(turn_rates(room.points[row], axes[row]).max(initial=0.0))
+    return float(turn_rates(space.points[row], axes[row]).max(initial=0.0))
 
 
-def _too_fast(room: Room, rows: list[Index], asked: Array, most: float, tool: Array, lost: Mask) -> list[int]:
+def _too_fast(space: Space, rows: list[Index], asked: Array, most: float, tool: Array, lost: Mask) -> list[int]:
     """The beads that turn faster than `most` rad/mm with their tilts though what was asked does not."""
     if most == np.inf:
         return []
     return [
         k for k, row in enumerate(rows)
-        if _fastest(room, row, tool) > most and _fastest(room, row, asked) <= most * (1.0 + ROUNDING) and not lost[row].any()
+        if _fastest(space, row, tool) > most and not lost[row].any()
+        and _fastest(space, row, asked) <= most * (1.0 + ROUNDING)
     ]
 
 
 def _slowed(
-    room: Room, fast: list[tuple[Index, bool]], asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array
+    space: Space, fast: list[tuple[Index, bool]], asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array
 ) -> float:
     """Find axes anew, in place, for beads that turn faster than `most` rad/mm, given by their points and whether they are
     closed; comes back with the fastest turn that is left of them, 0 where none is.
@@ -195,25 +196,25 @@ def _slowed(
     """
     worst = 0.0
     for row, loop in fast:
-        rate, spread, now = most, SPREAD, _fastest(room, row, tool)
+        rate, spread, now = most, SPREAD, _fastest(space, row, tool)
         for _ in range(SLOWER):
             rate, spread = 0.98 * rate * most / now, 1.5 * spread
             slower = asked.copy()
             try:
-                slower[row] = limited(room.points[row], asked[row], loop, rate, most=room.max_tilt).directions
+                slower[row] = limited(space.points[row], asked[row], loop, rate, most=space.max_tilt).directions
             except InputError:
                 break
             free = np.ones(len(asked), dtype=bool)
-            free[row] = room.clear(row, slower[row])
+            free[row] = space.clear(row, slower[row])
             found, stuck = slower, row[:0]
             if not free[row].all():
-                found, _, stuck = _cleared(room, [row], np.array([loop]), slower, plane, free, spread)
-            now = _fastest(room, row, found)
-            if not len(stuck) and now < _fastest(room, row, tool):
+                found, _, stuck = _cleared(space, [row], np.array([loop]), slower, plane, free, spread)
+            now = _fastest(space, row, found)
+            if not len(stuck) and now < _fastest(space, row, tool):
                 cross = np.linalg.norm(np.cross(asked[row], found[row]), axis=1)
                 tool[row], tilt[row] = found[row], np.arctan2(cross, dot(asked[row], found[row]))
             if now <= most:
                 break
-        left = _fastest(room, row, tool)
+        left = _fastest(space, row, tool)
         worst = max(worst, left if left > most else 0.0)
     return worst

@@ -15,14 +15,14 @@ from ...geometry import frames
 from ...geometry.ties import first_least
 from ...types import Array, Index, Mask
 from .least_turn import least
-from .places import CAP, Room
+from .places import CAP, Space
 
 RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and candidates on each
 LARGEST = np.radians(90.0)  # tilt that is tried
 PROBED, PROBES = 7, 16  # before which cone, and at how many points of a bead, all larger ones are tried
 LEVELS = 4  # of finer candidates, each of half the distance
 SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
-FAR = 4.0  # times SPREAD, beyond which nothing is left of a tilt
+RELEASED = 4.0  # times SPREAD, beyond which nothing is left of a tilt
 
 
 class TiltSearch:
@@ -32,20 +32,20 @@ class TiltSearch:
     without twist; one of them is 0 where the tool must stay in a plane.
     """
 
-    def __init__(self, room: Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask,
+    def __init__(self, space: Space, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask,
                  spread: float) -> None:
-        self.room, self.closed, self.plane, self.spread = room, closed, plane, spread
+        self.space, self.closed, self.plane, self.spread = space, closed, plane, spread
         self.flat = np.concatenate(rows)
         self.asked = asked
         self.counts = np.array([len(row) for row in rows])
         self.begin = np.r_[0, np.cumsum(self.counts)][:-1]
         self.lost = np.zeros(len(rows), dtype=bool)  # beads that no tilt clears
         self.sides = np.concatenate([_sides(asked[row], plane) for row in rows])
-        points = room.points[self.flat]
+        points = space.points[self.flat]
         self.step = np.r_[np.linalg.norm(np.diff(points, axis=0), axis=1), 0.0]
         self.step[self.begin + self.counts - 1] = 0.0
         self.near = np.concatenate([
-            _near(points[b : b + n], ~free[row], loop, FAR * spread)
+            _near(points[b : b + n], ~free[row], loop, RELEASED * spread)
             for b, n, row, loop in zip(self.begin, self.counts, rows, closed, strict=True)
         ])
 
@@ -66,7 +66,7 @@ class TiltSearch:
         offsets = np.broadcast_to(offsets, (len(place), *offsets.shape[-2:]))
         s = offsets.shape[1]
         spread = np.repeat(place, s)
-        return self.room.clear(self.flat[spread], self._tilted(spread, offsets.reshape(-1, 2))).reshape(-1, s)
+        return self.space.clear(self.flat[spread], self._tilted(spread, offsets.reshape(-1, 2))).reshape(-1, s)
 
     def found(self) -> tuple[Array, Mask]:
         """Tilts (m, 2) of all points, and the points (m,) that have none that is clear."""

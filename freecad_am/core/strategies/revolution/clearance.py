@@ -23,13 +23,13 @@ from ...collision.obstacles import Obstacles
 from ...collision.scene import Scene
 from ...geometry.columns import columns
 from ...geometry.curves.polyline import turn_segments
-from ...geometry.surroundings import disc
+from ...geometry.obstacles import disc
 from ...parameters.cell import NozzleParameters
 from ...types import Array, Index, Mask
 from .platform import Platform
 
 CHORD = 0.01  # mm; beads are looked at to this chord error, or their own where that is larger
-SETTLED = 0.01  # mm that the nozzle moves at most where directions are not settled to the last digit
+CONVERGED = 0.01  # mm that the nozzle moves at most where directions are not settled to the last digit
 
 
 @dataclass(frozen=True)
@@ -87,11 +87,11 @@ class Clearance:
     def standing(self, build: Array, like: Scene | None = None) -> Scene:
         """All that there is, with beads that stand along directions (k, 3), in components, at the points of the deposit;
         like: the same with other directions."""
-        laid = self.deposit
-        width, tall = laid.size
-        directions = _in_space(build, laid.azimuth)
+        own = self.deposit
+        width, tall = own.size
+        directions = _in_space(build, own.azimuth)
         beads = deposit.of_beads(
-            laid.points, directions, width, tall, laid.starts, laid.moment, beside=self.foot,
+            own.points, directions, width, tall, own.starts, own.moment, foot=self.foot,
             like=like.deposit if like is not None and isinstance(like.deposit, Obstacles) else None,
         )
         return Scene(self.bodies, beads)
@@ -112,17 +112,17 @@ class Clearance:
 
 
 def of_nozzle(
-    nozzle: NozzleParameters, lean: float, platform: Platform, tips: Tips, laid: Deposit, chord_error: float,
+    nozzle: NozzleParameters, lean: float, platform: Platform, tips: Tips, deposit: Deposit, chord_error: float,
     between: Tips | None = None,
 ) -> Clearance:
     """The nozzle, leaning by `lean` rad off the build direction, over a platform and a deposit whose points leave their
     curves by `chord_error` mm at most."""
-    looked = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, laid.size[1], lean)
+    looked = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, deposit.size[1], lean)
     frame = np.eye(4)
     frame[2, 3] = platform.height
     plates = [disc(2.0 * platform.radius, frame)] if platform.radius > 0.0 else []
-    bodies = of_bodies(plates, laid.points, looked.reach)
-    return Clearance(tips, laid, looked.larger(chord_error + SETTLED), looked.foot, bodies, between)
+    bodies = of_bodies(plates, deposit.points, looked.reach)
+    return Clearance(tips, deposit, looked.larger(chord_error + CONVERGED), looked.foot, bodies, between)
 
 
 def around(

@@ -136,10 +136,10 @@ def _layers(
             seam.closed_azimuths(process, int(layer), segments, up) if wall.full
             else seam.open_azimuths(wall.start, wall.end, segments, up)
         )
-    builds, tools, issues = tilting.settle(slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer)
+    builds, tools, issues = tilting.resolve(slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer)
     if first.parameters != tilting.parameters:  # below it is nothing that leans another way
         count = int((slices.layer == 0).sum())
-        below, held, found = first.settle(
+        below, held, found = first.resolve(
             slices.radius[:count], slices.height[:count], slices.tangent[:count], azimuths[:count], rising[:count],
             slices.layer[:count],
         )

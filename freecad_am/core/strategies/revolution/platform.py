@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.curves.profile import RevolvedWall
+from ...geometry.formatting import place
 from ...geometry.mesh.solid import spread
 from ...geometry.on_hub import SolidsOnHub
-from ...geometry.told import place
 from ...issues import WARNING, InputError, Issue
 from ...types import Array
 

@@ -112,11 +112,11 @@ def _directions(
         own = np.searchsorted(turns, turned - 2.0 * math.pi - SEAM)
         return Tips(where[0], where[1], sense * turned, moment, own)
 
-    laid = Deposit(
+    deposit = Deposit(
         points[0], points[1], sense * turns, tilting.build(points[2]), number, number == 0,
         np.interp(turns, knots, np.arange(len(knots))), tilting.size,
     )
     looked = tips((radius, height, tangent), knots, np.searchsorted(turns, knots, side="right"))
-    back, issues = tilting.tilt_back(tangent, rising, looked, laid, tips(points, turns, number + 1))
+    back, issues = tilting.tilt_back(tangent, rising, looked, deposit, tips(points, turns, number + 1))
     build, tool = tilting.axes(points[2], np.interp(turns, knots, back), rising)
     return build, tool, issues

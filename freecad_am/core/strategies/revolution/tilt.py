@@ -22,7 +22,7 @@ from ...parameters.cell import NozzleParameters
 from ...parameters.strategy import RevolutionParameters
 from ...slicing.directions import revolution as directions
 from ...types import Array, Index
-from .clearance import CHORD, SETTLED, Clearance, Deposit, Tips, around, of_nozzle
+from .clearance import CHORD, CONVERGED, Clearance, Deposit, Tips, around, of_nozzle
 from .platform import Platform
 
 LOOKS = 12  # places of an arc at which the nozzle is looked at, before it is at all
@@ -75,7 +75,7 @@ class Tilting:
         """mm, to which beads are looked at."""
         return max(CHORD, self.strategy.chord_error)
 
-    def settle(
+    def resolve(
         self, radius: Array, height: Array, tangent: Array, azimuths: Sequence[Array], rising: Sequence[bool], layer: Index,
     ) -> tuple[list[Array], list[Array], list[Issue]]:
         """Build directions and tool axes per bead, (n, 3) or (1, 3) for all points alike, and what was found.
@@ -85,23 +85,23 @@ class Tilting:
         """
         sense = np.asarray(rising, dtype=bool)
         if self.parameters.mode == "layer" and not self.wall.full:
-            return self._settled_arcs(radius, height, self._means(tangent, azimuths), azimuths, sense, layer)
+            return self._resolved_arcs(radius, height, self._means(tangent, azimuths), azimuths, sense, layer)
         cases = self._circles(tangent, sense)
         # a tool in the plane of the axis meets the same on both sides
         turn = 2.0 * np.pi if self.wall.full else self.wall.end - self.wall.start
         bead, azimuth = around(radius, turn, self.chord, self.strategy.min_points, self._upright)
         tips = Tips(radius, height, np.zeros(len(radius)), cases.bead + 1, np.searchsorted(layer, layer))
         starts = np.diff(bead, prepend=-1) > 0
-        laid = Deposit(
+        deposit = Deposit(
             radius[bead], height[bead], azimuth, cases.build[bead], bead, starts, bead.astype(float), self.size
         )
-        clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, laid, self.chord)
-        angle, issues = self._settled(cases, clearance, layer)
+        clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, deposit, self.chord)
+        angle, issues = self._resolved(cases, clearance, layer)
         build = directions.tilted_back(cases.build, angle)
         every = range(1, len(radius))
         return np.split(build, every), np.split(self._tool(build, cases.rising), every), issues
 
-    def _settled_arcs(
+    def _resolved_arcs(
         self, radius: Array, height: Array, build: Array, azimuths: Sequence[Array], rising: NDArray[np.bool_], layer: Index,
     ) -> tuple[list[Array], list[Array], list[Issue]]:
         """The same where directions (k, 3) differ from point to point along the beads: the nozzle is looked at in LOOKS
@@ -114,24 +114,24 @@ class Tilting:
         number = np.searchsorted(rows, np.arange(len(bead)), side="right") - 1  # the last place before each point
         cases = Cases(bead[rows], build[rows], rising[bead[rows]])
         tips = Tips(radius[bead], height[bead], azimuth, bead + 1, np.searchsorted(layer, layer)[bead])
-        laid = Deposit(
+        deposit = Deposit(
             radius[bead], height[bead], azimuth, build, bead, np.diff(bead, prepend=-1) > 0, number.astype(float), self.size
         )
         clearance = of_nozzle(
-            self.nozzle, self._lean, self.platform, tips.rows(rows), laid, self.chord, tips
+            self.nozzle, self._lean, self.platform, tips.rows(rows), deposit, self.chord, tips
         )
-        angle, issues = self._settled(cases, clearance, layer)
+        angle, issues = self._resolved(cases, clearance, layer)
         build = directions.tilted_back(build, angle[number])
         return np.split(build, begin[1:]), np.split(self._tool(build, rising[bead]), begin[1:]), issues
 
     def tilt_back(
-        self, tangent: Array, rising: bool, tips: Tips, laid: Deposit, between: Tips
+        self, tangent: Array, rising: bool, tips: Tips, deposit: Deposit, between: Tips
     ) -> tuple[Array, list[Issue]]:
         """Tilt-back (c,) rad of tips along one bead with the meridian tangents (c, 2), never less than a neighbour's, and
         what was found. between: all of its points."""
         cases = dataclasses.replace(self._circles(tangent, np.full(len(tangent), rising)), chained=True)
-        clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, laid, self.chord, between)
-        return self._settled(cases, clearance, np.zeros(len(tangent), dtype=np.intp))
+        clearance = of_nozzle(self.nozzle, self._lean, self.platform, tips, deposit, self.chord, between)
+        return self._resolved(cases, clearance, np.zeros(len(tangent), dtype=np.intp))
 
     def build(self, tangent: Array) -> Array:
         """Build directions (n, 3) that are asked for on full circles with the meridian tangents (n, 2)."""
@@ -142,7 +142,7 @@ class Tilting:
         build = directions.tilted_back(self.build(tangent), angle)
         return build, self._tool(build, np.full(len(tangent), rising))
 
-    def _settled(self, cases: Cases, clearance: Clearance, layer: Index) -> tuple[Array, list[Issue]]:
+    def _resolved(self, cases: Cases, clearance: Clearance, layer: Index) -> tuple[Array, list[Issue]]:
         """Tilt-back (k,) rad of all cases, and what was found; layer: (m,) of the beads, that issues name."""
         capped = self._capped(cases)
         if self.parameters.clearance == "nozzle":
@@ -197,52 +197,52 @@ class Tilting:
         What stands up in the way of a bead that finds none is tilted back further, where that helps.
         """
         most = directions.from_vertical(cases.build)
-        first = found = self._settled_over(cases, low, clearance, low)
+        first = found = self._resolved_over(cases, low, clearance, low)
         for _ in range(FURTHER):
             further = self._further(cases, found, clearance)
             if not (further > np.maximum(low, np.where(np.isnan(found), most, found))).any():
                 break
             low = np.maximum(low, further)
-            found = self._settled_over(cases, low, clearance, found)
+            found = self._resolved_over(cases, low, clearance, found)
         return found if not np.isnan(found).any() else first
 
     def _further(self, cases: Cases, angle: Array, clearance: Clearance) -> Array:
         """Tilt-back (k,) rad that cases are to have at least, 0 where what they have will do: those that stand up before
         one that finds none, and those next to points of the deposit on which the nozzle touches even so."""
-        most, tips, laid = directions.from_vertical(cases.build), clearance.tips, clearance.deposit
+        most, tips, deposit = directions.from_vertical(cases.build), clearance.tips, clearance.deposit
         stuck = np.flatnonzero(np.isnan(angle))
         known = np.where(np.isnan(angle), most, angle)
         if len(stuck):
             apart = np.hypot(*(column[:, None] - column[stuck] for column in (tips.radius, tips.height)))
             # the nearest most, so that directions turn from bead to bead
-            share = np.where(np.arange(len(angle))[:, None] < stuck, 1.0 - apart / laid.size[0], 0.0).max(axis=1)
+            share = np.where(np.arange(len(angle))[:, None] < stuck, 1.0 - apart / deposit.size[0], 0.0).max(axis=1)
             return np.where(share > 0.0, np.minimum(known + STEEP * share, most), 0.0)
         if clearance.between is None:
             return np.zeros(len(angle))
-        build = directions.tilted_back(laid.build, np.interp(laid.case, np.arange(len(angle), dtype=float), angle))
+        build = directions.tilted_back(deposit.build, np.interp(deposit.case, np.arange(len(angle), dtype=float), angle))
         tool = self._tool(build, np.full(len(build), cases.rising[0]))
-        hit = laid.case[~clearance.clear_between(clearance.standing(build), tool)]
+        hit = deposit.case[~clearance.clear_between(clearance.standing(build), tool)]
         further = np.zeros(len(angle))
         for near in (np.floor(hit).astype(np.intp), np.ceil(hit).astype(np.intp)):
             further[near] = np.minimum(known + SLIGHT, most)[near]
         return further
 
-    def _settled_over(self, cases: Cases, low: Array, clearance: Clearance, start: Array) -> Array:
+    def _resolved_over(self, cases: Cases, low: Array, clearance: Clearance, start: Array) -> Array:
         """Tilt-back (k,) that clears the nozzle over beads tilted as they are, `low` or more, looked for from `start` on;
         NaN where none does.
 
         Beads stand along their directions: what one needs depends on those before it, and on itself on the far side. So all
         are settled again over what the others have become, until none changes. Where that goes to and fro, none goes back.
         """
-        most, laid = directions.from_vertical(cases.build), clearance.deposit
+        most, deposit = directions.from_vertical(cases.build), clearance.deposit
         number = np.arange(len(low), dtype=float)
-        still = SETTLED / clearance.nozzle.reach
+        still = CONVERGED / clearance.nozzle.reach
         angle = np.maximum(low, np.where(np.isnan(start), most, start))
         about, change = np.full((len(low), 2), np.nan), np.full(len(low), np.inf)
         among: Scene | None = None
         for sweep in range(SWEEPS):
-            back = np.interp(laid.case, number, angle)
-            among = clearance.standing(directions.tilted_back(laid.build, back), among)
+            back = np.interp(deposit.case, number, angle)
+            among = clearance.standing(directions.tilted_back(deposit.build, back), among)
 
             def good(some: Index, tried: Array, among: Scene = among) -> NDArray[np.bool_]:
                 tool = self._tool(directions.tilted_back(cases.build[some], tried), cases.rising[some])

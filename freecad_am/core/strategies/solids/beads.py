@@ -28,7 +28,7 @@ from .filling import bead_width
 from .lean import Lean, Turned, held
 from .outlines import leaning
 
-ROLLED = 0.5  # share of the chord error between a bead's chords and the surface
+WRAP_SHARE = 0.5  # share of the chord error between a bead's chords and the surface
 GRID = 6  # decimals of mm that decide between points
 NEEDLESS = 0.02  # share of the chord error that a point has to matter by: offsets leave pairs of points at each node
 SHARES = 0.02  # of a bead's usual width, that points tell
@@ -37,7 +37,7 @@ AGILE = 500.0  # mm/s^2; what every machine follows, where nothing but the speed
 BRIEF = 1.0001e-4  # s; no controller is told a shorter move, as narrow beads, which are laid faster, would have
 
 
-class Rolled(NamedTuple):
+class Wrapped(NamedTuple):
     """A bead, where (n,) the speed is not what the width asks for, and where it bends more than the table's beads; None
     without a bead model."""
 
@@ -50,41 +50,41 @@ class Rolled(NamedTuple):
 def classed(
     curve: PlaneCurve, layer: Slice, base: Base, strategy: FilledParameters, build: BuildDirectionParameters,
     process: ProcessParameters, model: BeadModel | None,
-) -> Rolled:
+) -> Wrapped:
     """The bead of a curve of a layer as its class is laid, with the torch leaning as its class does."""
     name = classes.of_filled(curve.kind, layer.layer)
     build, process = classes.leaning(build, process, name), process.for_class(name)
     lean = leaning(curve, layer, strategy, build)
-    found = rolled(curve, layer.surface, base, strategy, build, process, model, lean)
+    found = wrapped(curve, layer.surface, base, strategy, build, process, model, lean)
     return found._replace(bead=replace(found.bead, bead_class=name))
 
 
-def rolled(
+def wrapped(
     curve: PlaneCurve, surface: LayerSurface, base: Base, strategy: FilledParameters,
     build: BuildDirectionParameters, process: ProcessParameters, model: BeadModel | None, lean: Lean | None = None,
-) -> Rolled:
+) -> Wrapped:
     """The bead of a curve on the plane, in part coordinates; its polynomial's variable is the arc length, 2 pi in all.
 
     lean: of the torch, by default that of the build direction. Points that come so soon after another that no controller can
     be told of the move are left out.
     """
-    found = _rolled(curve, surface, base, strategy, build, process, model, lean)
+    found = _wrapped(curve, surface, base, strategy, build, process, model, lean)
     index = np.flatnonzero(_sparse(found.bead.points, found.bead.speed[1:], BRIEF))
     if len(index) == len(found.bead):
         return found
     clamped, tight = (None if mask is None else mask[index] for mask in (found.clamped, found.tight))
-    return Rolled(found.bead.thinned(index), clamped, tight, found.turned)
+    return Wrapped(found.bead.thinned(index), clamped, tight, found.turned)
 
 
-def _rolled(
+def _wrapped(
     curve: PlaneCurve, surface: LayerSurface, base: Base, strategy: FilledParameters,
     build: BuildDirectionParameters, process: ProcessParameters, model: BeadModel | None, lean: Lean | None,
-) -> Rolled:
+) -> Wrapped:
     """The bead with all of its points."""
     period = surface.period
     start = period.moved(curve.points[:1], curve.turns) if curve.turns and period is not None else curve.points[:1]
     ended = np.vstack([curve.points, start]) if curve.closed else curve.points
-    flat = dense(ended, surface, ROLLED * strategy.chord_error, _told(curve))
+    flat = dense(ended, surface, WRAP_SHARE * strategy.chord_error, _kept_points(curve))
     course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
     lean = Lean(build.lead, build.tilt) if lean is None else lean
     flat, local, normal, tool, turned = held(course, lean, build, strategy.chord_error)
@@ -101,22 +101,22 @@ def _rolled(
     if model is not None:
         radius = radii(flat, closed, process.bead_width)
         found = at_speed(bead, radius, flat, closed, process, model, 1.0 if share is None else share)
-        return Rolled(*found, turned)
+        return Wrapped(*found, turned)
     heights = surface.heights(flat)
     if share is None and heights is None:
-        return Rolled(bead, turned=turned)
+        return Wrapped(bead, turned=turned)
     high = np.ones(len(flat)) if heights is None else heights / strategy.layer_height
     section = high if share is None else high * share
     speed = followed(flat, process.travel_speed / section, closed, max(process.acceleration, AGILE))
     section = process.travel_speed / speed  # at one wire feed
     bead = replace(bead, speed=of_segments(speed))
     if share is None:
-        return Rolled(replace(bead, height=strategy.layer_height * section), turned=turned)
+        return Wrapped(replace(bead, height=strategy.layer_height * section), turned=turned)
     width = bead_width(strategy, process, model) * section / high
-    return Rolled(replace(bead, width=width, height=heights), turned=turned)
+    return Wrapped(replace(bead, width=width, height=heights), turned=turned)
 
 
-def _told(curve: PlaneCurve) -> Mask | None:
+def _kept_points(curve: PlaneCurve) -> Mask | None:
     """Which points (n,) of a curve, the first of a closed one again at its end, tell how wide it is; None: it is as wide as
     ever."""
     if curve.share is None:
@@ -131,8 +131,8 @@ def _share(curve: PlaneCurve, ended: Array, flat: Array) -> Array:
     more."""
     assert curve.share is not None
     share = np.r_[curve.share, curve.share[:1]] if curve.closed else curve.share
-    given, laid = (np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))] for line in (ended, flat))
-    return np.asarray(np.interp(laid / laid[-1], given / given[-1], share))
+    given, wrapped = (np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))] for line in (ended, flat))
+    return np.asarray(np.interp(wrapped / wrapped[-1], given / given[-1], share))
 
 
 def _needed(flat: Array, tolerance: float, besides: Mask | None) -> Array:
@@ -144,15 +144,15 @@ def _needed(flat: Array, tolerance: float, besides: Mask | None) -> Array:
     return flat[kept if besides is None else kept | besides]
 
 
-def _sparse(points: Array, pace: Array, least: float) -> Mask:
+def _sparse(points: Array, speed: Array, least: float) -> Mask:
     """Which points (n, k) of a polyline stay where none may be less than `least` along it from the one kept before, lengths
     divided by the pace (n-1,) of its segments; both ends stay."""
-    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1) / pace)]
+    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1) / speed)]
     kept: Mask = np.r_[True, np.diff(np.floor(way / least)) > 0.0]
     kept &= (way < way[-1] - least) | (way == 0.0)
     kept[0] = kept[-1] = True
     rows = np.flatnonzero(kept)
-    near = np.r_[False, np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / pace[rows[1:] - 1] < least]
+    near = np.r_[False, np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / speed[rows[1:] - 1] < least]
     near[-1] = False  # neighbours across a step of the count: the first of the two is enough
     kept[rows[near]] = False
     return kept

@@ -22,7 +22,7 @@ from ...types import Array
 
 OF_NORMAL = 1.5  # a torch that leans may turn faster than the normals by that, whatever is asked
 WITHIN = 0.98  # of the turn asked for, so that points added later keep to it too
-TOLD = math.radians(0.1)  # a departure from what is asked that counts
+LEAST_DEPARTURE = math.radians(0.1)  # a departure from what is asked that counts
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,6 @@ def evened(course: Course, way: Array, build: BuildDirectionParameters, leaning:
         found = limited(points, normals, course.closed, WITHIN * most)
     except InputError:
         return Evened(course, 0.0, 0.0)
-    off = found.departure > TOLD
+    off = found.departure > LEAST_DEPARTURE
     length = float(np.diff(way)[off[1:] | off[:-1]].sum())
     return Evened(replace(course, spread=found.directions), float(found.departure.max()), length)

@@ -14,13 +14,13 @@ from ...filling.adaptive import fitted, shared
 from ...filling.cover import Cover, covered, total
 from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import fill, open_at_slits, open_places
-from ...filling.room import thinned
+from ...filling.free_width import thinned
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest, steps
+from ...geometry.formatting import place
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import Region
 from ...geometry.regions.strip import Strip
-from ...geometry.told import place
 from ...issues import NOTE, WARNING, InputError, Issue
 from ...layers.margins import ARCS
 from ...layers.surface import Slice
@@ -31,7 +31,7 @@ from ...types import Array
 
 Same = TypeVar("Same", bound=FilledParameters)
 
-SAME = 1e-6  # mm; regions whose borders are no farther apart are equal
+TOLERANCE_MM = 1e-6  # mm; regions whose borders are no farther apart are equal
 USUAL = ProcessParameters().bead_width  # mm; a width that is other than that was given
 MUCH = 0.03  # of a region, laid over other beads of it
 EVERY = (1.0, 1.0)  # widths that all beads have
@@ -246,6 +246,6 @@ def _equal(rings: Sequence[Array], others: Sequence[Array]) -> bool:
         return False
     for ring, other in zip(rings, others):
         first = int(np.argmin(((other - ring[0]) ** 2).sum(axis=1)))
-        if np.abs(np.roll(other, -first, axis=0) - ring).max() > SAME:
+        if np.abs(np.roll(other, -first, axis=0) - ring).max() > TOLERANCE_MM:
             return False
     return True

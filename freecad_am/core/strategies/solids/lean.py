@@ -22,7 +22,7 @@ from ...layers.surface import LayerSurface
 from ...parameters.build_direction import BuildDirectionParameters
 from ...slicing.directions.wall import turn_rates
 from ...types import Array, Mask
-from .course import OF_NORMAL, TOLD, WITHIN, Course, evened, limit
+from .course import LEAST_DEPARTURE, OF_NORMAL, WITHIN, Course, evened, limit
 from .spread import Line, Zones, means, too_fast
 
 GROWTH, SHRINK = 1.1, 0.9
@@ -32,7 +32,7 @@ LONGEST = 0.7  # of a bead; no stretch reaches farther
 FEWEST = 0.02  # share of the lean asked for below which it is none
 STEEPEST = math.radians(300.0)  # rad/mm; without a limit, so that lean and bead agree next to corners
 FINE, FLAT = math.radians(0.02), 1e4  # what of a direction may be lost between points; mm stretched so that only that counts
-SHORT = 4e-3  # mm; no shorter are the pieces of a segment on which the torch goes round the normal
+LEAST_MM = 4e-3  # mm; no shorter are the pieces of a segment on which the torch goes round the normal
 EDGE = 1e-3  # mm over which a deflection ends before it is spread
 ROUGH = 0.05  # share of the chord error that the heading's course need not follow
 CORNER = 0.5  # points so much farther apart than those of a curve make a corner
@@ -119,18 +119,18 @@ def _line(course: Course, way: Array, round_: float, chord_error: float) -> tupl
     heading = np.unwrap(np.arctan2(y, x))
     edge, at = np.diff(way[kept]), way[kept][1:-1]
     turn = np.diff(heading)
-    room = 0.5 * np.minimum(edge[:-1], edge[1:])
+    margin = 0.5 * np.minimum(edge[:-1], edge[1:])
     before, after = heading[:-1], heading[1:]
     period = 0.0
     if course.closed:
         seam = float(np.remainder(heading[0] + round_ - heading[-1] + math.pi, TURN) - math.pi)
         period = heading[-1] + seam - heading[0]
         at, turn = np.r_[0.0, at], np.r_[seam, turn]
-        room = np.r_[0.5 * min(edge[-1], edge[0]), room]
+        margin = np.r_[0.5 * min(edge[-1], edge[0]), margin]
         before, after = np.r_[heading[-1] - period, before], np.r_[heading[0], after]
     curve = 2.0 * chord_error / np.maximum(np.abs(turn), 1e-12)
-    room = np.where(curve < CORNER * room, 0.1 * EDGE, np.minimum(room, curve))
-    places = np.stack([at - room, at + room], axis=1).ravel()
+    margin = np.where(curve < CORNER * margin, 0.1 * EDGE, np.minimum(margin, curve))
+    places = np.stack([at - margin, at + margin], axis=1).ravel()
     values = np.stack([before, after], axis=1).ravel()
     if course.closed:
         turns = np.array([-1.0, 0.0, 1.0])[:, None]
@@ -172,7 +172,7 @@ def _spread(course: Course, way: Array, heading: Line, lean: Lean, most: float, 
         if len(more):
             s = np.union1d(s, more)
             values = means(line, s, zones.stretches(s))
-        flat, points, normal, tool, phi, rates = _laid(course, way, s, values, lean)
+        flat, points, normal, tool, phi, rates = _sampled(course, way, s, values, lean)
         fast = rates > WITHIN * most
         if not fast.any():
             break
@@ -183,7 +183,7 @@ def _spread(course: Course, way: Array, heading: Line, lean: Lean, most: float, 
         return None
     fewer = np.isin(s, way) | _needed(s, values, lean.lead)
     if not fewer.all():
-        thin = _laid(course, way, s[fewer], values[fewer], lean)
+        thin = _sampled(course, way, s[fewer], values[fewer], lean)
         if not (thin.rates > 0.5 * (1.0 + WITHIN) * most).any():
             s, values = s[fewer], values[fewer]
             flat, points, normal, tool, phi, _ = thin
@@ -195,17 +195,17 @@ def _spread(course: Course, way: Array, heading: Line, lean: Lean, most: float, 
         return None
     wanted = directed(course.surface, normal, asked[:, 0] - phi, lean.lead, asked[:, 1])
     apart = np.arctan2(np.linalg.norm(np.cross(wanted, tool), axis=1), (wanted * tool).sum(axis=1))
-    touched = float((share * length)[np.maximum(apart[1:], apart[:-1]) > TOLD].sum())
+    touched = float((share * length)[np.maximum(apart[1:], apart[:-1]) > LEAST_DEPARTURE].sum())
     return Held(flat, points, normal, tool, Turned(1.0, 0.0, float(apart.max()) if touched else 0.0, touched))
 
 
 def _within_bends(line: Line, s: Array, zones: Zones, values: Array, lean: float) -> Array:
     """Places (m,) mm to add between places s (n,) with their values (n, c) where the heading bends on a short part of a long
     segment alone: straight from one to the other it would be so far off that the torch leaned by more than FINE less."""
-    at = line.at[(line.at > s[0] + SHORT) & (line.at < s[-1] - SHORT)]
-    at = at[np.diff(at, prepend=-math.inf) >= SHORT]
+    at = line.at[(line.at > s[0] + LEAST_MM) & (line.at < s[-1] - LEAST_MM)]
+    at = at[np.diff(at, prepend=-math.inf) >= LEAST_MM]
     after = np.searchsorted(s, at)
-    at = at[np.minimum(at - s[after - 1], s[after] - at) >= SHORT]
+    at = at[np.minimum(at - s[after - 1], s[after] - at) >= LEAST_MM]
     off = np.abs(means(line, at, zones.stretches(at))[:, 0] - np.interp(at, s, values[:, 0]))
     found: Array = at[off > _straight_turn(lean)]
     return found
@@ -222,14 +222,14 @@ def _about_normal(s: Array, values: Array, lean: float) -> Array:
     way from one side to the other it would lean by more than FINE less."""
     most = _straight_turn(lean)
     turn, step = np.abs(np.diff(values[:, 0])), np.diff(s)
-    count = np.maximum(np.minimum(np.ceil(turn / most), step / SHORT), 1.0).astype(np.intp)
+    count = np.maximum(np.minimum(np.ceil(turn / most), step / LEAST_MM), 1.0).astype(np.intp)
     start = np.repeat(np.arange(len(step)), count - 1)
     number = np.arange(len(start)) - np.repeat(np.cumsum(count - 1) - (count - 1), count - 1) + 1
     found: Array = s[start] + number / count[start] * step[start]
     return found
 
 
-class _Laid(NamedTuple):
+class _Sampled(NamedTuple):
     """Places (n, 2) on the plane, points, normals and tools (n, 3), phi (n,) rad, turns (n - 1,) rad/mm."""
 
     flat: Array
@@ -240,13 +240,13 @@ class _Laid(NamedTuple):
     rates: Array
 
 
-def _laid(course: Course, way: Array, s: Array, values: Array, lean: Lean) -> _Laid:
+def _sampled(course: Course, way: Array, s: Array, values: Array, lean: Lean) -> _Sampled:
     """The bead at places s (n,) with its torch by headings and angles to the right, values (n, 2)."""
     flat, points, normal, phi = course.at(s, way)
     tool = directed(course.surface, normal, values[:, 0] - phi, lean.lead, values[:, 1])
     if course.closed:
         tool[-1] = tool[0]
-    return _Laid(flat, points, normal, tool, phi, turn_rates(points, tool))
+    return _Sampled(flat, points, normal, tool, phi, turn_rates(points, tool))
 
 
 def _needed(s: Array, values: Array, lead: float) -> Mask:

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from ...issues import NOTE, WARNING, Issue
 from ...parameters.build_direction import BuildDirectionParameters
 from ...toolpath import Layer
-from .beads import Rolled
-from .course import TOLD
+from .beads import Wrapped
+from .course import LEAST_DEPARTURE
 from .lean import Turned
 
 
-def lean_notes(made: Sequence[Rolled], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
+def lean_notes(made: Sequence[Wrapped], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
     """At most one issue of a kind, at the bead where it is worst."""
     turned = {id(one.bead): one.turned for one in made if one.turned is not None}
     places = [(bead, i, j) for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)]
@@ -25,7 +25,7 @@ def lean_notes(made: Sequence[Rolled], layers: Sequence[Layer], build: BuildDire
 
 
 def _spread(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
-    some = [entry for entry in beads if entry[0].departure > TOLD]
+    some = [entry for entry in beads if entry[0].departure > LEAST_DEPARTURE]
     if not some:
         return []
     worst, layer, bead = max(some, key=lambda entry: entry[0].departure)

@@ -11,11 +11,11 @@ from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
 from ...process.model.notes import of_model
 from ...toolpath import Layer
-from .beads import Rolled
+from .beads import Wrapped
 
 
 def notes(
-    made: Sequence[Rolled], layers: Sequence[Layer], mended: Sequence[Issue], strategy: FilledParameters,
+    made: Sequence[Wrapped], layers: Sequence[Layer], mended: Sequence[Issue], strategy: FilledParameters,
     process: ProcessParameters, model: BeadModel | None,
 ) -> list[Issue]:
     """All of them."""

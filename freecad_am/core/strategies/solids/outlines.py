@@ -16,7 +16,7 @@ from ...parameters.filled import FilledParameters
 from ...types import Array
 from .lean import Lean
 
-NEAR = 0.55  # of the bead spacing; beads along an outline are half a spacing inside of it, the next are farther
+OUTLINE = 0.55  # of the bead spacing; beads along an outline are half a spacing inside of it, the next are farther
 PROBES = 9  # edges that tell on which side the outline is, the longest
 
 
@@ -31,17 +31,17 @@ def leaning(
     borders = _borders(layer)
     count, until = len(curve.points), math.inf
     if not curve.closed:
-        beside = _beside(borders, curve.points)[1] < NEAR * strategy.bead_spacing
-        count = len(beside) if beside.all() else int(np.argmin(beside))
+        adjacent = _nearest_border(borders, curve.points)[1] < OUTLINE * strategy.bead_spacing
+        count = len(adjacent) if adjacent.all() else int(np.argmin(adjacent))
         if count < 2:
             return plain
-        if count < len(beside):
+        if count < len(adjacent):
             until = float(np.hypot(*steps(curve.points[:count], False).T).sum())
     edge = steps(curve.points[:count], curve.closed and not curve.turns)
     size = np.hypot(*edge.T)
     longest = np.argsort(-size, kind="stable")[:PROBES]
     middle = curve.points[longest] + 0.5 * edge[longest]
-    out = _beside(borders, middle)[0] - middle
+    out = _nearest_border(borders, middle)[0] - middle
     left = edge[longest, 0] * out[:, 1] - edge[longest, 1] * out[:, 0]
     away = size[longest] * np.hypot(*out.T)
     side = -1.0 if float((left / np.maximum(away, 1e-300)).sum()) > 0.0 else 1.0
@@ -63,7 +63,7 @@ def _borders(layer: Slice) -> list[tuple[Array, bool]]:
     return found
 
 
-def _beside(borders: list[tuple[Array, bool]], points: Array) -> tuple[Array, Array]:
+def _nearest_border(borders: list[tuple[Array, bool]], points: Array) -> tuple[Array, Array]:
     """The places (n, 2) of the outlines nearest to points (n, 2) and how far (n,) mm they are."""
     best, away = points, np.full(len(points), np.inf)
     for border, closed in borders:

@@ -18,12 +18,12 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
-from ...process.order import Laid, ordered, waited
+from ...process.order import RankedBead, ordered, waited
 from ...toolpath import Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
-from .beads import Rolled, classed, reversed_curve
+from .beads import Wrapped, classed, reversed_curve
 from .filling import Filled, Pictures, bead_width, spaced
 from .islands import as_below, island_by_island
 from .lean_notes import lean_notes
@@ -47,10 +47,10 @@ def plan(
     _refuse_mode(solids, strategy, build)
     strategy = spaced(strategy, process)
     expected = _layers_of_a_piece(solids, strategy, process)
-    counted = bead_width(strategy, process, model)
-    pictures = Pictures(strategy, process, counted)
-    laid: list[Laid] = []
-    made: list[Rolled] = []
+    nominal = bead_width(strategy, process, model)
+    pictures = Pictures(strategy, process, nominal)
+    ranked: list[RankedBead] = []
+    made: list[Wrapped] = []
     mended: list[Issue] = []
     covers: list[Cover] = []
     uneven: dict[int, tuple[float, float]] = {}
@@ -80,20 +80,20 @@ def plan(
                 ranks = (-number * FEWER - before[layer.layer] - np.argsort(order)).tolist()
                 before[layer.layer] += len(here)
                 at = here[order[-1]].bead.points[-1] if order else at
-            laid += [Laid(group, number, layer.layer, rank, one.bead) for rank, one in zip(ranks, here, strict=True)]
-    if not laid:
+            ranked += [RankedBead(group, number, layer.layer, rank, one.bead) for rank, one in zip(ranks, here, strict=True)]
+    if not ranked:
         raise InputError(
             "NOTHING_TO_DEPOSIT", solids.label, f"no bead of {strategy.least_bead:g} mm or more finds room in any layer; "
             "use a smaller bead spacing, or thin = single",
         )
-    course = ordered(laid, strategy.order)
+    course = ordered(ranked, strategy.order)
     layers = waited(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
     issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
     return Toolpath(
         layers, _frame(solids), strategy.layer_height, strategy.chord_error, issues, process.overlap,
         "solid" if planes else "developable",
-        solids.surroundings, None if model is None else model.law(process.acceleration), counted,
-        volumes=volumes(solids, strategy, covers), twice=twice(made, strategy, covers, counted),
+        solids.surroundings, None if model is None else model.law(process.acceleration), nominal,
+        volumes=volumes(solids, strategy, covers), twice=twice(made, strategy, covers, nominal),
         uneven=np.array([(layer, *uneven[layer]) for layer in sorted(uneven)]) if uneven else None,
     )
 
@@ -115,7 +115,7 @@ def _both(known: tuple[float, float] | None, heights: tuple[float, float, float]
 def _bead(
     curve: PlaneCurve, layer: Slice, base: Base, strategy: FilledParameters, build: BuildDirectionParameters,
     process: ProcessParameters, model: BeadModel | None,
-) -> Rolled:
+) -> Wrapped:
     if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
         curve = reversed_curve(curve)
     return classed(curve, layer, base, strategy, build, process, model)

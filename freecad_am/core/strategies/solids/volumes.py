@@ -12,16 +12,16 @@ from ...filling.cover import Cover, total
 from ...geometry.beyond_hub import volume_beyond
 from ...geometry.developable import Developable
 from ...geometry.mesh.solid import SolidMesh
+from ...geometry.obstacles import Body
 from ...geometry.on_hub import SolidsOnHub
-from ...geometry.surroundings import Body
 from ...parameters.filled import FilledParameters
-from .beads import Rolled
+from .beads import Wrapped
 
 
 def of_layers(strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[float, float, float]:
     """mm3 of all layers, of what beads leave of them, and of what of beads lies beside."""
-    whole, left, beside, _ = (strategy.layer_height * area for area in total(covers))
-    return whole, left, beside
+    whole, left, outside, _ = (strategy.layer_height * area for area in total(covers))
+    return whole, left, outside
 
 
 def volumes(
@@ -30,14 +30,14 @@ def volumes(
     """mm3 of the part, of what beads leave of it, and of what of them lies beside it; what is cut of it counts as high as
     its layers, so that what is above the last cut is left, and what layers reach beyond it lies beside. A part to which a
     margin is added, or in solids that may overlap, is as large as its layers are."""
-    whole, left, beside = of_layers(strategy, covers)
+    whole, left, outside = of_layers(strategy, covers)
     part = None if strategy.margin else _outside(solids)
     if part is None:
-        return whole, left, beside
-    return part, left + max(part - whole, 0.0), beside + max(whole - part, 0.0)
+        return whole, left, outside
+    return part, left + max(part - whole, 0.0), outside + max(whole - part, 0.0)
 
 
-def twice(made: Sequence[Rolled], strategy: FilledParameters, covers: Sequence[Cover], width: float) -> float:
+def twice(made: Sequence[Wrapped], strategy: FilledParameters, covers: Sequence[Cover], width: float) -> float:
     """mm3 of beads that count as `width` mm wide, each as wide as they are apart, beyond what they cover."""
     area = 0.0
     for bead in (one.bead for one in made):

@@ -15,7 +15,7 @@ from ...slicing.directions.wall import LEAST, capped, held, in_plane, limited
 from ...types import Array
 
 UP = np.array([0.0, 0.0, 1.0])
-SAME = 1e-9  # rad
+TOLERANCE_RAD = 1e-9  # rad
 
 
 class Along(NamedTuple):
@@ -98,7 +98,7 @@ def notes(found: list[tuple[int, Directions]]) -> list[Issue]:
          "than build_direction.max_turn"),
     ):
         worst = int(np.argmax(values))
-        if values[worst] > SAME:
+        if values[worst] > TOLERANCE_RAD:
             text = f"tool axes are {cause.format(np.degrees(values[worst]))}"
             issues.append(Issue(NOTE, code, text, found[worst][0]))
     return issues

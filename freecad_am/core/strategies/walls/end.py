@@ -57,11 +57,11 @@ def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> NDArray[n
     """Which places (n,) of a front lie below the end. Where u is an angle, as along a bend, it is the front that tells which
     turn a place is on: a surface knows its own points only up to whole turns."""
     u, v = surface.inverse(front.curve.at(w)[0])
-    pace = np.linalg.norm(surface.derivatives(u, v)[1], axis=1)
+    rate = np.linalg.norm(surface.derivatives(u, v)[1], axis=1)
     if surface.rise_period is not None:
         about = front.heights(surface, front.curve.wrapped(w))[0]
         u = u + surface.rise_period * np.round((about - u) / surface.rise_period)
-    below: NDArray[np.bool_] = (u - end) * pace <= SAME_END
+    below: NDArray[np.bool_] = (u - end) * rate <= SAME_END
     return below
 
 

@@ -14,7 +14,7 @@ from ...slicing.fronts.curve import feet
 from ...slicing.fronts.rims import Rims
 
 SAMPLES = 100  # places along a front at which it is asked what it lies on
-FEW = 2  # of these; less is a touch at an end
+LEAST_COMMON = 2  # of these; less is a touch at an end
 
 
 @dataclass(eq=False)
@@ -48,7 +48,7 @@ def _parents(curve: SpaceCurve, below: list[Piece]) -> list[Piece]:
     places = curve.at(np.linspace(curve.w[0], curve.w[-1], SAMPLES + 1)[:-1] + 0.5 * curve.period / SAMPLES)[0]
     count = np.bincount(feet([piece.curve for piece in below], places).front, minlength=len(below))
     order = np.argsort(-count, kind="stable")
-    return [below[k] for k in order if count[k] >= FEW]
+    return [below[k] for k in order if count[k] >= LEAST_COMMON]
 
 
 def events(layers: list[list[Piece]]) -> list[Issue]:

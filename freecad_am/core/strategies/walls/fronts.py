@@ -59,12 +59,12 @@ def plan(
     pieces = tree(curves, Rims.of(wall.rims))
     full = [len(layer) for layer in pieces]
     pieces, notes = _kept(wall, pieces, strategy)
-    laid = [[piece.curve for piece in layer] for layer in pieces]  # what is not deposited is nobody's concern
+    deposited = [[piece.curve for piece in layer] for layer in pieces]  # what is not deposited is nobody's concern
     distances = [
         np.concatenate([fronts.local_distances(front, below, FINER) for front in layer])
-        for below, layer in zip(curves, laid[1:])
+        for below, layer in zip(curves, deposited[1:])
     ]
-    issues = spacing_issues(distances, strategy) + _turns(wall, laid, strategy) + events(pieces)
+    issues = spacing_issues(distances, strategy) + _turns(wall, deposited, strategy) + events(pieces)
     notes += _close(pieces, closing, full)
     progress(FINDING, "build directions")
     layers, found = _layers(wall, pieces, strategy, build, process, normal)

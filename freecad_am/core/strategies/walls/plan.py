@@ -82,7 +82,7 @@ def _stretches(
     if count == 0:
         raise InputError("TOO_LOW", wall.label, "its end does not lie above the substrate all around; make it longer")
     if strategy.end == "whole":
-        left = float(((wall.end - fronts[count - 1].u) * _pace(surface, fronts[count - 1])).max())
+        left = float(((wall.end - fronts[count - 1].u) * _rate(surface, fronts[count - 1])).max())
         note = Issue(NOTE, "REMAINDER", f"up to {left:.4g} mm of the wall are left above the last whole layer", count - 1)
         return pieces[:count], [note] if left > 1e-6 * strategy.layer_height else []
     kept = [[piece for piece in some if piece.length(front.curve) > 0.5 * strategy.layer_height]
@@ -93,9 +93,9 @@ def _stretches(
     return kept, short_note(dropped)
 
 
-def _pace(surface: Placed, front: WallLayer) -> Array:
-    pace: Array = np.linalg.norm(surface.derivatives(front.u, front.v)[1], axis=1)
-    return pace
+def _rate(surface: Placed, front: WallLayer) -> Array:
+    rate: Array = np.linalg.norm(surface.derivatives(front.u, front.v)[1], axis=1)
+    return rate
 
 
 def _layers(

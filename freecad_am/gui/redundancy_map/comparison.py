@@ -9,7 +9,7 @@ from typing import Any
 from PySide import QtCore
 
 from ...core.issues import AmError
-from ...core.planning.redundancy import curve as spin_curve
+from ...core.planning.redundancy import curve as rotation_curve
 from ...core.planning.redundancy.curve import Compared
 from ...core.planning.task import Task
 from ...objects.work import progress
@@ -42,7 +42,7 @@ class Comparison:
         tell where these axes are."""
         beads = source.beads if source.cell.external else tuple(bead for _, _, bead in source.toolpath)
         self.background.start(
-            lambda: spin_curve.compared(task, beads, source.places, progress.report), self._show
+            lambda: rotation_curve.compared(task, beads, source.places, progress.report), self._show
         )
         self.timer.start()
         self._tell()

@@ -25,7 +25,7 @@ PIECE = 4096  # moves, or looks, that are done together
 
 def in_the_way(cell: Cell) -> tuple[str, ...]:
     """What is looked at, by the names that messages have: obstacles, then the links beside the robot."""
-    return (*(body.name for body in cell.obstacles), *(one.name for one in cell.beside))
+    return (*(body.name for body in cell.obstacles), *(one.name for one in cell.external_links))
 
 
 def findings(motion: Motion, cell: Cell) -> list[Issue]:
@@ -58,7 +58,7 @@ def met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
 
 def _met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
     nozzle, turned, obstacles = cell.nozzle, end - start, len(cell.obstacles)
-    found = np.zeros((obstacles + len(cell.beside), len(start)), dtype=bool)
+    found = np.zeros((obstacles + len(cell.external_links), len(start)), dtype=bool)
     far = np.abs(turned / np.where(cell.machine.chain.sliding, SLIDE, STEP)).max(axis=1, initial=0.0)
     (tip, axis), (last, leant) = (_in_world(cell, joints) for joints in (start, end))
     way = np.linalg.norm(last - tip, axis=1) + nozzle.length * np.linalg.norm(leant - axis, axis=1)
@@ -71,8 +71,8 @@ def _met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
         for number, body in enumerate(cell.obstacles):
             hit = scene((body,), tip, cone.reach).touched(cone, tip, axis)
             found[number, move[some][hit]] = True
-        to_world = frames.inverse(cell.world(joints))[:, None] @ cell.beside_frames(joints)
-        for number, one in enumerate(cell.beside):
+        to_world = frames.inverse(cell.world(joints))[:, None] @ cell.external_link_frames(joints)
+        for number, one in enumerate(cell.external_links):
             hit = one.solid.touched(cone.bodies, *_seen(frames.inverse(to_world[:, number]), tip, axis))
             found[obstacles + number, move[some][hit]] = True
     return found

@@ -38,7 +38,7 @@ NAME = "RoboticAM_SpinMap"
 WIDE, HIGH = 0.85, 380  # of the window's width; pixels
 
 
-class SpinMapDock:
+class RedundancyMapDock:
     """Shows the map of one joint path until it is closed, or until the joint path goes."""
 
     def __init__(self, obj: Any) -> None:
@@ -287,14 +287,14 @@ class SpinMapDock:
             self.renewing.ask()
 
 
-_open: list[SpinMapDock] = []  # Python must keep it as long as it is open; there is one
+_open: list[RedundancyMapDock] = []  # Python must keep it as long as it is open; there is one
 
 
-def show(obj: Any) -> SpinMapDock:
+def show(obj: Any) -> RedundancyMapDock:
     """Open the map of a joint path, in place of the one that is open. Raises InputError where there is none."""
     source_of(obj)
     while _open:
         _open[0].close()
-    opened = SpinMapDock(obj)
+    opened = RedundancyMapDock(obj)
     _open.append(opened)
     return opened

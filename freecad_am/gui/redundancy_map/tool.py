@@ -15,7 +15,7 @@ from ..texts.translation import error_line, tr, translated_error
 from . import dock
 
 
-def spin_map() -> None:
+def redundancy_map() -> None:
     """Open the map of the selected joint path, or that of the program or job that is selected; where nothing of a job is,
     of the last one with a result."""
     selected = [found for found in map(_joint_path, meant()) if found is not None]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which pairs of rods, round straight bodies with flat ends, are nearer to each other than they may be."""
+"""Which pairs of cylinders, round straight bodies with flat ends, are nearer to each other than they may be."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PARALLEL = 1e-9  # of the square of a sine
 
 
 @dataclass(frozen=True)
-class PlacedRods:
+class PlacedCylinders:
     """One rod in k places: where it starts (k, 3), its unit axes (k, 3), its length and radius; mm."""
 
     start: Array
@@ -25,9 +25,9 @@ class PlacedRods:
     length: float
     radius: float
 
-    def of(self, rows: Index) -> PlacedRods:
+    def of(self, rows: Index) -> PlacedCylinders:
         """It in some of the places."""
-        return PlacedRods(self.start[rows], self.axis[rows], self.length, self.radius)
+        return PlacedCylinders(self.start[rows], self.axis[rows], self.length, self.radius)
 
     @property
     def solid(self) -> Frustum:
@@ -36,44 +36,44 @@ class PlacedRods:
 
 
 @dataclass(frozen=True)
-class _Beside:
-    """The second rods as `separation.bounds` asks for points, seen from where the first ones start."""
+class _Pairs:
+    """The second cylinders as `separation.bounds` asks for points, seen from where the first ones start."""
 
-    rods: PlacedRods
+    cylinders: PlacedCylinders
 
     def __len__(self) -> int:
-        return len(self.rods.start)
+        return len(self.cylinders.start)
 
-    def __getitem__(self, rows: Index) -> _Beside:
-        return _Beside(self.rods.of(rows))
+    def __getitem__(self, rows: Index) -> _Pairs:
+        return _Pairs(self.cylinders.of(rows))
 
     def farthest(self, direction: Array) -> Array:
         """The points (k, 3) that lie farthest along directions (k, 3)."""
-        found: Array = self.rods.start + self.rods.solid.farthest(direction, self.rods.axis)
+        found: Array = self.cylinders.start + self.cylinders.solid.farthest(direction, self.cylinders.axis)
         return found
 
 
-def nearer(one: PlacedRods, other: PlacedRods, gap: float) -> Mask:
-    """(k,) whether two rods are nearer to each other than `gap` mm, which is more than nothing, or meet."""
+def nearer(one: PlacedCylinders, other: PlacedCylinders, gap: float) -> Mask:
+    """(k,) whether two cylinders are nearer to each other than `gap` mm, which is more than nothing, or meet."""
     apart = _between_axes(one, other)
-    found: Mask = apart < gap  # the axes themselves are in the rods
+    found: Mask = apart < gap  # the axes themselves are in the cylinders
     left = np.flatnonzero(~found & (apart < gap + one.radius + other.radius))
     if len(left):
         first, second = one.of(left), other.of(left)
-        beside = _Beside(PlacedRods(second.start - first.start, second.axis, second.length, second.radius))
-        middle = beside.rods.start + 0.5 * second.length * second.axis
+        adjacent = _Pairs(PlacedCylinders(second.start - first.start, second.axis, second.length, second.radius))
+        middle = adjacent.cylinders.start + 0.5 * second.length * second.axis
         start = first.solid.nearest(middle, first.axis) - middle
-        # where that middle is in the rod the way is none, and they meet
+        # where that middle is in the cylinder the way is none, and they meet
         inside = dots(start, start) <= CONVERGED**2
         found[left[inside]] = True
         rows = np.flatnonzero(~inside)
-        low, _ = separation.bounds(first.solid, first.axis[rows], beside[rows], gap, gap, start[rows])
+        low, _ = separation.bounds(first.solid, first.axis[rows], adjacent[rows], gap, gap, start[rows])
         found[left[rows]] = low < gap  # what is in doubt counts
     return found
 
 
-def _between_axes(one: PlacedRods, other: PlacedRods) -> Array:
-    """(k,) mm between the axes of rods, from end to end."""
+def _between_axes(one: PlacedCylinders, other: PlacedCylinders) -> Array:
+    """(k,) mm between the axes of cylinders, from end to end."""
     off = one.start - other.start
     lean, first, second = dots(one.axis, other.axis), dots(one.axis, off), dots(other.axis, off)
     square = 1.0 - lean * lean

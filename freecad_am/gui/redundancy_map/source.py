@@ -17,9 +17,9 @@ from ...core.collision.bead_ends import LINK_GRAIN, Beads
 from ...core.issues import InputError
 from ...core.kinematics.cell import Cell
 from ...core.kinematics.inverse import opw
-from ...core.kinematics.links import rods as link_rods
+from ...core.kinematics.links import cylinders as link_cylinders
 from ...core.kinematics.links.contact import ArmContact
-from ...core.kinematics.links.rods import Mesh
+from ...core.kinematics.links.cylinders import Mesh
 from ...core.parameters.joints import JointParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.planning.joint_path import JointPath
@@ -63,9 +63,9 @@ class Source:
     @cached_property
     def arm(self) -> ArmContact:
         """The robot with what is around it and, in the order of the beads, the deposit; made in the background."""
-        laid = Beads.of(self.beads, self.width, self.toolpath.layer_height).solid(LINK_GRAIN)
-        rods = link_rods.of_robot(self.cell.robot.chain, self.shapes)
-        return ArmContact(self.cell, rods, self.toolpath.surroundings, laid)
+        deposited = Beads.of(self.beads, self.width, self.toolpath.layer_height).solid(LINK_GRAIN)
+        cylinders = link_cylinders.of_robot(self.cell.robot.chain, self.shapes)
+        return ArmContact(self.cell, cylinders, self.toolpath.surroundings, deposited)
 
     @property
     def branch(self) -> int:

@@ -11,11 +11,11 @@ from functools import cached_property
 import numpy as np
 
 from ...collision.bodies import Bodies, of_bodies
-from ...geometry.rods import Rod, row
-from ...geometry.surroundings import Body
+from ...geometry.cylinders import Cylinder, row
+from ...geometry.obstacles import Body
 from ..external import ExternalAxes
 from .bodies import Pieces
-from .rods import Mesh
+from .cylinders import Mesh
 from .shape import LinkShape
 from .solids import Solid
 
@@ -25,8 +25,8 @@ STANDS = -1  # in place of the axis of a link that stands on the floor
 
 
 @dataclass(frozen=True, eq=False)
-class BesideLink:
-    """A link of a mechanism: `body`, by the name that messages call it, and the rods that hold it, in the frame of the link.
+class ExternalLink:
+    """A link of a mechanism: `body`, by the name that messages call it, and the cylinders that hold it, in its frame.
 
     machine: the id of the mechanism; mechanism, link: its place among all, and which of its links it is, 0 its base.
     axis: of those beside the robot the one that moves it last, STANDS where none does. carries: `part` or `robot`; after:
@@ -40,7 +40,7 @@ class BesideLink:
     carries: str
     after: int
     body: Body
-    rods: tuple[Rod, ...]
+    cylinders: tuple[Cylinder, ...]
 
     @cached_property
     def solid(self) -> Bodies:
@@ -53,9 +53,9 @@ class BesideLink:
         return self.body.name
 
 
-def links_beside(
-    external: ExternalAxes | None, read: Read | None = None, known: Sequence[BesideLink] = ()
-) -> tuple[BesideLink, ...]:
+def external_links(
+    external: ExternalAxes | None, read: Read | None = None, known: Sequence[ExternalLink] = ()
+) -> tuple[ExternalLink, ...]:
     """The links of all mechanisms whose files tell what they are made of. read: of a file of shapes its triangles in the
     frame of the link, None where there are none; those of mechanisms that are `known` are not read again."""
     if external is None:
@@ -65,11 +65,11 @@ def links_beside(
         pieces = one.machine.bodies or ((),) * (one.machine.chain.axes + 1)
         for link, parts in enumerate(pieces):
             before = next((each for each in known if (each.machine, each.link) == (one.machine.id, link)), None)
-            made = (before.body, before.rods) if before is not None else _made(parts, read)
+            made = (before.body, before.cylinders) if before is not None else _made(parts, read)
             if made is None:
                 continue
             name = f"{one.machine.title} {'base' if link == 0 else f'e{one.values[link - 1] + 1}'}"
-            found.append(BesideLink(
+            found.append(ExternalLink(
                 one.machine.id, number, link, _axis(external, number, link), one.carries, _after(external, number, link),
                 dataclasses.replace(made[0], name=name), made[1],
             ))
@@ -91,15 +91,15 @@ def _after(external: ExternalAxes, number: int, link: int) -> int:
     return count + sum(one.machine.chain.axes for one in above)
 
 
-def _made(pieces: Pieces, read: Read | None) -> tuple[Body, tuple[Rod, ...]] | None:
-    """The pieces of a link as one body, without a name, and the rods that hold them; None without any."""
+def _made(pieces: Pieces, read: Read | None) -> tuple[Body, tuple[Cylinder, ...]] | None:
+    """The pieces of a link as one body, without a name, and the cylinders that hold them; None without any."""
     meshes = [mesh for mesh in (_mesh(piece, read) for piece in pieces) if mesh is not None]
     if not meshes:
         return None
     first = np.cumsum([0, *(len(points) for points, _ in meshes)])
     triangles = [triangles + start for (_, triangles), start in zip(meshes, first, strict=False)]
     body = Body("", np.concatenate([points for points, _ in meshes]), np.concatenate(triangles))
-    return body, tuple(rod for mesh in meshes for rod in row(*mesh))
+    return body, tuple(cylinder for mesh in meshes for cylinder in row(*mesh))
 
 
 def _mesh(piece: LinkShape | Solid, read: Read | None) -> Mesh | None:

@@ -9,9 +9,9 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-_ALIKE = 3  # pixels that layouts round away
-_SETTLED = 300  # ms in which docks that stand still do not change
-_BESIDE = (QtCore.Qt.LeftDockWidgetArea, QtCore.Qt.RightDockWidgetArea)
+_TOLERANCE_PX = 3  # pixels that layouts round away
+_STABLE_MS = 300  # ms in which docks that stand still do not change
+_SIDE_AREAS = (QtCore.Qt.LeftDockWidgetArea, QtCore.Qt.RightDockWidgetArea)
 
 
 @dataclass
@@ -23,12 +23,12 @@ class _Part:
     by_hand: bool = False
 
 
-class Room:
+class DockArea:
     """Of one area of the window. Docks of ours that are open there make it as large as the largest of them asks."""
 
     def __init__(self, area: Any) -> None:
         self.area = area
-        self.across = QtCore.Qt.Horizontal if area in _BESIDE else QtCore.Qt.Vertical
+        self.across = QtCore.Qt.Horizontal if area in _SIDE_AREAS else QtCore.Qt.Vertical
         self.parts: list[_Part] = []  # in the order in which they were opened
         self.before: dict[str, int] = {}  # names of other docks, and the pixels they had before ours came
         self.wishes: dict[str, int] = {}  # what docks had by the user's hand when they were closed
@@ -36,7 +36,7 @@ class Room:
         self.last: int | None = None
         self.timer = QtCore.QTimer()
         self.timer.setSingleShot(True)
-        self.timer.setInterval(_SETTLED)
+        self.timer.setInterval(_STABLE_MS)
         self.timer.timeout.connect(self._measure)
 
     def enter(self, dock: Any, least: int) -> None:
@@ -48,7 +48,7 @@ class Room:
         natural = hint.width() if self.across == QtCore.Qt.Horizontal else hint.height()
         self.parts.append(_Part(dock, self.wishes.get(dock.objectName(), least or natural)))
 
-    def settle(self) -> None:
+    def fit_size(self) -> None:
         """Make it as large as it is to be."""
         shown = [part.dock for part in self.parts if self._stands(part.dock)]
         if shown:
@@ -67,14 +67,14 @@ class Room:
         self.parts = [part for part in self.parts if part.dock is not dock]
         QtCore.QTimer.singleShot(0, self._give_back)
 
-    def beside(self, dock: Any) -> bool:
+    def has_another(self, dock: Any) -> bool:
         """Whether another dock of ours is seen there at the same time."""
         seen = self._seen()
         return any(part.dock is not dock and part.dock in seen for part in self.parts)
 
     def _give_back(self) -> None:
         if self.parts:
-            self.settle()
+            self.fit_size()
             return
         there = [one for one in self._seen() if one.objectName() in self.before]
         self._resize(there, [self.before[one.objectName()] for one in there])
@@ -92,7 +92,7 @@ class Room:
         if not self.parts:
             return
         found = self._found()
-        if found is not None and self.made is not None and abs(found - self.made) > _ALIKE:
+        if found is not None and self.made is not None and abs(found - self.made) > _TOLERANCE_PX:
             self.parts[-1].asked, self.parts[-1].by_hand = found, True
 
     def _measure(self) -> None:
@@ -127,7 +127,7 @@ class Room:
         window, place = Gui.getMainWindow(), dock.geometry()
         bars = [bar.geometry() for bar in window.findChildren(QtGui.QTabBar) if bar.parent() is window and bar.isVisible()]
         tabs = [bar.height() for bar in bars if bar.left() <= place.center().x() <= bar.right()
-                and place.adjusted(0, -_ALIKE, 0, _ALIKE).intersects(bar)]
+                and place.adjusted(0, -_TOLERANCE_PX, 0, _TOLERANCE_PX).intersects(bar)]
         return int(place.height() + sum(tabs[:1]))
 
     def _resize(self, docks: list[Any], pixels: list[int]) -> None:

@@ -3,7 +3,7 @@
 
 import pytest
 
-from freecad_am.core.geometry.told import at_least, count, deviation, place
+from freecad_am.core.geometry.formatting import at_least, count, deviation, place
 
 
 def test_places_are_told_to_a_thousandth_without_negative_zeros():

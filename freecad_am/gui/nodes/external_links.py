@@ -12,16 +12,16 @@ from pivy import coin
 
 from freecad_am.core.types import Array
 
-from ...core.kinematics.links.beside import BesideLink
+from ...core.kinematics.links.external_links import ExternalLink
 from .machine_links import BAD, move, of_mesh
 
 STANDING, CARRYING, MOVING = (0.36, 0.39, 0.43), (0.66, 0.68, 0.71), (0.5, 0.53, 0.57)
 
 
-class BesideNodes:
+class ExternalLinkNodes:
     """The links, in the frame of what they are posed in."""
 
-    def __init__(self, links: Sequence[BesideLink]) -> None:
+    def __init__(self, links: Sequence[ExternalLink]) -> None:
         self.node = coin.SoSeparator()
         self.links = tuple(links)
         self.matrices: list[Any] = []
@@ -49,5 +49,5 @@ class BesideNodes:
         self.bad = red
 
 
-def _colour(link: BesideLink) -> tuple[float, float, float]:
+def _colour(link: ExternalLink) -> tuple[float, float, float]:
     return STANDING if link.link == 0 else CARRYING if link.after == 0 else MOVING

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 
 from freecad_am.core.kinematics.external import MECHANISMS
-from freecad_am.core.kinematics.links import rods as link_rods
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.planning import nozzle_beside
+from freecad_am.core.planning import nozzle_obstacles
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.preflight import clearance
 from freecad_am.core.simulation.arm import arm_touches
-from tests.core.kinematics.test_beside import STEP, bodies_of, points_within
+from tests.core.kinematics.test_external_links import STEP, bodies_of, points_within
 from tests.core.planning.test_external_axes import POSITIONER, cell_for, levelled_to
 
 CLEAR = 10.0  # mm
@@ -38,7 +38,7 @@ def cell(hemisphere):
 
 def nearest(cell, joints, rods):
     """mm, how far points within the positioner's boxes are from rods of the links, the least of all joints (k, axes)."""
-    bodies, links, seen = bodies_of(POSITIONER), cell.links(joints), cell.beside_frames(joints)
+    bodies, links, seen = bodies_of(POSITIONER), cell.links(joints), cell.external_link_frames(joints)
     least = np.inf
     for k in range(len(joints)):
         for body, points in enumerate(bodies):
@@ -59,7 +59,7 @@ def test_with_clearance_the_links_stay_off_a_positioner_that_they_touch_without(
     plain = plan_joints(hemisphere, cell, JointParameters())
     assert plain.feasible and nearest(cell, plain.joints[::9], rods) < CLEAR
     kept = dataclasses.replace(cell, arm_clearance=CLEAR)
-    path = plan_joints(hemisphere, kept, JointParameters(), rods=rods)
+    path = plan_joints(hemisphere, kept, JointParameters(), cylinders=rods)
     assert path.feasible and nearest(cell, path.joints[::5], rods) > CLEAR - 0.5
     motion, rapids = assemble(path, kept, ProcessParameters(), hemisphere.surroundings, None, 10.0, rods)
     assert not rapids and nearest(cell, motion.joints[~motion.deposit][::7], rods) > CLEAR - 0.5
@@ -76,14 +76,14 @@ def test_a_nozzle_driven_into_the_positioner_is_told_with_its_link_and_on_the_pr
     """The plan, with the table left as it is, and the arm lowered: the nozzle goes through the table."""
     path = plan_joints(hemisphere, cell, JointParameters())
     motion, _ = assemble(path, cell, ProcessParameters(), hemisphere.surroundings, None, 10.0)
-    assert nozzle_beside.findings(motion, cell) == []
+    assert nozzle_obstacles.findings(motion, cell) == []
     rows = np.flatnonzero(motion.deposit)[-40:]
     lowered = turned(motion.joints[rows[0]], 40, 1, np.radians(14.0))
     joints = motion.joints.copy()
     joints[rows] = lowered
     wrong = dataclasses.replace(motion, joints=joints)
-    told = nozzle_beside.findings(wrong, cell)
-    seen = cell.beside_frames(lowered)[:, 2]
+    told = nozzle_obstacles.findings(wrong, cell)
+    seen = cell.external_link_frames(lowered)[:, 2]
     tip = cell.machine.chain.forward(lowered) @ cell.carried
     at = (np.linalg.inv(seen) @ tip)[:, :3, 3]
     pieces = json.loads((MECHANISMS / f"{POSITIONER}.json").read_text(encoding="utf-8"))["bodies"]["joint_2"]
@@ -93,7 +93,7 @@ def test_a_nozzle_driven_into_the_positioner_is_told_with_its_link_and_on_the_pr
     assert {issue.code for issue in told} == {"CLEARANCE"}
     assert any("Yaskawa MotoPos D500 e2" in issue.message for issue in told)
     touches = arm_touches(wrong, ArmContact(cell, link_rods.of_robot(cell.robot.chain)))
-    (row,) = clearance.beside(wrong, cell, touches, True, told)
+    (row,) = clearance.external_links(wrong, cell, touches, True, told)
     assert row.ok is False and row.worst > 0 and (touches.link != NONE).any()
     assert "they touch Yaskawa MotoPos D500" in row.how
 
@@ -103,9 +103,10 @@ def test_what_is_not_known_of_the_shapes_is_said_on_the_preflight(hemisphere):
     path = plan_joints(hemisphere, far, JointParameters())
     motion, _ = assemble(path, far, ProcessParameters(), hemisphere.surroundings, None, 10.0)
     touches = arm_touches(motion, ArmContact(far, link_rods.of_robot(far.robot.chain)))
-    assert [one.ok for one in clearance.beside(motion, far, touches, True, ())] == [True]
-    (drawn,) = clearance.beside(motion, far, touches, False, ())
+    assert [one.ok for one in clearance.external_links(motion, far, touches, True, ())] == [True]
+    (drawn,) = clearance.external_links(motion, far, touches, False, ())
     assert drawn.ok is None and drawn.how.startswith("not checked in full, for links of the robot are drawn")
-    blank = dataclasses.replace(far, beside=())
-    (none,) = clearance.beside(motion, blank, arm_touches(motion, ArmContact(blank, [[] for _ in range(7)])), True, ())
+    blank = dataclasses.replace(far, external_links=())
+    touches = arm_touches(motion, ArmContact(blank, [[] for _ in range(7)]))
+    (none,) = clearance.external_links(motion, blank, touches, True, ())
     assert none.ok is None and "no file tells what Yaskawa MotoPos D500 is made of" in none.how

@@ -128,12 +128,12 @@ def times(run: Run, time: float) -> str:
 
 def widest(run: Run) -> dict[str, tuple[str, ...]]:
     """Texts as wide as those that are told of a run, by the field that tells them."""
-    motion, pace = run.motion, run.pace
+    motion, feed = run.motion, run.feed
     place = (_wide(int(column.max())) for column in (motion.layer, motion.bead, motion.point))
-    asked, slower = pace.asked, ~(pace.achieved >= pace.asked * (1.0 - 1e-6)) & np.isfinite(pace.asked)
+    asked, slower = feed.asked, ~(feed.achieved >= feed.asked * (1.0 - 1e-6)) & np.isfinite(feed.asked)
     speeds = [_widest_speed(asked)]
     if slower.any():
-        speeds.append(_instead(_widest_speed(pace.achieved[slower]), _widest_speed(asked[slower])))
+        speeds.append(_instead(_widest_speed(feed.achieved[slower]), _widest_speed(asked[slower])))
     shorter = min(run.times.total, _HOUR - 1.0)  # has tenths of a second
     return {
         "clock": tuple(re.sub(r"\d", "8", times(run, time)) for time in (run.times.total, shorter)),
@@ -168,6 +168,6 @@ def totals(run: Run) -> list[tuple[str, str]]:
         (tr("Volume"), tr("{volume:.2f} cm³").format(volume=sums.volume / MM3_PER_CM3)),
         (tr("Mass"), tr("{mass:.1f} g").format(mass=sums.mass)),
     ]
-    if run.pace.lost > 0.05:
-        rows.insert(1, (tr("Longer by"), tr("{time} where speeds are not kept").format(time=clock(run.pace.lost))))
+    if run.feed.lost > 0.05:
+        rows.insert(1, (tr("Longer by"), tr("{time} where speeds are not kept").format(time=clock(run.feed.lost))))
     return rows

@@ -31,7 +31,7 @@ _NO_TIME = 1e-12
 
 
 @dataclass(frozen=True)
-class Pace:
+class AchievableFeed:
     """Columns of the n rows of a motion; each is about the segment that ends at the row.
 
     ratio: the share of its largest speed that the fastest axis is asked for, 0 where the machine stands. axis: int, the
@@ -49,7 +49,7 @@ class Pace:
     lost: float
 
 
-def pace(motion: Motion, max_speed: ArrayLike, max_acceleration: ArrayLike = np.inf) -> Pace:
+def achievable_feed(motion: Motion, max_speed: ArrayLike, max_acceleration: ArrayLike = np.inf) -> AchievableFeed:
     """The pace a machine keeps of a motion.
 
     max_speed, max_acceleration: (axes,) rad/s and rad/s^2, mm/s and mm/s^2 of axes that slide; infinite where not known.
@@ -69,7 +69,7 @@ def pace(motion: Motion, max_speed: ArrayLike, max_acceleration: ArrayLike = np.
     slowed = factor < 1.0 - OVER
     asked = np.nan_to_num(motion.duration)
     duration = asked / factor
-    return Pace(
+    return AchievableFeed(
         ratio=ratio, axis=np.where(slowed, axis, -1), asked=motion.speed, achieved=motion.speed * factor,
         duration=duration, slowed=slowed, lost=float((duration - asked).sum()),
     )
@@ -100,16 +100,16 @@ def _accelerated(
     node = way.fastest()
     gain, by_speed = way.gain(node)
     # bends are told at nodes, and go on between two that have one
-    mean = _mean_pace(node[:-1], node[1:], np.minimum(square, np.maximum(way.bound[:-1], way.bound[1:])), gain)
-    result, told = factor.copy(), axis.copy()
+    mean = _mean_rate(node[:-1], node[1:], np.minimum(square, np.maximum(way.bound[:-1], way.bound[1:])), gain)
+    result, limiting = factor.copy(), axis.copy()
     slower = mean < factor[moving] - OVER
     result[moving[slower]] = mean[slower]
     # a bend that is as fast as it can be is to blame, else the ramp
     worst = np.where(node[1:] < node[:-1], way.bound[1:], way.bound[:-1])
     bent = np.minimum(node[:-1], node[1:]) > BENT * worst
     by_bend = np.where(node[1:] < node[:-1], way.by_bend[1:], way.by_bend[:-1])
-    told[moving[slower]] = np.where(bent, by_bend, by_speed)[slower]
-    return result, told
+    limiting[moving[slower]] = np.where(bent, by_bend, by_speed)[slower]
+    return result, limiting
 
 
 @dataclass(frozen=True)
@@ -161,8 +161,8 @@ class _Way:
         """(m,) by how much p^2 may change over each segment while it is below the ceiling, and the axis that bounds it."""
         with np.errstate(divide="ignore", invalid="ignore"):
             left = self.largest - np.where(self.bend > 0.0, self.bend * ceiling[:, None], 0.0)
-            room = np.maximum(np.minimum(left[:-1], left[1:]), 0.0)
-            slopes = np.where(self.speed > 0.0, 2.0 * room / self.speed, np.inf)
+            margin = np.maximum(np.minimum(left[:-1], left[1:]), 0.0)
+            slopes = np.where(self.speed > 0.0, 2.0 * margin / self.speed, np.inf)
         return np.minimum(slopes.min(axis=1) * self.time, _ANY), slopes.argmin(axis=1)
 
 
@@ -174,7 +174,7 @@ def _blocks(motion: Motion) -> NDArray[np.int64]:
     return blocks
 
 
-def _mean_pace(start: Array, end: Array, most: Array, gain: Array) -> Array:
+def _mean_rate(start: Array, end: Array, most: Array, gain: Array) -> Array:
     """The mean pace (m,) over segments on which p^2 goes from `start` to `end`, by way of `most` where `gain`, the most it
     can change by, lets it."""
     top = np.minimum(most, 0.5 * (start + end + gain))

@@ -18,7 +18,7 @@ from .draft import CONSTANT, POLYNOMIALS, Draft
 from .picture import KINDS
 
 STEP = 1.0  # deg of an arrow of a coefficient
-MOST = 1e6
+MAX_VALUE = 1e6
 AXES, CURVES = (RZ, ROTATION), (POLYNOMIALS, CONSTANT)
 
 
@@ -35,7 +35,7 @@ class Controls(QtGui.QWidget):
         self.grid = QtGui.QGridLayout(self)
         self.grid.setContentsMargins(4, 2, 4, 2)
         self.grid.setVerticalSpacing(3)
-        self.layer = self._spin("layer", tr("Layer"), tr("The layer that is looked at; -1 for all of them"), chosen)
+        self.layer = self._box("layer", tr("Layer"), tr("The layer that is looked at; -1 for all of them"), chosen)
         self.layer.setSpecialValueText(tr("all"))
         self.branch = self._combo(
             "branch", tr("Branch"),
@@ -49,9 +49,9 @@ class Controls(QtGui.QWidget):
         self.across = self._add_across()
         self.type = self._combo("curve", tr("Curve"), tr("One polynomial per bead, or one RZ for the whole job"), curve)
         self.type.addItems([tr("polynomials"), tr("constant RZ")])
-        self.bead = self._spin("bead", tr("Bead"), tr("The bead whose polynomial is shown; a click on the map chooses one"),
+        self.bead = self._box("bead", tr("Bead"), tr("The bead whose polynomial is shown; a click on the map chooses one"),
                                curve)
-        self.degree = self._spin("degree", tr("Degree"), tr("Degree of the polynomials"), curve)
+        self.degree = self._box("degree", tr("Degree"), tr("Degree of the polynomials"), curve)
         self.degree.setRange(0, HIGHEST)
         self.together = QtGui.QCheckBox(tr("All beads together"))
         self.together.setObjectName("together")
@@ -60,26 +60,26 @@ class Controls(QtGui.QWidget):
         self.grid.addWidget(self.together, self.grid.rowCount(), 0, 1, 2)
         self.coefficients, self.names = [], []
         for number in range(HIGHEST + 1):
-            spin = QtGui.QDoubleSpinBox()
-            spin.setObjectName(f"c{number}")
-            spin.setRange(-MOST, MOST)
-            spin.setDecimals(3)
-            spin.setSingleStep(STEP)
-            spin.setKeyboardTracking(False)
-            spin.setSuffix(" °" if number == 0 else " °/" + tr("turn") + ("" if number == 1 else "²³⁴⁵⁶"[number - 2]))
-            spin.valueChanged.connect(lambda value, number=number: self._entered(number, value))
+            box = QtGui.QDoubleSpinBox()
+            box.setObjectName(f"c{number}")
+            box.setRange(-MAX_VALUE, MAX_VALUE)
+            box.setDecimals(3)
+            box.setSingleStep(STEP)
+            box.setKeyboardTracking(False)
+            box.setSuffix(" °" if number == 0 else " °/" + tr("turn") + ("" if number == 1 else "²³⁴⁵⁶"[number - 2]))
+            box.valueChanged.connect(lambda value, number=number: self._entered(number, value))
             row = self.grid.rowCount()
             self.names.append(QtGui.QLabel())
             self.grid.addWidget(self.names[-1], row, 0)
-            self.grid.addWidget(spin, row, 1)
-            self.coefficients.append(spin)
+            self.grid.addWidget(box, row, 1)
+            self.coefficients.append(box)
         self.grid.setColumnStretch(1, 1)
         self.grid.setRowStretch(self.grid.rowCount(), 1)
 
-    def _spin(self, name: str, text: str, help: str, act: Callable[[], None]) -> Any:
-        spin = QtGui.QSpinBox()
-        spin.valueChanged.connect(lambda *_: None if self.filling else act())
-        return self._add(spin, name, text, help)
+    def _box(self, name: str, text: str, help: str, act: Callable[[], None]) -> Any:
+        box = QtGui.QSpinBox()
+        box.valueChanged.connect(lambda *_: None if self.filling else act())
+        return self._add(box, name, text, help)
 
     def _combo(self, name: str, text: str, help: str, act: Callable[[], None]) -> Any:
         combo = QtGui.QComboBox()
@@ -128,13 +128,13 @@ class Controls(QtGui.QWidget):
         for widget in (self.bead, self.degree, self.together):
             widget.setEnabled(not constant)
         values = [draft.rz] if constant else [c * (2.0 * np.pi) ** k for k, c in enumerate(draft.coefficients[bead])]
-        for number, (name, spin) in enumerate(zip(self.names, self.coefficients, strict=True)):
+        for number, (name, box) in enumerate(zip(self.names, self.coefficients, strict=True)):
             there = number < len(values)
             name.setVisible(there)
-            spin.setVisible(there)
+            box.setVisible(there)
             name.setText("RZ" if constant else f"c{number}")
-            if there and not (spin.hasFocus() and abs(spin.value() - np.degrees(values[number])) < 6e-4):
-                spin.setValue(float(np.degrees(values[number])))
+            if there and not (box.hasFocus() and abs(box.value() - np.degrees(values[number])) < 6e-4):
+                box.setValue(float(np.degrees(values[number])))
         self.filling = False
 
     def _fill_across(self, board: Board) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The links of a robot as rods, by what is drawn of them: its plain solids, or the shapes a user attached."""
+"""The links of a robot as cylinders, by what is drawn of them: its plain solids, or the shapes a user attached."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.rods import Rod, about, needed, row
+from ...geometry.cylinders import Cylinder, about, needed, row
 from ...types import Array
 from ..chain import Chain
 from . import robot as robot_links
@@ -17,16 +17,16 @@ from .solids import Solid
 Mesh = tuple[Array, NDArray[np.int64]]
 
 
-def of_robot(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[list[Rod]]:
+def of_robot(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[list[Cylinder]]:
     """The rods of each link (axes + 1) of a robot, base first, in the frame of the link.
 
     shapes: points (n, 3) and triangles (m, 3) of links that are not drawn plain, in the same frames.
     """
     plain = [of_solids(link) for link in robot_links.solids(chain)]
-    return [row(*shape) if shape is not None else rods for shape, rods in zip(shapes or [None] * len(plain), plain)]
+    return [row(*shape) if shape is not None else link for shape, link in zip(shapes or [None] * len(plain), plain)]
 
 
-def of_solids(link: Sequence[Solid]) -> list[Rod]:
-    """The rods that hold the solids of a link, in the same frame."""
+def of_solids(link: Sequence[Solid]) -> list[Cylinder]:
+    """The cylinders that hold the solids of a link, in the same frame."""
     points = [solid.points for solid in link]
     return needed([about(each) for each in points], points)

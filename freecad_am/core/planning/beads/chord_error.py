@@ -25,7 +25,7 @@ ROUNDS = 8
 ROUNDING = 1e-6
 
 
-def kept_straight(task: Task, path: BeadPath, chord_error: float) -> tuple[BeadPath, list[Issue]]:
+def refined_to_chord_error(task: Task, path: BeadPath, chord_error: float) -> tuple[BeadPath, list[Issue]]:
     """The path with as many points added as it takes to stay within the chord error (mm) of the bead between them.
 
     Points are added on the curve that the points of the bead outline, not on its chords; at corners on the segments.

@@ -17,7 +17,7 @@ from .curve import Beads, PlaneCurve
 
 STEP = 0.2  # of the spacing, mm between places at which rooms are looked at
 ROUND = 1.6  # arc over chord; a bead comes beside itself where it returns farther round than half a circle
-ALIKE = 0.04  # of the usual width; shares that a straight line tells as well need no point of their own
+SHARE_TOLERANCE = 0.04  # of the usual width; shares that a straight line tells as well need no point of their own
 FIRST = {"contour": 0, "connected": 0, "spiral": 0, "line": 1, "zigzag": 1}  # who keeps its room; all others come last
 LAST = 2
 ALONG = 0.02  # sine of the angle to the lines of a zigzag; what is turned more is a link
@@ -40,11 +40,11 @@ def thinned(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: flo
     which end before the contour, do not. angle: of the lines, rad. least: share that no bead is laid below."""
     lines, corners = zip(*(_divided(curve, STEP * beads.spacing) for curve in curves))
     edges = _edges(lines, [curve.closed for curve in curves])
-    rooms = _rooms(edges, np.array([FIRST.get(curve.kind, LAST) for curve in curves], dtype=np.intp), beads.spacing)
-    share = rooms.sum(axis=1) / beads.spacing
+    widths = _free_widths(edges, np.array([FIRST.get(curve.kind, LAST) for curve in curves], dtype=np.intp), beads.spacing)
+    share = widths.sum(axis=1) / beads.spacing
     zigzags = np.array([curve.kind == "zigzag" for curve in curves])[edges.bead]
     turned = np.abs(edges.ways[:, 0] * np.sin(angle) - edges.ways[:, 1] * np.cos(angle)) > ALONG
-    share = np.where(zigzags & turned, 2.0 * rooms.min(axis=1) / beads.spacing, share)
+    share = np.where(zigzags & turned, 2.0 * widths.min(axis=1) / beads.spacing, share)
     share = np.clip(share, least, 1.0)
     cuts = np.searchsorted(edges.bead, np.arange(1, len(curves)))
     return [_with(*one) for one in zip(curves, lines, corners, np.split(share, cuts))]
@@ -73,10 +73,10 @@ def _edges(lines: Sequence[Array], closed: Sequence[bool]) -> _Edges:
     )
 
 
-def _rooms(edges: _Edges, rank: Index, spacing: float) -> Array:
+def _free_widths(edges: _Edges, rank: Index, spacing: float) -> Array:
     """Room (n, 2) in mm to the left and to the right of edges, at most half the spacing."""
     half = 0.5 * spacing
-    room = np.full((len(edges.middles), 2), half)
+    free = np.full((len(edges.middles), 2), half)
     one, other = _neighbours(edges, spacing).T
     gap = edges.middles[other] - edges.middles[one]
     aside = edges.ways[one, 0] * gap[:, 1] - edges.ways[one, 1] * gap[:, 0]
@@ -86,11 +86,11 @@ def _rooms(edges: _Edges, rank: Index, spacing: float) -> Array:
     for level in range(LAST + 1):
         mine = lot[one] == level
         equal = np.flatnonzero(mine & (lot[other] == level))
-        np.minimum.at(room, (one[equal], side[equal]), radius[equal])
+        np.minimum.at(free, (one[equal], side[equal]), radius[equal])
         before = np.flatnonzero(mine & (lot[other] < level))
-        taken = room[other[before]].mean(axis=1)
-        np.minimum.at(room, (one[before], side[before]), np.maximum(2.0 * radius[before] - taken, 0.0))
-    return room
+        taken = free[other[before]].mean(axis=1)
+        np.minimum.at(free, (one[before], side[before]), np.maximum(2.0 * radius[before] - taken, 0.0))
+    return free
 
 
 def _neighbours(edges: _Edges, spacing: float) -> Index:
@@ -107,11 +107,11 @@ def _neighbours(edges: _Edges, spacing: float) -> Index:
 def _with(curve: PlaneCurve, line: Array, corners: Mask, share: Array) -> PlaneCurve:
     """A curve with the shares (n - 1,) of the edges of its points (n, 2), and of these points no more than its corners (n,)
     and what tells the shares."""
-    if share.min() > 1.0 - ALIKE:
+    if share.min() > 1.0 - SHARE_TOLERANCE:
         return replace(curve, share=None)
     ends = np.r_[share[-1:], share, share[:1]] if curve.closed else np.r_[share[:1], share, share[-1:]]
     wide = 0.5 * (ends[1:] + ends[:-1])
-    kept = corners | telling(np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))], wide, ALIKE)
+    kept = corners | telling(np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))], wide, SHARE_TOLERANCE)
     if curve.closed:
         line, wide, kept = line[:-1], wide[:-1], kept[:-1]
     return replace(curve, points=line[kept], share=wide[kept])

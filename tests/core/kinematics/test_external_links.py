@@ -10,13 +10,13 @@ import PyKDL
 import pytest
 
 from freecad_am.core.geometry import frames
-from freecad_am.core.geometry.surroundings import box
+from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.external import MECHANISMS
-from freecad_am.core.kinematics.links import rods as link_rods
-from freecad_am.core.kinematics.links.beside import links_beside
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
+from freecad_am.core.kinematics.links.external_links import external_links
 from freecad_am.core.kinematics.links.rounds import NONE
 from freecad_am.core.kinematics.urdf.cell import texts_of
 from freecad_am.core.kinematics.urdf.reference import Reference
@@ -104,8 +104,8 @@ def anywhere(cell, count, seed):
 def test_they_are_where_pykdl_has_them_seen_from_part_and_world():
     cell = cell_of(BOTH)
     q = anywhere(cell, 40, 1)
-    assert [one.name.rsplit(" ", 1)[1] for one in cell.beside] == ["base", "e1", "e2", "base", "e3"]
-    seen, world = cell.beside_frames(q), cell.world(q)
+    assert [one.name.rsplit(" ", 1)[1] for one in cell.external_links] == ["base", "e1", "e2", "base", "e3"]
+    seen, world = cell.external_link_frames(q), cell.world(q)
     for k, row in enumerate(q):
         wanted = [*mechanism(D500, STANDS, row[6:8]), *mechanism(TRACK, RAIL, row[8:])]
         to_world = np.linalg.inv(world[k])
@@ -124,11 +124,12 @@ def test_in_the_simulation_the_rail_stands_still_and_the_carriage_goes_under_the
     q = anywhere(cell, 2, 3)
     q[:, :6] = q[0, :6]
     first, second = (placing(cell, one) for one in q)
-    assert np.abs(first.beside[0] - second.beside[0]).max() < 1e-9 and np.abs(first.part - second.part).max() < 1e-9
+    assert np.abs(first.external_links[0] - second.external_links[0]).max() < 1e-9
+    assert np.abs(first.part - second.part).max() < 1e-9
     went = np.linalg.norm((second.links[0] - first.links[0])[:3, 3])
     assert went == pytest.approx(abs(q[1, 6] - q[0, 6])) and went > 100.0
     for place in (first, second):
-        assert np.abs((np.linalg.inv(place.beside[1]) @ place.links[0])[:3, 3] - [40.0, 0.0, 356.0]).max() < 1e-6
+        assert np.abs((np.linalg.inv(place.external_links[1]) @ place.links[0])[:3, 3] - [40.0, 0.0, 356.0]).max() < 1e-6
 
 
 @pytest.mark.parametrize("external", [text(D500, STANDS, "part"), BOTH], ids=["positioner", "with track"])
@@ -138,9 +139,9 @@ def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is
     arm = ArmContact(cell, rods)
     q = anywhere(cell, 1500, 2)
     found, beside = arm.touches(q), bodies_of(D500)
-    told = np.flatnonzero(found.any & np.isin(found.what, [arm.names.index(one.name) for one in cell.beside[:3]]))
+    told = np.flatnonzero(found.any & np.isin(found.what, [arm.names.index(one.name) for one in cell.external_links[:3]]))
     assert len(told) > 25 and (~found.any).sum() > 40
-    links, seen = cell.links(q), cell.beside_frames(q)
+    links, seen = cell.links(q), cell.external_link_frames(q)
 
     def depth(k, link, body):
         """mm, how deep points of a body are in rods of a link, negative of how far they are off."""
@@ -160,7 +161,7 @@ def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is
                 assert depth(k, link, body) < 0.5, (k, link, body)
     checked = 0
     for k in told[:120]:
-        body = int(found.what[k]) - arm.names.index(cell.beside[0].name)
+        body = int(found.what[k]) - arm.names.index(cell.external_links[0].name)
         if found.link[k] <= 6:  # of nozzle and torch others tell
             assert depth(k, int(found.link[k]), body) > -1.8 * STEP
             checked += 1
@@ -182,7 +183,8 @@ def test_the_nozzle_is_looked_at_too():
     found, at = ArmContact(cell, [[] for _ in range(7)]).touches(q), tip_of(cell, q) - place
     deep = (np.abs(at - middle) < half - 5.0).all(axis=1)
     assert deep.sum() > 30 and (found.link[deep] == 8).all()
-    assert {cell.beside[0].name} == {ArmContact(cell, [[] for _ in range(7)]).names[what] for what in found.what[deep]}
+    names = ArmContact(cell, [[] for _ in range(7)]).names
+    assert {cell.external_links[0].name} == {names[what] for what in found.what[deep]}
     far = np.linalg.norm(at - [0.0, -90.0, 260.0], axis=1) > 900.0
     assert far.sum() > 10 and (found.link[far] == NONE).all()
 
@@ -206,8 +208,8 @@ def test_a_mechanism_against_an_obstacle_and_the_part_against_what_carries_it_no
 def test_links_read_once_are_not_read_again():
     cell = cell_of(BOTH)
     moved = cell_of(text(D500, (900.0, 0.0, 0.0, 0.0, 0.0, 0.0), "part"))
-    again = links_beside(moved.external, known=cell.beside)
-    assert [one.body.vertices is other.body.vertices for one, other in zip(again, cell.beside)] == [True] * 3
+    again = external_links(moved.external, known=cell.external_links)
+    assert [one.body.vertices is other.body.vertices for one, other in zip(again, cell.external_links)] == [True] * 3
 
 
 URDF_BODIES = """\
@@ -241,8 +243,8 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
     path.write_text(text_, encoding="utf-8")
     machine, external = texts_of(Reference(str(path)))
     cell = cells.resolve(CellParameters(machine=machine, setup="tool-on-robot", external=external, platform=0.0), np.eye(4))
-    cell = dataclasses.replace(cell, beside=links_beside(cell.external, mesh_of))
-    axes = {one.name.rsplit(" ", 1)[1] for one in cell.beside}
+    cell = dataclasses.replace(cell, external_links=external_links(cell.external, mesh_of))
+    axes = {one.name.rsplit(" ", 1)[1] for one in cell.external_links}
     assert axes == {"e1", "e2", "e3", "base"}
     values = {"track_E1": 0.4, "positioner_E1": 0.3, "positioner_E2": -0.7}
     order = [name for one in cell.external.mechanisms for name in (
@@ -252,8 +254,8 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
     at = urdf_cells.placed(text_, {**zero, **values})
     still = urdf_cells.placed(text_, {**zero, **values, "track_E1": 0.0})
     to_world = np.linalg.inv(still["robot_base_link"] @ cell.robot.base)
-    seen = np.linalg.inv(cell.world(joints))[0] @ cell.beside_frames(joints)[0]
-    for one, frame in zip(cell.beside, seen):
+    seen = np.linalg.inv(cell.world(joints))[0] @ cell.external_link_frames(joints)[0]
+    for one, frame in zip(cell.external_links, seen):
         corners = one.body.vertices @ frame[:3, :3].T + frame[:3, 3]
         if one.after == 0 and one.carries == "part":
             there = to_world @ at["plate"]

@@ -18,8 +18,8 @@ from ...core.parameters.joints import BRANCHES as BRANCH_WORDS
 from ...core.parameters.joints import OF_CELL, given_text
 from ...core.planning.joint_path import BeadPath
 from ...core.planning.points import Points
-from ...core.planning.redundancy import curve as spin_curve
-from ...core.planning.redundancy import map as spin_map
+from ...core.planning.redundancy import curve as rotation_curve
+from ...core.planning.redundancy import map as redundancy_map
 from ...core.planning.redundancy.curve import Followed
 from ...core.planning.redundancy.map import Columns, in_turns
 from ...core.planning.rotation.given import METHOD
@@ -28,7 +28,7 @@ from .source import Source
 
 POLYNOMIALS, CONSTANT = "polynomials", "constant"
 LIVE = 4000  # points that are looked at while the curve is dragged, about
-ALIKE = 1e-9
+TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Draft:
         if all(row is not None for row in known) and len(source.planned.beads) == len(source.places):
             self.coefficients = np.array([np.pad(row, (0, width - len(row))) for row in known])
         else:
-            self.coefficients = spin_curve.fitted(points, self._variable(points, self.live.planned), width - 1)
+            self.coefficients = rotation_curve.fitted(points, self._variable(points, self.live.planned), width - 1)
             whole = len(source.planned.beads) == len(source.places)
             for row, known_row in zip(self.coefficients, known):
                 if known_row is not None and whole:
@@ -103,8 +103,8 @@ class Draft:
         first = np.zeros_like(self.coefficients)
         width = min(first.shape[1], self.first.shape[1])
         first[:, :width] = self.first[:, :width]
-        lost = np.abs(self.first[:, width:]).max(axis=1, initial=0.0) > ALIKE
-        return [int(k) for k in np.flatnonzero((np.abs(self.coefficients - first).max(axis=1) > ALIKE) | lost)]
+        lost = np.abs(self.first[:, width:]).max(axis=1, initial=0.0) > TOLERANCE
+        return [int(k) for k in np.flatnonzero((np.abs(self.coefficients - first).max(axis=1) > TOLERANCE) | lost)]
 
     @property
     def edited(self) -> bool:
@@ -113,7 +113,7 @@ class Draft:
         if self.branch != self.source.branch:
             return True
         if self.kind == CONSTANT:
-            return method != CONSTANT or abs(self.rz - self.first_rz) > ALIKE
+            return method != CONSTANT or abs(self.rz - self.first_rz) > TOLERANCE
         return method != METHOD or bool(self.changed)
 
     # ---- the curve
@@ -140,7 +140,7 @@ class Draft:
         key = self.branch, live and self.thinned
         if key not in self.thresholds:
             self.thresholds[key] = task.thresholds(sampled.points)
-        return spin_curve.follow(task, sampled.points, self.thresholds[key], sampled.lasts, phi)
+        return rotation_curve.follow(task, sampled.points, self.thresholds[key], sampled.lasts, phi)
 
     def along(self, paths: Sequence[BeadPath], at: Columns) -> Array:
         """(C,) the rotation of planned paths, at columns of a map."""
@@ -165,7 +165,7 @@ class Draft:
 
     def handles(self, bead: int) -> Array:
         """(n,) parameters at which the polynomial of a bead is taken hold of."""
-        return spin_curve.handles(self.source.task(self.branch), self.live.points, bead, self.degree)
+        return rotation_curve.handles(self.source.task(self.branch), self.live.points, bead, self.degree)
 
     def pull(self, bead: int, handle: int, by: float, beads: list[int]) -> None:
         """Move one handle of a bead by an angle, and the same of further beads."""
@@ -176,7 +176,7 @@ class Draft:
             key = float(low[k]), float(high[k]), bool(points.closed[k])
             if key not in known:
                 number = min(handle, len(self.handles(k)) - 1)
-                known[key] = spin_curve.pull(task, points, k, self.degree, number)
+                known[key] = rotation_curve.pull(task, points, k, self.degree, number)
             self.coefficients[k] += by * known[key]
 
     def set_degree(self, degree: int) -> None:
@@ -186,7 +186,7 @@ class Draft:
             self.coefficients = np.concatenate([self.coefficients, more], axis=1)
         elif degree < self.degree:
             points = self.live.points
-            self.coefficients = spin_curve.fitted(points, points.polynomial(self.coefficients), degree)
+            self.coefficients = rotation_curve.fitted(points, points.polynomial(self.coefficients), degree)
 
     # ---- making it the choice
 
@@ -200,7 +200,7 @@ class Draft:
 
     def given(self) -> tuple[str, ...]:
         """The polynomials of the beads, as the job file has them; one for all where they are alike."""
-        same = np.abs(self.coefficients - self.coefficients[0]).max() <= ALIKE
+        same = np.abs(self.coefficients - self.coefficients[0]).max() <= TOLERANCE
         rows = [(None, self.coefficients[0])] if same else list(zip(self.source.places, self.coefficients))
         return tuple(given_text(place, tuple(float(value) for value in row)) for place, row in rows)
 
@@ -220,7 +220,7 @@ class Draft:
             np.concatenate([getattr(bead, name)[index] for bead, index in zip(source.beads, kept)])
             for name in ("points", "tool", "parameter")
         )
-        external, slides = spin_map.external_of(source.cell, source.beads, kept), source.cell.machine.chain.sliding
+        external, slides = redundancy_map.external_of(source.cell, source.beads, kept), source.cell.machine.chain.sliding
         points = Points(
             position, tool, parameter, np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
             np.repeat(np.arange(len(kept)), counts), np.array([bead.closed for bead in source.beads], dtype=bool),
@@ -229,7 +229,7 @@ class Draft:
         wanted = {k: bead.parameter[index] for k, (bead, index) in enumerate(zip(source.beads, kept))}
         planned = list(rotation_along(source.planned.beads, source.beads, source.places, wanted).values())
         return Sampled(
-            points, tuple(kept), spin_curve.durations(source.beads, kept), np.concatenate(planned), row.astype(np.int64)
+            points, tuple(kept), rotation_curve.durations(source.beads, kept), np.concatenate(planned), row.astype(np.int64)
         )
 
     def _variable(self, points: Points, phi: Array) -> Array:

@@ -13,10 +13,10 @@ from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array
 
 from ...core.planning.joint_path import BeadPath
-from ...core.planning.redundancy import across as spin_across
-from ...core.planning.redundancy import map as spin_map
+from ...core.planning.redundancy import across as rotation_across
+from ...core.planning.redundancy import map as redundancy_map
 from ...core.planning.redundancy.curve import Followed
-from ...core.planning.redundancy.map import RZ, Columns, Picture, SpinMap
+from ...core.planning.redundancy.map import RZ, Columns, Picture, RedundancyMap
 from ..texts.translation import tr
 from .draft import CONSTANT, Draft
 from .source import Source
@@ -52,29 +52,29 @@ class Board:
     ) -> None:
         self.source, self.layer, self.axis, self.across = source, layer, axis, across
         self.beads = [k for k, (of, _) in enumerate(source.places) if layer is None or of == layer]
-        self.beside: Array | None = None
+        self.offsets: Array | None = None
         if across is None or at is None:
-            found = spin_map.columns([source.beads[k] for k in self.beads], source.cell)
+            found = redundancy_map.columns([source.beads[k] for k in self.beads], source.cell)
             self.columns: Columns = dataclasses.replace(found, bead=np.array(self.beads)[found.bead])
         else:
             bead = source.beads[at[0]]
             point = len(bead) // 2 if at[1] is None else at[1]
-            self.beside = spin_across.span(source.task(source.branch), bead, point, across, ACROSS)
-            self.columns = spin_across.across(source.beads, source.cell, (at[0], point), across, self.beside)
-        self.map: SpinMap | None = None
+            self.offsets = rotation_across.span(source.task(source.branch), bead, point, across, ACROSS)
+            self.columns = rotation_across.across(source.beads, source.cell, (at[0], point), across, self.offsets)
+        self.map: RedundancyMap | None = None
         self.pictures: dict[int, Picture] = {}
         self.looked: dict[int, int] = {}  # branches whose links were looked at, one of so many rows
         self.curves: dict[int, tuple[tuple[BeadPath, ...], Array]] = {}
 
     # ---- computing, in another thread
 
-    def compute(self, branch: int) -> tuple[SpinMap, Picture]:
+    def compute(self, branch: int) -> tuple[RedundancyMap, Picture]:
         """The cells of all branches, where they are not known yet, and the picture of one."""
         task = self.source.task(branch)
-        cells = self.map or spin_map.spin_map(task, self.columns, self.axis, self.source.toolpath.surroundings)
-        return cells, self.pictures.get(branch) or spin_map.picture(task, cells, branch)
+        cells = self.map or redundancy_map.redundancy_map(task, self.columns, self.axis, self.source.toolpath.surroundings)
+        return cells, self.pictures.get(branch) or redundancy_map.picture(task, cells, branch)
 
-    def take(self, made: tuple[SpinMap, Picture]) -> None:
+    def take(self, made: tuple[RedundancyMap, Picture]) -> None:
         """Keep what was computed."""
         self.map = made[0]
         self.pictures[made[1].branch] = made[1]
@@ -87,7 +87,7 @@ class Board:
     def arm(self, branch: int, every: int) -> NDArray[np.bool_]:
         """(R, C) where links of the robot touch something; one of so many rows is looked at."""
         assert self.map is not None
-        return spin_map.arm_touched(self.source.task(branch), self.map, branch, self.source.arm, self.moment, every)
+        return redundancy_map.arm_touched(self.source.task(branch), self.map, branch, self.source.arm, self.moment, every)
 
     def take_arm(self, branch: int, touched: NDArray[np.bool_], every: int) -> None:
         """Keep what was looked at."""
@@ -96,14 +96,14 @@ class Board:
 
     def shows(self, bead: int) -> bool:
         """Whether a bead is among the columns: of many, some are; none where they are values of an axis."""
-        return self.beside is None and bool((self.columns.bead == bead).any())
+        return self.offsets is None and bool((self.columns.bead == bead).any())
 
     @property
     def title(self) -> str:
         """What the columns are."""
-        if self.beside is not None:
+        if self.offsets is not None:
             layer, bead, point = self.place(0)
-            return tr("{} at layer {} bead {} point {}").format(self._beside_name, layer, bead, point)
+            return tr("{} at layer {} bead {} point {}").format(self._across_name, layer, bead, point)
         if self.layer is not None:
             return tr("points of layer {}").format(self.layer)
         seen = len(np.unique(self.columns.bead))
@@ -124,15 +124,15 @@ class Board:
     @property
     def marks(self) -> NDArray[np.int64]:
         """Columns before which a line is drawn, but for the first: where beads begin, or the external axis is planned."""
-        if self.beside is None:
+        if self.offsets is None:
             return self.seams
         planned = self.source.beads[int(self.columns.bead[0])].external
         assert planned is not None and self.across is not None
         here = float(planned[int(self.columns.point[0]), self.across])
-        return np.array([0, int(np.abs(self.beside - here).argmin())])
+        return np.array([0, int(np.abs(self.offsets - here).argmin())])
 
     @property
-    def _beside_name(self) -> str:
+    def _across_name(self) -> str:
         own = self.source.cell.robot.chain.axes
         return self.source.cell.machine.axes[own + (self.across or 0)]
 
@@ -140,10 +140,10 @@ class Board:
     def labels(self) -> list[tuple[float, str]]:
         """Columns and what is written below them: numbers of layers, or of the points of a single layer."""
         count = len(self.columns)
-        if self.beside is not None:
+        if self.offsets is not None:
             unit = float(self.source.cell.machine.unit_values[self.source.cell.robot.chain.axes + (self.across or 0)])
             shown = np.unique(np.round(np.linspace(0, count - 1, MOST_LABELS // 2)).astype(int))
-            return [(float(k), f"{self.beside[k] / unit:.0f}") for k in shown]
+            return [(float(k), f"{self.offsets[k] / unit:.0f}") for k in shown]
         if self.layer is None:
             layer = np.array([self.source.places[k][0] for k in self.columns.bead])
             first = np.flatnonzero(np.diff(layer, prepend=-1) != 0)
@@ -168,16 +168,16 @@ class Board:
     def values(self, phi: Array) -> Array:
         """(C,) where rotations at the columns lie on the axis, counted on along each bead, whose mean is within half a turn
         of 0."""
-        value = self._counted(phi)
+        value = self._unwrapped(phi)
         return value - self._turns(value)
 
-    def _counted(self, phi: Array) -> Array:
+    def _unwrapped(self, phi: Array) -> Array:
         points = self.columns.points
-        value = spin_map.value_of(self.source.cell, points.tool, phi, self.axis)
+        value = redundancy_map.value_of(self.source.cell, points.tool, phi, self.axis)
         if self.axis == RZ:
             # RZ follows the rotation, the other way round where the tool points down, but for what changes slowly
             side = np.where((points.tool @ self.source.cell.mount[:3, 2]) < 0.0, -1.0, 1.0)
-            value = side * phi + spin_map.in_turns(value - side * phi, np.diff(self.columns.bead, prepend=-1) != 0)
+            value = side * phi + redundancy_map.in_turns(value - side * phi, np.diff(self.columns.bead, prepend=-1) != 0)
         return value
 
     def _turns(self, value: Array) -> Array:
@@ -190,9 +190,9 @@ class Board:
 
     def draft_values(self, draft: Draft) -> Array:
         """(C,) the curve that is worked on, in the turns of what was planned, so that it does not hop while it is moved."""
-        value = self._counted(draft.phi(self.columns.points, self.columns.bead))
+        value = self._unwrapped(draft.phi(self.columns.points, self.columns.bead))
         planned = self.source.planned.beads
-        like = value if draft.kind == CONSTANT else self._counted(draft.along(planned, self.columns))
+        like = value if draft.kind == CONSTANT else self._unwrapped(draft.along(planned, self.columns))
         return value - self._turns(like)
 
     def path_values(self, draft: Draft, paths: tuple[BeadPath, ...]) -> Array:
@@ -204,7 +204,7 @@ class Board:
 
     def bad(self, draft: Draft, followed: Followed, values: Array) -> Array:
         """(k, 2) columns and values of the points of the curve that the planner objects to."""
-        if self.beside is not None:
+        if self.offsets is not None:
             return np.zeros((0, 2))
         row = draft.live.row[~followed.good]
         known = draft.starts[self.columns.bead] + self.columns.point
@@ -218,7 +218,7 @@ class Board:
         if of_rz == (self.axis == RZ):
             return after - before
         tool, cell = self.columns.points.tool[[column]], self.source.cell
-        phi = [spin_map.rotation_of(cell, tool, np.array([value]), self.axis) for value in (before, after)]
+        phi = [redundancy_map.rotation_of(cell, tool, np.array([value]), self.axis) for value in (before, after)]
         one, other = (float((cell.rz_of_phi(tool, at) if of_rz else at)[0]) for at in phi)
         side = -1.0 if float(tool[0] @ cell.mount[:3, 2]) < 0.0 else 1.0
         by = other - one
@@ -228,8 +228,8 @@ class Board:
         """What there is to tell of a place on the map."""
         points, task = self.columns.points, self.source.task(branch)
         at = points.each(np.array([column]))
-        phi = spin_map.rotation_of(task.cell, at.tool, np.array([value]), self.axis)
-        joints = spin_map.joints_at(task, self.columns, column, float(phi[0]))[branch]
+        phi = redundancy_map.rotation_of(task.cell, at.tool, np.array([value]), self.axis)
+        joints = redundancy_map.joints_at(task, self.columns, column, float(phi[0]))[branch]
         offset = np.abs(task.given_rows.offset(joints))
         reached = bool(np.isfinite(joints).all())
         condition = float(task.condition(at, phi, joints[None])[0]) if reached else 0.0

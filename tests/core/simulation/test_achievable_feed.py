@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.motion import Motion
-from freecad_am.core.simulation.pace import pace
+from freecad_am.core.simulation.achievable_feed import achievable_feed
 
 
 def run(joints, duration, speed=10.0, bead=None):
@@ -29,7 +29,7 @@ def test_no_axis_is_ever_faster_than_it_can_be_and_the_slowest_is_just_that():
     random = np.random.default_rng(1)
     motion = run(np.cumsum(random.normal(0.0, 1.0, (2000, 6)), axis=0), random.uniform(0.2, 2.0, 2000))
     most = random.uniform(1.0, 4.0, 6)
-    found = pace(motion, most)
+    found = achievable_feed(motion, most)
     taken = np.abs(np.diff(motion.joints, axis=0)) / found.duration[1:, None] / most
     assert taken.max() <= 1.0 + 1e-9
     slow = found.slowed[1:]
@@ -45,10 +45,10 @@ def test_no_axis_is_ever_faster_than_it_can_be_and_the_slowest_is_just_that():
 
 def test_unknown_speeds_forbid_nothing_and_unreachable_rows_are_left_alone():
     motion = run(np.random.default_rng(2).normal(0.0, 9.0, (50, 6)), 0.1)
-    assert not pace(motion, np.full(6, np.inf)).slowed.any()
+    assert not achievable_feed(motion, np.full(6, np.inf)).slowed.any()
     joints = motion.joints.copy()
     joints[20] = np.nan
-    found = pace(dataclasses.replace(motion, joints=joints), np.ones(6))
+    found = achievable_feed(dataclasses.replace(motion, joints=joints), np.ones(6))
     assert not found.slowed[20:22].any() and found.slowed[1:20].all()
     assert np.isfinite(found.duration).all()
 
@@ -57,7 +57,7 @@ def test_unknown_speeds_forbid_nothing_and_unreachable_rows_are_left_alone():
 def test_a_straight_way_from_rest_to_rest_takes_the_time_of_the_trapezoid(count):
     way, speed, acceleration = 4.0, 0.5, 0.8  # the ramps take 0.3 of the way
     motion = run(np.linspace([0.0, 0.0], [way, -0.5 * way], count), way / speed / (count - 1))
-    found = pace(motion, [9.0, 9.0], [acceleration, 99.0])
+    found = achievable_feed(motion, [9.0, 9.0], [acceleration, 99.0])
     assert found.duration.sum() == pytest.approx(way / speed + speed / acceleration, rel=1e-9)
     if count > 10:
         middle = slice(count // 3, 2 * count // 3)
@@ -68,7 +68,8 @@ def test_a_straight_way_from_rest_to_rest_takes_the_time_of_the_trapezoid(count)
 def test_a_way_too_short_for_its_speed_takes_the_time_of_the_triangle():
     way, acceleration = 0.2, 0.8
     motion = run(np.linspace([0.0], [way], 400), way / 3.0 / 399)
-    assert pace(motion, [9.0], [acceleration]).duration.sum() == pytest.approx(2.0 * np.sqrt(way / acceleration), rel=1e-9)
+    duration = achievable_feed(motion, [9.0], [acceleration]).duration.sum()
+    assert duration == pytest.approx(2.0 * np.sqrt(way / acceleration), rel=1e-9)
 
 
 def test_on_a_circle_the_pace_is_where_its_acceleration_is_the_largest():
@@ -76,7 +77,7 @@ def test_on_a_circle_the_pace_is_where_its_acceleration_is_the_largest():
     angle = np.linspace(0.0, 20.0 * np.pi, count)
     motion = run(radius * np.column_stack([np.cos(angle), np.sin(angle)]), 20.0 * np.pi / rate / (count - 1))
     acceleration = 1.1
-    found = pace(motion, [9.0, 9.0], [acceleration, acceleration])
+    found = achievable_feed(motion, [9.0, 9.0], [acceleration, acceleration])
     middle = slice(count // 4, 3 * count // 4)
     share = (found.achieved / found.asked)[middle]
     # radius (rate pace)^2 is all that an axis can do at the ends of its way; between there is room to be faster
@@ -93,7 +94,7 @@ def test_accelerations_along_the_motion_as_it_will_be_are_kept():
     joints = np.column_stack([np.sin(7 * u), 0.6 * np.cos(11 * u + 0.4), 0.9 * u**2])
     motion = run(joints, 3.0 / 6000)
     most, largest = np.array([3.0, 2.5, 9.0]), np.array([12.0, 9.0, 30.0])
-    found = pace(motion, most, largest)
+    found = achievable_feed(motion, most, largest)
     times = np.cumsum(found.duration)
     speed = np.diff(joints, axis=0) / np.diff(times)[:, None]
     middles = 0.5 * (times[1:] + times[:-1])
@@ -111,5 +112,5 @@ def test_a_program_stops_between_beads():
     duration[101] = 0.0
     motion = dataclasses.replace(motion, duration=duration)
     speed, acceleration = 1.0, 4.0
-    found = pace(motion, [9.0], [acceleration])
+    found = achievable_feed(motion, [9.0], [acceleration])
     assert found.duration.sum() == pytest.approx(2 * (2.0 / speed + speed / acceleration), rel=1e-9)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ...core.planning.redundancy import curve as spin_curve
+from ...core.planning.redundancy import curve as rotation_curve
 from ...core.planning.redundancy.curve import Followed, Sums
 from ..background.later import Background
 from ..background.worker import Worker
@@ -30,7 +30,7 @@ class Consequences:
     def take(self, draft: Draft) -> None:
         """Look at another draft, which is as it was planned."""
         self.draft = draft
-        self.planned = spin_curve.sums(draft.follow(draft.live.planned))
+        self.planned = rotation_curve.sums(draft.follow(draft.live.planned))
         self.planned_exact: Sums | None = None
 
     def of_plan(self) -> Sums:
@@ -45,7 +45,7 @@ class Consequences:
         """Tell at once what the curve as it is now means."""
         draft = self.draft
         self.followed = draft.followed()
-        self._tell(spin_curve.sums(self.followed), self.planned, draft.thinned)
+        self._tell(rotation_curve.sums(self.followed), self.planned, draft.thinned)
         self.form.show_joints(joint_ranges(self.followed.joints, draft.source.cell))
 
     def exactly(self) -> None:
@@ -57,12 +57,12 @@ class Consequences:
 
         def work() -> tuple[Sums, Sums]:
             full = own.full
-            mine = spin_curve.sums(own.follow(own.phi(full.points, full.points.bead), False))
+            mine = rotation_curve.sums(own.follow(own.phi(full.points, full.points.bead), False))
             if known is not None:
                 return mine, known
             of_plan = own.copied()
             of_plan.branch = own.source.branch
-            return mine, spin_curve.sums(of_plan.follow(full.planned, False))
+            return mine, rotation_curve.sums(of_plan.follow(full.planned, False))
 
         def show(worker: Worker) -> None:
             found = worker.result()

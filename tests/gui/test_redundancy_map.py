@@ -11,9 +11,9 @@ from freecad_am.core.planning.redundancy import across as spin_across
 from freecad_am.core.planning.redundancy import curve as spin_curve
 from freecad_am.core.planning.redundancy import map as spin_map
 from freecad_am.gui.path.colouring import NONE, TOO_NEAR
-from freecad_am.gui.spin_map import dock as docks
-from freecad_am.gui.spin_map.canvas import TURN
-from freecad_am.gui.spin_map.cells import FINE
+from freecad_am.gui.redundancy_map import dock as docks
+from freecad_am.gui.redundancy_map.canvas import TURN
+from freecad_am.gui.redundancy_map.cells import FINE
 from freecad_am.objects.staleness import UP_TO_DATE
 
 ROBOT = {"limits": "paper"}
@@ -399,7 +399,7 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere):
     planned = one.source.planned.beads[1].joints[point]
     assert one.board.place(0) == (*one.source.places[1], point)
     here = one.board.marks[1]
-    assert abs(one.board.beside[here] - planned[7]) < 2.0 * np.pi / 100.0
+    assert abs(one.board.offsets[here] - planned[7]) < 2.0 * np.pi / 100.0
     assert np.ptp(one.board.columns.points.external[:, 0]) == 0.0
     # where the plan is, the map has the plan's joints
     phi = one.source.planned.beads[1].phi[point]

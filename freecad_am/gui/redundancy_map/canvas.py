@@ -68,10 +68,10 @@ class Canvas(QtGui.QWidget):
         if self.drag is None:
             values = np.concatenate([curve.values for curve in curves]) if curves else np.zeros(1)
             low, high = min(-np.pi, float(values.min())), max(np.pi, float(values.max()))
-            room = 0.04 * (high - low) if high - low > TURN + 1e-9 else 0.0
+            margin = 0.04 * (high - low) if high - low > TURN + 1e-9 else 0.0
             if high - low > MOST_TURNS * TURN:
-                low, high, room = -np.pi, np.pi, 0.0
-            self.low, self.high = low - room, high + room
+                low, high, margin = -np.pi, np.pi, 0.0
+            self.low, self.high = low - margin, high + margin
         self.update()
 
     # ---- places

@@ -8,12 +8,12 @@ import pytest
 
 from freecad_am.core.collision.bead_ends import Beads
 from freecad_am.core.geometry import frames
-from freecad_am.core.geometry.surroundings import Body, disc
+from freecad_am.core.geometry.obstacles import Body, disc
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links import robot as robot_links
-from freecad_am.core.kinematics.links import rods as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import BRANCHES, JointParameters, given_polynomials, given_text
@@ -49,7 +49,7 @@ def seen(toolpath, axis=spin_map.RZ, branch=FLIP, rows=61, **more):
     cell = cells.resolve(CellParameters(**{"limits": "paper", **setup}), toolpath.frame)
     task = Task(cell, branch, JointParameters(**more))
     at = spin_map.columns(beads_of(toolpath)[0], cell, 50)
-    found = spin_map.spin_map(task, at, axis, values=np.linspace(-np.pi, np.pi, rows))
+    found = spin_map.redundancy_map(task, at, axis, values=np.linspace(-np.pi, np.pi, rows))
     return task, found, spin_map.picture(task, found, branch)
 
 
@@ -124,7 +124,7 @@ def test_a_constant_rz_lies_in_good_cells_just_when_the_planner_finds_it_feasibl
         issues = [issue for path in paths for issue in spin_curve.findings(task, path)]
         at = spin_map.columns(beads, cell, 10**6)
         assert len(at) == sum(map(len, beads))
-        picture = spin_map.picture(task, spin_map.spin_map(task, at, values=np.array([rz])), branch)
+        picture = spin_map.picture(task, spin_map.redundancy_map(task, at, values=np.array([rz])), branch)
         points = gather(beads, cell)
         followed = spin_curve.follow(
             task, points, task.thresholds(points), spin_curve.durations(beads),
@@ -137,7 +137,7 @@ def test_a_constant_rz_lies_in_good_cells_just_when_the_planner_finds_it_feasibl
         if followed.wound.any():
             k = int(np.flatnonzero(followed.wound)[0])
             off = followed.joints[k] - spin_map.joints_at(task, at, k, followed.phi[k])[branch]
-            assert np.abs(off - TURN * np.round(off / TURN)).max() < 1e-6 and np.abs(off[~task.endless]).max() > 6.0
+            assert np.abs(off - TURN * np.round(off / TURN)).max() < 1e-6 and np.abs(off[~task.continuous]).max() > 6.0
         verdicts.append(feasible)
     assert len(set(verdicts)) == 2 or part == "funnel"
 
@@ -157,11 +157,11 @@ def test_columns_with_a_body_under_the_nozzle_are_forbidden(dome):
     here = at.points.position[20] + 30.0 * at.points.tool[20]
     corners = here + np.array([[-1.0, -1, -1], [1, -1, 1], [0, 1, 0]])
     body = Body("flag", corners, np.array([[0, 1, 2]]))
-    clear, touching = (spin_map.spin_map(task, at, bodies=bodies) for bodies in ((), (body,)))
+    clear, touching = (spin_map.redundancy_map(task, at, bodies=bodies) for bodies in ((), (body,)))
     assert not clear.touching.any() and touching.touching[20] and not touching.touching.all()
     # where the nozzle stands on a part it may touch it beside its tip
     floor = Body("floor", at.points.position[20] + 0.3 * at.points.tool[20] + 0.2 * (corners - here), body.triangles)
-    assert not spin_map.spin_map(task, at, bodies=(floor,)).touching[20]
+    assert not spin_map.redundancy_map(task, at, bodies=(floor,)).touching[20]
     assert spin_map.picture(task, touching, FLIP).forbidden[:, 20].all()
 
 
@@ -402,7 +402,7 @@ def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, acr
         expected = np.tile(beads[1].external[7], (21, 1))
         expected[:, across] = values
         assert (at.bead == 1).all() and (at.point == 7).all()
-    found = spin_map.spin_map(task, at, spin_map.ROTATION, values=np.linspace(-np.pi, np.pi, 25))
+    found = spin_map.redundancy_map(task, at, spin_map.ROTATION, values=np.linspace(-np.pi, np.pi, 25))
     whole, reached = KdlArm(cell.machine), 0
     for row, column in np.random.default_rng(3).integers(0, (25, len(at)), (60, 2)):
         flange = at.points.each(np.array([column])).frames.at(found.phi[row, [column]])

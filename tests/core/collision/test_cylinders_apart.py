@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rods that are nearer than they may be: against projections onto one and the other in turns, which share nothing."""
+"""Cylinders that are nearer than they may be: against projections onto one and the other in turns, which share nothing."""
 
 import numpy as np
 
-from freecad_am.core.collision.rods_apart import PlacedRods, nearer
+from freecad_am.core.collision.cylinders_apart import PlacedCylinders, nearer
 
 FIRST, SECOND = (220.0, 35.0), (60.0, 90.0)  # length and radius, mm
 
@@ -13,7 +13,7 @@ def unit(rows):
 
 
 def projected(rods, points):
-    """The points of rods nearest to points."""
+    """The points of cylinders nearest to points."""
     along = np.einsum("ij,ij->i", points - rods.start, rods.axis)
     across = points - rods.start - along[:, None] * rods.axis
     size = np.linalg.norm(across, axis=1)
@@ -33,12 +33,12 @@ def distance(one, other):
 def test_rods_are_nearer_than_a_gap_where_projections_say_so():
     chance = np.random.default_rng(15)
     count = 1200
-    one = PlacedRods(chance.uniform(-150, 150, (count, 3)), unit(chance.normal(size=(count, 3))), *FIRST)
+    one = PlacedCylinders(chance.uniform(-150, 150, (count, 3)), unit(chance.normal(size=(count, 3))), *FIRST)
     axis = unit(chance.normal(size=(count, 3)))
     axis[:200] = one.axis[:200]  # side by side
     axis[200:300] = -one.axis[200:300]
     axis[300:400] = unit(np.cross(one.axis[300:400], axis[300:400]))  # upright on each other
-    other = PlacedRods(chance.uniform(-250, 250, (count, 3)), axis, *SECOND)
+    other = PlacedCylinders(chance.uniform(-250, 250, (count, 3)), axis, *SECOND)
     apart = distance(one, other)
     assert (apart < 0.4).sum() > 100 and (apart > 10.0).sum() > 400
     for gap in (0.4, 10.0, 60.0):
@@ -51,8 +51,8 @@ def test_rods_are_nearer_than_a_gap_where_projections_say_so():
 def test_faces_and_sides_are_where_analysis_says():
     """Side by side, end to end, and one's end above the other's side."""
     up, ahead = np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]])
-    post = PlacedRods(np.zeros((1, 3)), up, 100.0, 20.0)
+    post = PlacedCylinders(np.zeros((1, 3)), up, 100.0, 20.0)
     beside, above, across = ([50.0, 0.0, 30.0], up, 20.0), ([5.0, 5.0, 112.0], up, 12.0), ([-10.0, 3.0, 128.0], ahead, 18.0)
     for start, axis, gap in (beside, above, across):
-        other = PlacedRods(np.array([start]), axis, 40.0, 10.0)
+        other = PlacedCylinders(np.array([start]), axis, 40.0, 10.0)
         assert nearer(post, other, gap + 1e-3)[0] and not nearer(post, other, gap - 1e-3)[0], start

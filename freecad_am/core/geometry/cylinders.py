@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rods: round straight bodies with flat ends that hold everything of a shape, and perhaps a little more."""
+"""Cylinders: round straight bodies with flat ends that hold everything of a shape, and perhaps a little more."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from ..types import Array
 
 PIECES = 8  # a shape is cut into at most so many
-SHORT = 0.5  # pieces are no shorter than this share of the shape's width
+LEAST_LENGTH = 0.5  # pieces are no shorter than this share of the shape's width
 _ROUNDING = 1e-6  # mm
 
 
 @dataclass(frozen=True)
-class Rod:
+class Cylinder:
     """A cylinder: the middles of its flat ends `start` and `end` (3,), its `radius`; mm."""
 
     start: Array
@@ -41,12 +41,12 @@ class Rod:
         return held
 
 
-def about(points: Array) -> Rod:
-    """The rod about points (n, 3): of those along their three main directions the one with the least volume."""
+def about(points: Array) -> Cylinder:
+    """The cylinder about points (n, 3): of those along their three main directions the one with the least volume."""
     middle = points.mean(axis=0)
     offset = points - middle
     directions = np.linalg.eigh(offset.T @ offset)[1].T
-    found: list[tuple[float, Rod]] = []
+    found: list[tuple[float, Cylinder]] = []
     for k, axis in enumerate(directions):
         along = offset @ axis
         low, high = float(along.min()) - _ROUNDING, float(along.max()) + _ROUNDING
@@ -55,13 +55,13 @@ def about(points: Array) -> Rod:
         centre = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
         radius = float(np.linalg.norm(flat - centre, axis=1).max())
         foot = middle + centre @ across
-        found.append(((high - low) * radius**2, Rod(foot + low * axis, foot + high * axis, radius)))
+        found.append(((high - low) * radius**2, Cylinder(foot + low * axis, foot + high * axis, radius)))
     return min(found, key=lambda one: one[0])[1]
 
 
-def row(points: Array, triangles: NDArray[np.int64]) -> list[Rod]:
-    """Rods in a row that together hold a shape of triangles (m, 3) of points (n, 3): its pieces along its longest direction,
-    each with its rod."""
+def row(points: Array, triangles: NDArray[np.int64]) -> list[Cylinder]:
+    """Cylinders in a row that together hold a shape of triangles (m, 3) of points (n, 3): its pieces along its longest
+    direction, each with its cylinder."""
     used = points[np.unique(triangles)]
     whole = about(used)
     offset = used - used.mean(axis=0)
@@ -69,7 +69,7 @@ def row(points: Array, triangles: NDArray[np.int64]) -> list[Rod]:
     height = points @ axis
     low, high = float((used @ axis).min()), float((used @ axis).max())
     across = float(np.linalg.norm(offset - (offset @ axis)[:, None] * axis, axis=1).max())
-    count = int(np.clip((high - low) / max(SHORT * across, _ROUNDING), 1, PIECES))
+    count = int(np.clip((high - low) / max(LEAST_LENGTH * across, _ROUNDING), 1, PIECES))
     cuts = np.linspace(low, high, count + 1)
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     start, end = height[edges[:, 0]], height[edges[:, 1]]
@@ -86,15 +86,15 @@ def row(points: Array, triangles: NDArray[np.int64]) -> list[Rod]:
         piece = np.concatenate([inside, *borders])
         if len(piece):
             found.append(about(piece))
-    volume = sum(rod.length * rod.radius**2 for rod in found)
+    volume = sum(cylinder.length * cylinder.radius**2 for cylinder in found)
     return found if volume < whole.length * whole.radius**2 else [whole]
 
 
-def needed(rods: Sequence[Rod], points: Sequence[Array]) -> list[Rod]:
-    """The rods about points (each (n, 3)) but those whose points are all in another rod that stays."""
-    order = sorted(range(len(rods)), key=lambda k: rods[k].length * rods[k].radius**2)
+def needed(cylinders: Sequence[Cylinder], points: Sequence[Array]) -> list[Cylinder]:
+    """The cylinders about points (each (n, 3)) but those whose points are all in another cylinder that stays."""
+    order = sorted(range(len(cylinders)), key=lambda k: cylinders[k].length * cylinders[k].radius**2)
     left = set(order)
     for k in order:
-        if any(rods[j].holds(points[k]).all() for j in left - {k}):
+        if any(cylinders[j].holds(points[k]).all() for j in left - {k}):
             left.remove(k)
-    return [rods[k] for k in sorted(left)]
+    return [cylinders[k] for k in sorted(left)]
