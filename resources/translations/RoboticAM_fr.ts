@@ -1247,7 +1247,7 @@
         <translation>(les autres reposent sur la courbure de {0} : comme substrat il leur donne des couches de sa forme)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>(planned)</source>
         <translation>(planifié)</translation>
     </message>
@@ -1372,7 +1372,7 @@
         <translation>Une pièce supplémentaire que la buse évite.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>A joint would have to be at {:.0f} % of its speed: the planner will slow it, or refuse</source>
         <translation>Une articulation devrait aller à {:.0f} % de sa vitesse : le planificateur la ralentira, ou refusera</translation>
     </message>
@@ -1427,7 +1427,7 @@
         <translation>Accélération</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Across</source>
         <translation>En travers</translation>
     </message>
@@ -1462,7 +1462,7 @@
         <translation>À l&apos;opposé de la pesanteur, sous la forme x y z dans le monde.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>All beads together</source>
         <translation>Tous les cordons ensemble</translation>
     </message>
@@ -1482,7 +1482,7 @@
         <translation>Toute la pièce est déposée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>All points serve</source>
         <translation>Tous les points conviennent</translation>
     </message>
@@ -1567,7 +1567,7 @@
         <translation>Distance du bras, mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>As planned</source>
         <translation>Comme planifié</translation>
     </message>
@@ -1622,7 +1622,7 @@
         <translation>Les BASE_DATA et TOOL_DATA des numéros du programme sont ceux de la cellule, avec leur charge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
         <source>Back</source>
         <translation>Retour</translation>
     </message>
@@ -1652,7 +1652,7 @@
         <translation>Base : le repère de base du constructeur, dans lequel le pupitre dit les positions, vu de la plaque au sol. Celui de FANUC est à la hauteur de l&apos;axe 2. Bride : dans le dernier corps, son Z hors de la plaque. Rotation : autour de X, puis Y, puis Z.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Bead</source>
         <translation>Cordon</translation>
     </message>
@@ -1737,7 +1737,7 @@
         <translation>Lissage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Branch</source>
         <translation>Branche</translation>
     </message>
@@ -2012,7 +2012,7 @@
         <translation>Couleurs des trajectoires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/dock.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
         <source>Compare methods</source>
         <translation>Comparer les méthodes</translation>
     </message>
@@ -2092,7 +2092,7 @@
         <translation>Refroidissement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Curve</source>
         <translation>Courbe</translation>
     </message>
@@ -2137,7 +2137,7 @@
         <translation>Flèche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Degree</source>
         <translation>Degré</translation>
     </message>
@@ -2147,7 +2147,7 @@
         <translation>Degré du polynôme d&apos;une couche.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Degree of the polynomials</source>
         <translation>Degré des polynômes</translation>
     </message>
@@ -2212,7 +2212,7 @@
         <translation>Déposé de la pièce : {0} %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Depositing</source>
         <translation>Dépôt en cours</translation>
     </message>
@@ -2392,7 +2392,7 @@
         <translation>Entrer dans la cellule la pose choisie dans le tableau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>Eq. 17</source>
         <translation>Éq. 17</translation>
     </message>
@@ -2672,7 +2672,7 @@
         <translation>Carte de la rotation libre…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/dock.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
         <source>Free rotation of {title}</source>
         <translation>Rotation libre de {title}</translation>
     </message>
@@ -2707,7 +2707,7 @@
         <translation>De la bride, ou de la face d&apos;un axe rotatif, au plan de montage le long de son Z, ou une pose sur elle.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
         <source>From where to where each joint goes on this curve; red past a limit</source>
         <translation>D&apos;où à où va chaque articulation sur cette courbe ; rouge au-delà d&apos;une limite</translation>
     </message>
@@ -3202,7 +3202,7 @@
         <translation>Déposez une couche de plus, ou laissez moins à usiner</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Layer</source>
         <translation>Couche</translation>
     </message>
@@ -3212,7 +3212,7 @@
         <translation>Hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Layer {layer} ({first} to {last}), bead {bead}, point {point}</source>
         <translation>Couche {layer} ({first} à {last}), cordon {bead}, point {point}</translation>
     </message>
@@ -3222,7 +3222,7 @@
         <translation>Couche {} (0 à {})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
         <source>Layer {} bead {} point {}</source>
         <translation>Couche {} cordon {} point {}</translation>
     </message>
@@ -3377,7 +3377,7 @@
         <translation>Le faire suivre une expression, comme {}Spreadsheet.height / 2</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
         <source>Let the planner choose</source>
         <translation>Laisser choisir</translation>
     </message>
@@ -3422,7 +3422,7 @@
         <translation>Le chargement des parties et les outils portés par d’autres outils ont été essayés à vide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Longer by</source>
         <translation>Plus long de</translation>
     </message>
@@ -3452,7 +3452,7 @@
         <translation>Aspect</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>Lost</source>
         <translation>Perdus</translation>
     </message>
@@ -3502,7 +3502,7 @@
         <translation>Faire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
         <source>Make the curve that of the joint path, and plan it again</source>
         <translation>Faire de la courbe celle de la trajectoire articulaire, et la replanifier</translation>
     </message>
@@ -3532,12 +3532,12 @@
         <translation>Carte de la rotation libre…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>Margin</source>
         <translation>Marge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Mass</source>
         <translation>Masse</translation>
     </message>
@@ -3727,7 +3727,7 @@
         <translation>Plus étroit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Near a singularity: condition {value:.3f}, allowed are {than:.3f}</source>
         <translation>Près d&apos;une singularité : condition {value:.3f}, permis {than:.3f}</translation>
     </message>
@@ -3767,12 +3767,12 @@
         <translation>Aucun axe ne doit dépasser sa vitesse maximale</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>No findings: no limit, singularity or speed comes near</source>
         <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>No findings: no limit, singularity or speed comes near, and no link of the robot touches anything</source>
         <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche rien</translation>
     </message>
@@ -3957,7 +3957,7 @@
         <translation>Un point en avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>One polynomial per bead, or one RZ for the whole job</source>
         <translation>Un polynôme par cordon, ou un RZ pour tout le travail</translation>
     </message>
@@ -4002,7 +4002,7 @@
         <translation>Origine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Out of reach</source>
         <translation>Hors d&apos;atteinte</translation>
     </message>
@@ -4097,7 +4097,7 @@
         <translation>Placement…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
         <source>Plan constant, point-by-point and layer-by-layer on this branch, to look at</source>
         <translation>Planifier constant, point par point et couche par couche sur cette branche, pour regarder</translation>
     </message>
@@ -4107,7 +4107,7 @@
         <translation>Planifier la trajectoire articulaire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
         <source>Plan the joint path again layer by layer, without a curve that is given</source>
         <translation>Replanifier la trajectoire articulaire couche par couche, sans courbe donnée</translation>
     </message>
@@ -4132,7 +4132,7 @@
         <translation>Épaisseur prévue de la paroi, une moitié de chaque côté de la surface prévue ; 0 : la surface prévue elle-même est celle mesurée.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/comparison.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/comparison.py"/>
         <source>Planning</source>
         <translation>Planification</translation>
     </message>
@@ -4222,7 +4222,7 @@
         <translation>Points desservis, %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>Points that are unreachable, past a limit, near a singularity or not allowed</source>
         <translation>Points hors d&apos;atteinte, au-delà d&apos;une limite, près d&apos;une singularité ou non permis</translation>
     </message>
@@ -4402,12 +4402,12 @@
         <translation>RY</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>RZ</source>
         <translation>RZ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>RZ as in Chalvin 2020, or the true rotation about the tool axis</source>
         <translation>RZ comme dans Chalvin 2020, ou la vraie rotation autour de l&apos;axe de l&apos;outil</translation>
     </message>
@@ -4437,7 +4437,7 @@
         <translation>Rayon de la sphère</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Rapid moves</source>
         <translation>Mouvements rapides</translation>
     </message>
@@ -4722,7 +4722,7 @@
         <translation>Épaule, coude et poignet de cette trajectoire articulaire ; cell : ce que dit la cellule.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Shoulder, elbow and wrist; behind it the share of the map that it reaches within its limits</source>
         <translation>Épaule, coude et poignet ; derrière, la part de la carte qu&apos;elle atteint dans ses limites</translation>
     </message>
@@ -4762,7 +4762,7 @@
         <translation>Montrer où le robot peut tenir ce qu&apos;il porte : bleu dans peu de directions, jaune dans toutes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>Shown on the map</source>
         <translation>Montré sur la carte</translation>
     </message>
@@ -5027,7 +5027,7 @@
         <translation>Début</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/form.py"/>
         <source>Start again from what was planned</source>
         <translation>Repartir de ce qui était planifié</translation>
     </message>
@@ -5162,7 +5162,7 @@
         <translation>Le bras reste dégagé de la pièce, du dépôt, du plateau, de la buse et de lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>The bead whose polynomial is shown; a click on the map chooses one</source>
         <translation>Le cordon dont le polynôme est montré ; un clic sur la carte en choisit un</translation>
     </message>
@@ -5227,7 +5227,7 @@
         <translation>Les broches numériques et analogiques sont reliées au procédé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>The displacement of the joints (Chalvin 2020, eq. 17), and times that of the plan</source>
         <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport à celui planifié</translation>
     </message>
@@ -5337,7 +5337,7 @@
         <translation>Les articulations amènent l’outil à chaque point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>The largest share of a joint&apos;s greatest speed at the travel speed</source>
         <translation>La plus grande part de la vitesse maximale d&apos;une articulation à la vitesse d&apos;avance</translation>
     </message>
@@ -5357,17 +5357,17 @@
         <translation>Le dernier point montré, compté à partir de 0 dans la dernière couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>The layer that is looked at; -1 for all of them</source>
         <translation>La couche regardée ; -1 pour toutes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>The least share of half a joint&apos;s range that is left to a limit</source>
         <translation>La plus petite part de la demi-plage d&apos;une articulation qui reste jusqu&apos;à une limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>The least sigma_min / sigma_max of the Jacobian</source>
         <translation>Le plus petit sigma_min / sigma_max du jacobien</translation>
     </message>
@@ -5422,12 +5422,12 @@
         <translation>La machine qui dépose ; le programme est écrit pour sa commande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/canvas.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/canvas.py"/>
         <source>The map is being computed…</source>
         <translation>La carte est en cours de calcul…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/dock.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
         <source>The map was closed: {why}</source>
         <translation>La carte a été fermée : {why}</translation>
     </message>
@@ -5482,7 +5482,7 @@
         <translation>La pièce sur laquelle ils reposent ; aucune n&apos;est nécessaire sur un plateau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>The path, or an external axis at the point that was clicked last, the other axes as planned there</source>
         <translation>La trajectoire, ou un axe externe au dernier point cliqué, les autres axes comme prévu à cet endroit</translation>
     </message>
@@ -5667,7 +5667,7 @@
         <translation>Il n&apos;y a pas de vue 3D où simuler ; ouvrez-en une.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/tool.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/tool.py"/>
         <source>There is no joint path to map; make one first.</source>
         <translation>Il n&apos;y a pas de trajectoire articulaire à cartographier ; faites-en d&apos;abord une.</translation>
     </message>
@@ -5722,7 +5722,7 @@
         <translation>Mince</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>This curve</source>
         <translation>Cette courbe</translation>
     </message>
@@ -5747,7 +5747,7 @@
         <translation>Inclinaison</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Time</source>
         <translation>Temps</translation>
     </message>
@@ -5942,7 +5942,7 @@
         <translation>Monter</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Upwards</source>
         <translation>Ordonnée</translation>
     </message>
@@ -5997,7 +5997,7 @@
         <translation>Valeurs (*.csv)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Volume</source>
         <translation>Volume</translation>
     </message>
@@ -6022,7 +6022,7 @@
         <translation>Attente entre les couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Waits</source>
         <translation>Attentes</translation>
     </message>
@@ -6067,7 +6067,7 @@
         <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>What is changed of one bead is changed of all</source>
         <translation>Ce qui est changé d&apos;un cordon l&apos;est de tous</translation>
     </message>
@@ -6127,7 +6127,7 @@
         <translation>Ce que disent les couleurs des endroits</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>What the colours tell</source>
         <translation>Ce que disent les couleurs</translation>
     </message>
@@ -6622,7 +6622,7 @@
         <translation>une vitesse comme 6 mm/s ou 360 mm/min</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>a spiral has no layers to wait between; use path: layers, a slower process.travel_speed, or leave it out</source>
         <translation>une spirale n&apos;a pas de couches entre lesquelles attendre ; utilisez path: layers, une process.travel_speed plus lente, ou retirez cette clé</translation>
     </message>
@@ -7477,7 +7477,7 @@
         <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
         <source>condition {:.4f}, least {:.4f}</source>
         <translation>condition {:.4f}, minimum {:.4f}</translation>
     </message>
@@ -7497,7 +7497,7 @@
         <translation>constante</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>constant RZ</source>
         <translation>RZ constant</translation>
     </message>
@@ -7597,7 +7597,7 @@
         <translation>point de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>deposits</source>
         <translation>dépose</translation>
     </message>
@@ -8572,7 +8572,7 @@
         <translation>ce n&apos;est pas un job de /JOB à END</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/source.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/source.py"/>
         <source>it is not a joint path; select one</source>
         <translation>ce n&apos;est pas une trajectoire articulaire ; sélectionnez-en une</translation>
     </message>
@@ -8897,7 +8897,7 @@
         <translation>sa trajectoire articulaire a disparu ; choisissez-en une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/source.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/source.py"/>
         <source>its machine has two rotary axes, which leave no rotation about the tool to choose; a map is for robots</source>
         <translation>sa machine a deux axes rotatifs, qui ne laissent pas de rotation autour de l&apos;outil à choisir ; une carte est pour les robots</translation>
     </message>
@@ -9007,7 +9007,7 @@
         <translation>marge articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/beads/straight.py"/>
+        <location filename="../../freecad_am/core/planning/beads/chord_error.py"/>
         <source>joint motion leaves the bead between two points however many are added: near a singularity</source>
         <translation>le mouvement articulaire quitte le cordon entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;une singularité</translation>
     </message>
@@ -9132,7 +9132,7 @@
         <translation>couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
         <source>layers ({} of {} beads)</source>
         <translation>couches ({} de {} cordons)</translation>
     </message>
@@ -9367,7 +9367,7 @@
         <translation>marge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
         <source>margin {:.1f} % ({})</source>
         <translation>marge {:.1f} % ({})</translation>
     </message>
@@ -9462,7 +9462,7 @@
         <translation>des mouvements avec d&apos;autres axes externes sont mêlés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/picture.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/picture.py"/>
         <source>near a singularity</source>
         <translation>près d&apos;une singularité</translation>
     </message>
@@ -9677,7 +9677,7 @@
         <translation>normales à une courbe guide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/painting.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/painting.py"/>
         <source>not allowed, or touching</source>
         <translation>non permis, ou contact</translation>
     </message>
@@ -9802,7 +9802,7 @@
         <translation>rien ne le porte : {0} des {1} mm de sa première couche sont au-dessus du vide au moment de leur dépôt ; posez-le sur ce qui existe, donnez son substrat, ou déposez d&apos;abord ce sur quoi il repose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/dock.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
         <source>nothing forbids it</source>
         <translation>rien ne l&apos;interdit</translation>
     </message>
@@ -9977,12 +9977,12 @@
         <translation>d&apos;autres programmes sont appelés que ceux planifiés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>out of reach</source>
         <translation>hors d&apos;atteinte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
         <source>out of reach with this branch</source>
         <translation>hors d&apos;atteinte avec cette branche</translation>
     </message>
@@ -10092,7 +10092,7 @@
         <translation>on palpe les points d&apos;une pièce immobile sous un outil porté par le robot ; retirez-les, et mesurez cell.platform ou la pose de ce qui porte la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
         <source>points of layer {}</source>
         <translation>points de la couche {}</translation>
     </message>
@@ -10102,7 +10102,7 @@
         <translation>des points écartés de {0} mm au plus ont été confondus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>polynomials</source>
         <translation>polynômes</translation>
     </message>
@@ -10202,7 +10202,7 @@
         <translation>rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>rapid move</source>
         <translation>mouvement rapide</translation>
     </message>
@@ -10292,12 +10292,12 @@
         <translation>plateau rotatif</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>rotation</source>
         <translation>rotation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
         <source>rotation not allowed</source>
         <translation>rotation non permise</translation>
     </message>
@@ -11147,7 +11147,7 @@
         <translation>la buse n&apos;est pas dégagée avec {0} non plus, ce qui a été essayé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
         <source>the nozzle touches platform or part</source>
         <translation>la buse touche le plateau ou la pièce</translation>
     </message>
@@ -11167,12 +11167,12 @@
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/nozzle_beside.py"/>
+        <location filename="../../freecad_am/core/planning/nozzle_obstacles.py"/>
         <source>the nozzle touches {0} on {1} move(s) while it deposits; lift the part over it by cell.platform, or move it in cell.external</source>
         <translation>la buse touche {0} sur {1} mouvement(s) pendant qu’elle dépose ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/nozzle_beside.py"/>
+        <location filename="../../freecad_am/core/planning/nozzle_obstacles.py"/>
         <source>the nozzle touches {0} on {1} move(s) while it deposits; move it in cell.obstacles, or the part</source>
         <translation>la buse touche {0} sur {1} mouvement(s) pendant le dépôt ; déplacez-le dans cell.obstacles, ou la pièce</translation>
     </message>
@@ -11247,7 +11247,7 @@
         <translation>la pièce pèse plus de {0} kg à partir d&apos;ici, {1} kg une fois finie, dont {2} kg de ce sur quoi elle pousse, et {3} ne porte pas plus ; {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>the path</source>
         <translation>la trajectoire</translation>
     </message>
@@ -12127,7 +12127,7 @@
         <translation>tubes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>turn</source>
         <translation>tour</translation>
     </message>
@@ -12252,7 +12252,7 @@
         <translation>w = {0} v^(-1/3) + {1} / r + {2} avec R2 = {3} et RMSE = {4} mm ; une largeur de {5} mm demande des vitesses d&apos;avance de {6} à {7} mm/min</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>waits</source>
         <translation>attend</translation>
     </message>
@@ -12267,7 +12267,7 @@
         <translation>attend {0} ; recalculez</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>waits, deposit on</source>
         <translation>attend, dépôt en marche</translation>
     </message>
@@ -14222,12 +14222,12 @@
         <translation>largeur {:g} mm : {} en ligne droite, {} là où r est {:g} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{achieved} instead of {asked}</source>
         <translation>{achieved} au lieu de {asked}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{condition:.3f} (at least {threshold:.3f})</source>
         <translation>{condition:.3f} (au moins {threshold:.3f})</translation>
     </message>
@@ -14237,17 +14237,17 @@
         <translation>{count} remarques</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{label} cannot keep the speed: {than} becomes {value}</source>
         <translation>{label} ne peut pas tenir la vitesse : {than} devient {value}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{label} comes within {value:.2f}{unit} of its limit</source>
         <translation>{label} approche à {value:.2f}{unit} de sa limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{label} is {value:.2f}{unit} past its limit</source>
         <translation>{label} dépasse de {value:.2f}{unit} sa limite</translation>
     </message>
@@ -14267,22 +14267,22 @@
         <translation>{link} touche {what}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{mass:.1f} g</source>
         <translation>{mass:.1f} g</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{metres:.3f} m</source>
         <translation>{metres:.3f} m</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{time} where speeds are not kept</source>
         <translation>{time} là où les vitesses ne sont pas tenues</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>{volume:.2f} cm³</source>
         <translation>{volume:.2f} cm³</translation>
     </message>
@@ -14307,7 +14307,7 @@
         <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
         <source>{} at layer {} bead {} point {}</source>
         <translation>{} à la couche {} cordon {} point {}</translation>
     </message>
@@ -14372,7 +14372,7 @@
         <translation>{} a changé ; calculez de nouveau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/tool.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/tool.py"/>
         <source>{} has no joint path to map; make one first, or select another job.</source>
         <translation>{} n&apos;a pas de trajectoire articulaire pour une carte ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
     </message>
@@ -14492,12 +14492,12 @@
         <translation>{} objets sont sélectionnés ; choisissez la paroi et le substrat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
         <source>{} of the points looked at do not serve: they are red</source>
         <translation>{} des points regardés ne conviennent pas : ils sont rouges</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/figures.py"/>
         <source>{} of them past a limit only because an axis runs out of turns along its bead</source>
         <translation>dont {} au-delà d&apos;une limite seulement parce qu&apos;un axe n&apos;a plus de tours le long de son cordon</translation>
     </message>

@@ -60,7 +60,7 @@ def test_a_box_is_measured_past_its_edges_too(doc, tmp_path):
     made = api.inspect(doc, box, str(path), fit="none")
     near = np.abs(truth) < 4.0
     assert near.sum() > 200 and np.abs(api.result(made).deviation - truth)[near].max() < 1e-6
-    assert api.result(made).within_edges.all()
+    assert api.result(made).counted.all()
 
 
 def test_it_is_stale_when_what_was_planned_changes_and_keeps_its_points_without_the_file(doc, feature, points, tmp_path):

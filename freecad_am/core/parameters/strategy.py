@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..issues import InputError
 from . import field as f
 
 SPACINGS = ("constant-distance", "smooth", "iso-parameter")
@@ -53,11 +52,6 @@ class RevolutionParameters(LayerParameters):
 
     def __post_init__(self) -> None:
         f.check(self, "strategy")
-        if self.path == "spiral" and self.min_layer_time > 0.0:
-            raise InputError(
-                "BAD_VALUE", "strategy.min_layer_time", "a spiral has no layers to wait between; use path: layers, a slower "
-                "process.travel_speed, or leave it out",
-            )
 
 
 @dataclass(frozen=True)

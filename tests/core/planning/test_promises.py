@@ -213,7 +213,7 @@ def without(evidence, **parts):
         ("What is deposited lies on the part", lambda e: without(e, toolpath={"on_part": None})),
         ("All of the part is deposited", lambda e: {"balance": None}),
         ("Nothing is deposited beside the part", lambda e: {"balance": None}),
-        ("Nothing is deposited beside the part", lambda e: without(e, balance={"beside": None})),
+        ("Nothing is deposited beside the part", lambda e: without(e, balance={"outside": None})),
         ("All of the part is deposited", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=0.0, lines=True)}),
         ("Little is deposited twice", lambda e: without(e, balance={"twice": None})),
         ("Every bead is carried by what lies below it", lambda e: without(e, toolpath={"unsupported": None})),

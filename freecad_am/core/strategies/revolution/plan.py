@@ -62,6 +62,11 @@ def plan(
     tilting = Tilting(wall, strategy, own, nozzle, under, process.bead_width)
     issues: list[Issue] = []
     if strategy.path == "spiral":
+        if strategy.min_layer_time > 0.0:
+            raise InputError(
+                "BAD_VALUE", "strategy.min_layer_time", "a spiral has no layers to wait between; use path: layers, a slower "
+                "process.travel_speed, or leave it out",
+            )
         layers, found = spiral.layers(wall, strategy, process, tilting)
     else:
         slices, issues = sliced(wall, strategy)
