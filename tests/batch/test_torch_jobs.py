@@ -16,7 +16,7 @@ from freecad_am.interop import cell_file
 CELL = """\
 cell:
   setup: tool-on-robot
-  deposition_point: [900, 0, -100, 0, 0, 0]
+  deposition_point: [1000, 0, -100, 0, 0, 0]
   nozzle: {shape: {file: torch.step}, half_angle: 30 deg, diameter: 10 mm, length: 60 mm, tool: [120, 0, 200, 0, 45, 0]}
   platform_diameter: 100 mm
   branch: [front, down, noflip]
