@@ -105,7 +105,7 @@ def test_it_holds_what_is_fed(feed):
     axes = [np.arange(-20.0, 75.0, edge), np.arange(-30.0, 45.0, edge), np.arange(-12.0, 60.0, edge)]
     lattice = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) + [0.31 * edge, 0.17 * edge, 0.73 * edge]
     assert abs(edge**3 * found.grid.at(lattice).sum() / fed - 1.0) < 1e-9
-    assert abs(found.fed / fed - 1.0) < 1e-9 and abs(found.applied / fed - 1.0) < 1e-9
+    assert abs(found.fed / fed - 1.0) < 1e-9 and abs(found.deposited / fed - 1.0) < 1e-9
     assert found.grid.filled.min() >= 0.0 and found.grid.filled.max() <= 1.0 + 1e-12
 
 
