@@ -7,10 +7,10 @@ SLSQP per layer from one start, with finite differences, on our own kinematics.
 
 from __future__ import annotations
 
-import time
 from statistics import median
 
 import numpy as np
+from pose_by_pose import pose_by_pose, took
 from scipy.optimize import minimize
 
 from freecad_am.brep.files import read
@@ -25,7 +25,6 @@ from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.planning import criteria
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.rotation import search
 from freecad_am.core.planning.task import Task
 from freecad_am.core.strategies.revolution import plan as strategy
 from freecad_am.kdl import chain as kdl
@@ -56,14 +55,14 @@ def run() -> list[Row]:
             raise AssertionError("a layer of the sphere is not feasible")
 
     single = _single_start(task, beads)
-    peers = {"SLSQP": single, **({"PyKDL": _pose_by_pose(task, beads)} if kdl.available() else {})}
+    peers = {"SLSQP": single, **({"PyKDL": pose_by_pose(task, beads, SAMPLED)} if kdl.available() else {})}
     ours()
     times: dict[str, list[float]] = {"ours": [], **{name: [] for name in peers}}
     for number in range(ROUNDS):
-        times["ours"].append(_took(ours))
+        times["ours"].append(took(ours))
         for name, peer in peers.items():
             if number < 2 or name != "PyKDL":
-                times[name].append(_took(peer) * (SAMPLED if name == "PyKDL" else 1))
+                times[name].append(took(peer) * (SAMPLED if name == "PyKDL" else 1))
     middle = {name: median(values) for name, values in times.items()}
     lost = single()
     return [
@@ -72,45 +71,6 @@ def run() -> list[Row]:
         Row(f"the same; SLSQP from one start per layer, finite differences ({lost} of {len(beads)} layers lost)",
             middle["ours"], middle["SLSQP"], "s", 0.5),
     ]
-
-
-def _took(function) -> float:
-    start = time.perf_counter()
-    function()
-    return time.perf_counter() - start
-
-
-def _pose_by_pose(task: Task, beads: list):
-    """The poses of the search, one after the other: inverse kinematics, Jacobian, singular values."""
-    points = gather(beads, task.cell, search.POINTS_PER_BEAD)
-    grid = [
-        (offset, slope)
-        for offset in np.arange(search.OFFSETS) * (2 * np.pi / search.OFFSETS) - np.pi for slope in search.SLOPES
-    ][::SAMPLED]
-    phi = np.array([offset + slope * points.parameter for offset, slope in grid])
-    flange = points.frames.at(phi).reshape(-1, 4, 4)
-    joints = task.inverse(flange)
-    reached = np.isfinite(joints).all(axis=1)
-    flange, joints = flange[reached], joints[reached]
-    seeds = joints + np.random.default_rng(1).uniform(-1, 1, joints.shape) * np.radians(2.0)
-    arm = kdl.KdlArm(task.cell.machine)
-    solver = arm.solver("nr", 1e-5)
-    jacobians = arm.kdl.ChainJntToJacSolver(arm.chain)
-    lower, upper = task.cell.limits.lower, task.cell.limits.upper
-
-    def call() -> None:
-        found, matrix = arm.kdl.JntArray(6), arm.kdl.Jacobian(6)
-        for seed, pose in zip(seeds, flange):
-            solver.CartToJnt(arm.angles(seed), arm.frame(pose), found)
-            q = np.array([found[k] for k in range(6)])
-            if (q < lower).any() or (q > upper).any():
-                continue
-            jacobians.JntToJac(found, matrix)
-            scaled = np.array([[matrix[row, column] for column in range(6)] for row in range(6)])
-            scaled[:3] /= PARAMETERS.characteristic_length
-            np.linalg.svd(scaled, compute_uv=False)
-
-    return call
 
 
 def _single_start(task: Task, beads: list):

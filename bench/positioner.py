@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import time
+from collections.abc import Callable
 from statistics import median
 
-import numpy as np
+from pose_by_pose import pose_by_pose, took
 
 from freecad_am.brep.files import read
 from freecad_am.brep.revolution import wall as revolution
@@ -25,10 +25,9 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.planning.external.level import levelled
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.rotation import search
 from freecad_am.core.planning.task import Task
 from freecad_am.core.strategies.revolution import plan as strategy
+from freecad_am.core.toolpath import Toolpath
 from freecad_am.kdl import chain as kdl
 
 from rows import Row
@@ -71,10 +70,10 @@ def run() -> list[Row]:
     alone()
     times: dict[str, list[float]] = {"ours": [], **{name: [] for name in peers}}
     for number in range(ROUNDS):
-        times["ours"].append(_took(ours))
+        times["ours"].append(took(ours))
         for name, peer in peers.items():
             if number == 0 or name != "PyKDL":
-                times[name].append(_took(peer) * (SAMPLED if name == "PyKDL" else 1))
+                times[name].append(took(peer) * (SAMPLED if name == "PyKDL" else 1))
     middle = {name: median(values) for name, values in times.items()}
     return [
         Row(f"{len(toolpath.layers)} layers with 6+2 axes, all feasible; with six, in the paper's cell", middle["ours"],
@@ -83,44 +82,7 @@ def run() -> list[Row]:
     ]
 
 
-def _took(function) -> float:
-    start = time.perf_counter()
-    function()
-    return time.perf_counter() - start
-
-
-def _pose_by_pose(cell, toolpath, parameters):
-    """The poses of the search, one after the other: inverse kinematics, Jacobian, singular values, for the branch that the
-    plan ends with."""
-    found = plan_joints(toolpath, cell, parameters)
-    task = Task(cell, opw.branch_index(found.branch), parameters)
-    beads, _ = levelled(cell, toolpath)
-    points = gather(beads, cell, search.POINTS_PER_BEAD)
-    grid = [
-        (offset, slope)
-        for offset in np.arange(search.OFFSETS) * (2 * np.pi / search.OFFSETS) - np.pi for slope in search.SLOPES
-    ][::SAMPLED]
-    phi = np.array([offset + slope * points.parameter for offset, slope in grid])
-    flange = points.frames.at(phi).reshape(-1, 4, 4)
-    joints = task.arm.inverse_branch(flange, task.branch)
-    reached = np.isfinite(joints).all(axis=1)
-    flange, joints = flange[reached], joints[reached]
-    seeds = joints + np.random.default_rng(1).uniform(-1, 1, joints.shape) * np.radians(2.0)
-    arm = kdl.KdlArm(cell.robot)
-    solver = arm.solver("nr", 1e-5)
-    jacobians = arm.kdl.ChainJntToJacSolver(arm.chain)
-    lower, upper = cell.limits.lower[:6], cell.limits.upper[:6]
-
-    def call() -> None:
-        at, matrix = arm.kdl.JntArray(6), arm.kdl.Jacobian(6)
-        for seed, pose in zip(seeds, flange):
-            solver.CartToJnt(arm.angles(seed), arm.frame(pose), at)
-            q = np.array([at[k] for k in range(6)])
-            if (q < lower).any() or (q > upper).any():
-                continue
-            jacobians.JntToJac(at, matrix)
-            scaled = np.array([[matrix[row, column] for column in range(6)] for row in range(6)])
-            scaled[:3] /= parameters.characteristic_length
-            np.linalg.svd(scaled, compute_uv=False)
-
-    return call
+def _pose_by_pose(cell: cells.Cell, toolpath: Toolpath, parameters: JointParameters) -> Callable[[], None]:
+    """The search of the robot alone, for the branch that the plan ends with, at the axes that the rule gives it."""
+    task = Task(cell, opw.branch_index(plan_joints(toolpath, cell, parameters).branch), parameters)
+    return pose_by_pose(task, levelled(cell, toolpath)[0], SAMPLED)

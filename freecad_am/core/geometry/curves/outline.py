@@ -78,7 +78,12 @@ def estimated(points: Array, closed: bool) -> Outline:
     long = (length > LENGTH_RATIO * np.minimum(far[:-1], near[1:]))[:, 0]
     straight = (corner[:-1] | corner[1:] | long)[:, None]
     leaving, arriving = np.where(straight, along, tangent[:-1]), np.where(straight, along, tangent[1:])
-    return outline(points, np.stack([np.r_[leaving[:1], arriving], np.r_[leaving, arriving[-1:]]], axis=1))
+    return outline(points, at_points(leaving, arriving))
+
+
+def at_points(leaving: Array, arriving: Array) -> Array:
+    """(n, 2, 3) what arrives at each point and leaves it, of (n - 1, 3) at the two ends of each segment."""
+    return np.stack([np.r_[leaving[:1], arriving], np.r_[leaving, arriving[-1:]]], axis=1)
 
 
 def unit(vectors: Array) -> Array:

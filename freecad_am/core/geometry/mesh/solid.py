@@ -21,6 +21,7 @@ from .triangles import closest
 
 NEAREST = 12
 SHARP = np.radians(20.0)  # facets that meet at more do not stand for something round
+PARALLEL = 1e-6  # of the cosine between the normals of triangles that lie the same way
 
 
 @dataclass(frozen=True)
@@ -124,6 +125,11 @@ class Search:
         self.triangles, self.owner, self.units = solid.triangles[sound], sound, solid.units[sound]
         middles, self.of = _spread(vertices[self.triangles], longest)
         self.tree = cKDTree(middles)
+
+    @cached_property
+    def flat(self) -> bool:
+        """Whether all triangles lie the same way: there is no inside then."""
+        return bool((np.abs(self.units @ self.units[0]) > 1.0 - PARALLEL).all())
 
     def away(self, points: Array) -> Array:
         """Distance (k,) of points (k, 3) from the triangles."""

@@ -31,7 +31,7 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
     phi = again(path.phi) + float(path.phi[-1] - path.phi[0])
     near = np.stack([again(column) for column in path.joints.T], axis=1)
     flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi, near)
-    joints = _unwrapped_from(task, path.joints[-1], task.inverse(flange, near))
+    joints = unwrapped_from(task, path.joints[-1], task.inverse(flange, near))
     return dataclasses.replace(
         path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
         condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
@@ -39,7 +39,7 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
     )
 
 
-def _unwrapped_from(task: Task, start: Array, joints: Array) -> Array:
+def unwrapped_from(task: Task, start: Array, joints: Array) -> Array:
     """Joints (n, axes) in the turns that go on from the joints before them (axes,)."""
     step = np.diff(joints, axis=0, prepend=start[None])
     step -= np.where(task.cell.machine.chain.sliding, 0.0, TURN * np.round(step / TURN))

@@ -10,11 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.columns import dots, lengths
+from ...geometry.curves.outline import at_points
 from ...geometry.frames import unit
 from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath
 from ..task import Task
+from .overlap import unwrapped_from
 
 BACK = -0.999  # cosine between the way to a point and the way on from it
 
@@ -75,9 +77,7 @@ def go_back(task: Task, path: BeadPath, length: float) -> BeadPath:
     way, bead, n = _way(path.bead, length), gone_back(path.bead, length), len(path.bead)
     phi, joints = way.of(path.phi), way.of(path.joints)
     flange = task.cell.flange_poses(bead.points[n:], bead.tool[n:], phi, joints)
-    last = task.inverse(flange[-1:], joints[-1:])[0]
-    turned = ~task.cell.machine.chain.sliding
-    joints[-1] = last - np.where(turned, 2.0 * np.pi * np.round((last - joints[-1]) / (2.0 * np.pi)), 0.0)
+    joints[-1:] = unwrapped_from(task, joints[-1], task.inverse(flange[-1:], joints[-1:]))
     return dataclasses.replace(
         path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
         condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
@@ -96,8 +96,7 @@ def _tangents(bead: Bead) -> Array:
     """(n, 2, 3) the unit tangents of the curve that the points of a bead outline, arriving and leaving."""
     if bead.tangents is not None:
         return bead.tangents
-    leaving, arriving = unit(bead.outline.leaving), unit(bead.outline.arriving)
-    return np.stack([np.r_[leaving[:1], arriving], np.r_[leaving, arriving[-1:]]], axis=1)
+    return at_points(unit(bead.outline.leaving), unit(bead.outline.arriving))
 
 
 def _way(bead: Bead, length: float) -> _Way:

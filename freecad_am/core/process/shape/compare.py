@@ -97,7 +97,7 @@ def _reached(grid: Grid, points: Array, normals: Array, reach: float) -> tuple[A
 
 
 def _first_change(grid: Grid, points: Array, ways: Array, steps: Array, inside: Mask) -> Array:
-    """How far (n,) mm along ways it is no more as at the point; the last step where it stays so."""
+    """Distance (n,) mm along ways at which the deposit begins or ends; the last step where it does neither."""
     length = np.full(len(points), steps[-1])
     left = np.arange(len(points))
     before = grid.at(points)

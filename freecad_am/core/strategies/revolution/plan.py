@@ -48,7 +48,7 @@ def plan(
     Layers by arc length or height; points per bead from the chord error; build directions from the mode, capped and
     tilted back until the nozzle is clear. platform_diameter: mm, 0 without a platform. platform_frame: (4, 4) pose
     of the platform in part coordinates, None when the feature frame sits on it. A spiral is one layer with one open
-    bead. Raises InputError 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN', 'TOO_MANY'.
+    bead. Raises InputError 'BAD_VALUE', 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN', 'TOO_MANY'.
     """
     if build.mode == "symmetry-plane":
         raise InputError(

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A peer of planning: the poses of the search over rotations, one after the other through PyKDL."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from freecad_am.core.planning.points import gather
+from freecad_am.core.planning.rotation import search
+from freecad_am.core.planning.task import Task
+from freecad_am.core.toolpath import Bead
+from freecad_am.kdl import chain as kdl
+
+
+def took(function: Callable[[], object]) -> float:
+    """Seconds of the clock."""
+    start = time.perf_counter()
+    function()
+    return time.perf_counter() - start
+
+
+def pose_by_pose(task: Task, beads: Sequence[Bead], sampled: int) -> Callable[[], None]:
+    """Inverse kinematics by the fastest seeded solver, limits, Jacobian and singular values of the robot, one candidate in
+    so many; seeded within 2 deg of the answer."""
+    points = gather(beads, task.cell, search.POINTS_PER_BEAD)
+    grid = [
+        (offset, slope)
+        for offset in np.arange(search.OFFSETS) * (2 * np.pi / search.OFFSETS) - np.pi for slope in search.SLOPES
+    ][::sampled]
+    phi = np.array([offset + slope * points.parameter for offset, slope in grid])
+    flange = points.frames.at(phi).reshape(-1, 4, 4)
+    joints = task.inverse(flange)
+    reached = np.isfinite(joints).all(axis=1)
+    flange, joints = flange[reached], joints[reached]
+    seeds = joints + np.random.default_rng(1).uniform(-1, 1, joints.shape) * np.radians(2.0)
+    arm = kdl.KdlArm(task.cell.robot)
+    solver = arm.solver("nr", 1e-5)
+    jacobians = arm.kdl.ChainJntToJacSolver(arm.chain)
+    lower, upper = task.cell.limits.lower[:6], task.cell.limits.upper[:6]
+
+    def call() -> None:
+        found, matrix = arm.kdl.JntArray(6), arm.kdl.Jacobian(6)
+        for seed, pose in zip(seeds, flange, strict=True):
+            solver.CartToJnt(arm.angles(seed), arm.frame(pose), found)
+            q = np.array([found[k] for k in range(6)])
+            if (q < lower).any() or (q > upper).any():
+                continue
+            jacobians.JntToJac(found, matrix)
+            scaled = np.array([[matrix[row, column] for column in range(6)] for row in range(6)])
+            scaled[:3] /= task.parameters.characteristic_length
+            np.linalg.svd(scaled, compute_uv=False)
+
+    return call
