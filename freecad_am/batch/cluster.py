@@ -229,14 +229,15 @@ def _settings() -> dict[str, Any]:
 
 
 def _first_done(futures: list[Any]) -> list[Any]:
-    """Those that have ended in one way or another, waited for a moment."""
+    """Those that have ended in one way or another, waited for a moment. A result that was lost with its worker before it was
+    fetched has not: Dask makes it again."""
     from distributed import wait
 
     try:
         wait(futures, timeout=LOOK, return_when="FIRST_COMPLETED")
     except Exception:  # nothing yet, or some cancelled at once, whose status tells it
         time.sleep(0.02)
-    return [future for future in futures if future.status != "pending"]
+    return [future for future in futures if future.status not in ("pending", "lost")]
 
 
 def _why(future: Any) -> str:

@@ -17,10 +17,12 @@ import shutil
 import subprocess
 import tempfile
 import threading
+import time
 import zipfile
 from typing import Any
 
 LONGEST = 2000  # characters of what a process says that does not start
+ENDED = "the batch has ended"
 _ATTRIBUTE = "_freecad_am_batches"  # of the worker: this module may be sent again, by another batch
 
 
@@ -76,14 +78,16 @@ class Batch:
                     process.wait(10.0)
                 if process.poll() is None:
                     process.kill()
-        shutil.rmtree(self.path, ignore_errors=True)
+        until = time.monotonic() + 5.0
+        while os.path.exists(self.path) and time.monotonic() < until:  # a row that is being stopped may still write there
+            shutil.rmtree(self.path, ignore_errors=True)
 
     def _process(self) -> subprocess.Popen[str]:
         with contextlib.suppress(queue.Empty):
             return self._idle.get_nowait()
         with self._lock:
             if self._stopped:
-                raise RuntimeError("the batch has ended")
+                raise RuntimeError(ENDED)
             process = subprocess.Popen(
                 ["/bin/sh", os.path.join(self.path, "code", "freecad-am"), "rows"], text=True, cwd=self.path,
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
@@ -123,7 +127,9 @@ def planned(token: str, settings: dict[str, Any], order: dict[str, Any], package
 
 def stop(token: str, dask_worker: Any) -> None:
     """End what this worker does for a batch. `dask_worker` is put in by Dask."""
-    batch = getattr(dask_worker, _ATTRIBUTE, {}).pop(token, None)
+    with _making:
+        known: dict[str, Batch | None] = dask_worker.__dict__.setdefault(_ATTRIBUTE, {})
+        batch, known[token] = known.get(token), None  # rows that were given out may still begin here
     if batch is not None:
         batch.stop()
 
@@ -136,10 +142,13 @@ def _batch(token: str, settings: dict[str, Any]) -> Batch:
 
     worker = get_worker()
     with _making:
-        known: dict[str, Batch] = worker.__dict__.setdefault(_ATTRIBUTE, {})
+        known: dict[str, Batch | None] = worker.__dict__.setdefault(_ATTRIBUTE, {})
         if token not in known:
             known[token] = Batch(worker.local_directory, settings)
-        return known[token]
+        batch = known[token]
+    if batch is None:
+        raise RuntimeError(ENDED)
+    return batch
 
 
 def _exchanged(process: subprocess.Popen[str], request: dict[str, Any]) -> Any:

@@ -2,7 +2,7 @@
 """The process that plans rows for a worker of a cluster, each in a copy of itself that has all modules already.
 
 Lines of JSON come in by stdin and go out by stdout: first the settings, answered by versions, then an order each, answered
-by its result. It ends with its stdin, which the worker holds, and on request together with the row that it is planning.
+by its result. It ends with its stdin, which the worker holds, removes the folder of the batch then, and ends on request together with the row that it is planning.
 Started by boot.py, as the word `rows` of the launcher.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import sys
 import tempfile
@@ -33,6 +34,7 @@ def main() -> None:
     for line in lines:
         asked = json.loads(line)
         _answer(answers, versions.found_versions() if "versions" in asked else _planned(asked))
+    shutil.rmtree(settings["folder"], ignore_errors=True)  # the worker is lost, and nobody else removes it
 
 
 def _answer(stream: Any, answer: dict[str, Any]) -> None:

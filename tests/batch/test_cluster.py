@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 import zipfile
 from pathlib import Path
 
@@ -82,6 +83,15 @@ def wait_for(folder, count, process, patience=300):
         time.sleep(0.02)
 
 
+def nothing_left(cluster):
+    """Whether the workers have no folder of a batch any more, some time after it: a row that a lost one began may go on."""
+    until = time.monotonic() + 60
+    while (found := list(cluster.folder.rglob("freecad-am-*"))) and time.monotonic() < until:
+        time.sleep(0.1)
+    assert not found
+    return True
+
+
 def compared(content, name):
     """A file of outputs without what another run of the same job writes otherwise: times and dates."""
     if name.endswith("report.json"):
@@ -136,7 +146,7 @@ def test_same_bytes_as_without_and_a_lost_worker_loses_nothing(workshop, cluster
     assert here.out == out
     for row in done_rows(workshop.folder / "here"):
         assert same(workshop.files(f"here/{row.name}"), workshop.files(f"there/{row.name}"))
-    assert not list(cluster.folder.rglob("freecad-am-*"))  # nothing is left with the workers
+    assert nothing_left(cluster)
 
 
 @dask
@@ -151,10 +161,7 @@ def test_interrupted_and_resumed(workshop, cluster):
     kept = {row.name: (row / "report.json").stat().st_mtime_ns for row in done_rows(top)}
     assert 2 <= len(kept) < len(HEIGHTS)
     assert not list(top.rglob(".unfinished*"))
-    until = time.monotonic() + 30
-    while list(cluster.folder.rglob("freecad-am-*")) and time.monotonic() < until:
-        time.sleep(0.1)
-    assert not list(cluster.folder.rglob("freecad-am-*"))
+    assert nothing_left(cluster)
     done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows", "--resume", "-j", "2")
     assert done.status == 0 and f"{len(kept)} of {len(HEIGHTS)} rows" in done.err
     assert len(done_rows(top)) == len(HEIGHTS)
@@ -219,6 +226,30 @@ class Told:
         self.lines.append(line)
 
 
+@dask
+def test_a_result_that_was_lost_with_its_worker_is_waited_for(monkeypatch):
+    """Dask makes it again: between its end and its way here a worker may be gone."""
+    from freecad_am.batch import cluster as module
+
+    monkeypatch.setattr("distributed.wait", lambda *_, **__: None)
+    futures = [types.SimpleNamespace(status=status) for status in ("pending", "lost", "finished", "error", "cancelled")]
+    assert module._first_done(futures) == futures[2:]
+
+
+@dask
+def test_rows_that_begin_after_the_end_leave_nothing(monkeypatch, tmp_path):
+    worker = types.SimpleNamespace(local_directory=str(tmp_path), address="here")
+    monkeypatch.setattr("distributed.get_worker", lambda: worker)
+    freecad_am_row_worker._batch("one", {})
+    assert len(list(tmp_path.iterdir())) == 1
+    freecad_am_row_worker.stop("one", worker)
+    freecad_am_row_worker.stop("two", worker)  # before any row of it
+    for token in ("one", "two"):
+        with pytest.raises(RuntimeError, match="the batch has ended"):
+            freecad_am_row_worker.planned(token, {}, {"files": [], "links": []}, b"")
+    assert not list(tmp_path.iterdir())
+
+
 def test_without_dask_that_is_told(workshop, monkeypatch):
     from freecad_am.batch import cluster as module
 
@@ -270,6 +301,16 @@ def test_files_travel_with_a_job(workshop, tmp_path):
         worker.stop()
         (apart / "away").rename(workshop.folder)
     assert not os.path.exists(worker.path)
+
+
+def test_what_a_lost_worker_leaves_removes_itself(tmp_path):
+    """Its process of rows ends as its stdin does, with the folder of the batch."""
+    worker = freecad_am_row_worker.Batch(str(tmp_path), {"machines": [], "home": "/nowhere"})
+    worker.unpacked(versions.package(), [], [])
+    assert worker.ask({"versions": True})["FreeCAD"]
+    (process,) = worker._all
+    process.stdin.close()
+    assert process.wait(60) == 0 and not list(tmp_path.iterdir())
 
 
 def test_what_has_changed_is_planned_again(workshop):
