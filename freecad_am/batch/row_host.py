@@ -2,7 +2,8 @@
 """The process that plans rows for a worker of a cluster, each in a copy of itself that has all modules already.
 
 Lines of JSON come in by stdin and go out by stdout: first the settings, answered by versions, then an order each, answered
-by its result. It ends with its stdin, which the worker holds, removes the folder of the batch then, and ends on request together with the row that it is planning.
+by its result. It ends with its stdin, which the worker holds, and removes the folder of the batch then; on request it ends
+together with the row that it is planning.
 Started by boot.py, as the word `rows` of the launcher.
 """
 
