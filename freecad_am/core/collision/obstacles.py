@@ -10,11 +10,12 @@ import numpy as np
 
 from ..geometry.columns import columns, dots, lengths
 from ..types import Array, Index, Mask
-from . import own_layer, separation, tree
+from . import own_layer, separation, slabs, tree
 from .frustum import Frustum
 from .tolerances import CONVERGED
 
 QUERIES = 16384  # worked on at once
+SLABS = 40  # pieces for each of as many queries as make it worth to find boxes that lie as these do
 ALWAYS, NEVER = -1, np.iinfo(np.intp).max
 
 
@@ -90,6 +91,12 @@ class Obstacles:
             found.append(np.maximum.reduceat(away, np.arange(0, len(away), size)))
         return found
 
+    @cached_property
+    def _slabs(self) -> slabs.Slabs:
+        """About the pieces of beads of the lowest nodes, as these lie."""
+        assert self.radius is not None
+        return slabs.of_pieces(self.corners, self.radius, tree.BRANCH)
+
     def touched(
         self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
     ) -> Mask:
@@ -113,6 +120,7 @@ class Obstacles:
         waiting = [(len(self._levels) - 1, *_each_with_each(len(tip), top))]
         ready: list[tuple[Index, Index]] = []
         tips, axes = columns(tip), columns(axis)
+        lying = self.line is not None and len(tip) * SLABS > len(self.corners)
         while waiting:
             depth, query, node = waiting.pop()
             level = self._levels[depth]
@@ -126,15 +134,12 @@ class Obstacles:
             if level.lines is not None:
                 left = own_layer.matter(level.lines, level.since, solid, query, node, tips, axes, own)
                 query, node = query.take(left), node.take(left)
-            along = axis.take(query, axis=0)
-            # one corner inside settles the matter without looking at all the rest
-            sample = node * self._sizes[depth]
-            inside = solid.rows(query).holds(self._sample.take(sample, axis=0) - tip.take(query, axis=0), along)
-            since = self.since.take(sample)
-            inside &= (since < moment.take(query)) & (since < own.take(query))
-            found[query[inside]] = True
+            found[query[self._sampled(solid, query, node * self._sizes[depth], tip, axis, moment, own)]] = True
             left = np.flatnonzero(~found.take(query))
             query, node = query.take(left), node.take(left)
+            if depth == 1 and lying:
+                left = slabs.near(self._slabs, solid.rows(query), node, tip.take(query, axis=0), axis.take(query, axis=0))
+                query, node = query.take(left), node.take(left)
             if depth:
                 query, node = tree.below(query, node, len(self._levels[depth - 1].since))
                 waiting += [(depth - 1, *some) for some in tree.parts(query, node)]
@@ -146,6 +151,16 @@ class Obstacles:
                 ready = []
         self._look(solid, tip, axis, own, ready, found)
         return found
+
+    def _sampled(
+        self, solid: Frustum, query: Index, sample: Index, tip: Array, axis: Array, moment: Index, own: Index
+    ) -> Mask:
+        """(k,) whether the first corner of an obstacle is inside, which settles the matter without all the rest."""
+        offset = self._sample.take(sample, axis=0) - tip.take(query, axis=0)
+        inside: Mask = solid.rows(query).holds(offset, axis.take(query, axis=0))
+        since = self.since.take(sample)
+        inside &= (since < moment.take(query)) & (since < own.take(query))
+        return inside
 
     def _look(
         self, solid: Frustum, tip: Array, axis: Array, own: Index, ready: list[tuple[Index, Index]], found: Mask

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Boxes that lie as the pieces of beads do: what they leave out meets nothing, and what is found does not depend on them."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.collision import obstacles, separation, slabs
+from freecad_am.core.collision.deposit import of_beads
+from freecad_am.core.collision.frustum import Frustum
+from freecad_am.core.collision.tree import BRANCH
+
+
+def bead(random, count, step, width, height, short):
+    """A bead that winds through space, as `of_beads` cuts it."""
+    way = np.cumsum(random.normal(scale=0.2, size=(count, 3)), axis=0) + [1.0, 0.0, 0.0]
+    points = np.cumsum(step * way / np.linalg.norm(way, axis=1, keepdims=True), axis=0)
+    build = np.cross(np.gradient(points, axis=0), random.normal(size=3))
+    build /= np.linalg.norm(build, axis=1, keepdims=True)
+    return points, of_beads(points, build, width, height, np.array([0, count // 2]), short=short)
+
+
+def nozzles(random, points, count):
+    """Tips near to points, and unit axes any way."""
+    axis = random.normal(size=(count, 3))
+    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    return points[random.integers(len(points), size=count)] + random.normal(scale=4.0, size=(count, 3)), axis
+
+
+@pytest.mark.parametrize("short", [True, False])
+@pytest.mark.parametrize(("width", "height", "step"), [(5.0, 0.2, 0.1), (3.0, 3.0, 1.0), (1.0, 4.0, 0.5)])
+def test_what_is_left_out_meets_no_piece(width, height, step, short):
+    random = np.random.default_rng(7)
+    points, beads = bead(random, 403, step, width, height, short)
+    boxes = slabs.of_pieces(beads.corners, beads.radius, BRANCH)
+    assert np.abs(np.einsum("nij,nkj->nik", boxes.sides, boxes.sides))[:, ~np.eye(3, dtype=bool)].max() < 1e-9
+    tip, axis = nozzles(random, points, 60)
+    solid = Frustum(1.0, 0.4, 0.5, 15.0)
+    query, node = (each.ravel() for each in np.meshgrid(np.arange(60), np.arange(len(boxes.centre)), indexing="ij"))
+    near = slabs.near(boxes, solid, node, tip[query], axis[query])
+    far = np.setdiff1d(np.arange(len(query)), near)
+    assert len(far) > 0.3 * len(query)
+    for piece in range(BRANCH):  # of each box
+        own = BRANCH * node[far] + piece
+        real = own < len(beads.corners)
+        rows, own = query[far][real], own[real]
+        apart = beads.corners[own] - tip[rows, None]
+        assert not separation.within(solid, axis[rows], apart, beads.radius[own]).any()
+
+
+def test_a_box_lies_as_its_pieces_do():
+    """Of a flat straight bead that leans, the box is as flat."""
+    along, up = np.array([1.0, 2.0, 2.0]) / 3.0, np.array([2.0, 1.0, -2.0]) / 3.0
+    points = np.arange(65)[:, None] * 0.1 * along
+    beads = of_beads(points, np.tile(up, (65, 1)), 6.0, 0.4, np.array([0]), short=True)
+    boxes = slabs.of_pieces(beads.corners, beads.radius, BRANCH)
+    sizes = np.sort(2.0 * np.linalg.norm(boxes.sides, axis=2), axis=1)
+    assert sizes == pytest.approx(np.tile([0.0, 0.8, 5.6], (8, 1)), abs=1e-9)  # rounded by 0.2 mm all about
+    assert boxes.rounding == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_touches_are_the_same_without(monkeypatch, seed):
+    random = np.random.default_rng(seed)
+    points, beads = bead(random, 2000, 0.2, 4.0, 1.0, bool(seed % 2))
+    tip, axis = nozzles(random, points, 700)
+    solid, moment = Frustum(0.5, 0.3, 1.2, 25.0), random.integers(2000, size=700)
+    own = np.minimum(moment, random.integers(2000, size=700))
+    asked = []
+    looked = slabs.near
+    monkeypatch.setattr(slabs, "near", lambda *args: asked.append(len(args[2])) or looked(*args))
+    found = beads.touched(solid, tip, axis, moment, own)
+    assert sum(asked) and 0.1 < found.mean() < 0.95
+    monkeypatch.setattr(obstacles, "SLABS", 0)
+    asked.clear()
+    assert (beads.touched(solid, tip, axis, moment, own) == found).all() and not asked
