@@ -106,6 +106,13 @@ class Schedule:
 
 
 @dataclass(frozen=True)
+class Weave:
+    """From here the controller swings the torch about the path by its own weave of this number, from 1; 0: no longer."""
+
+    number: int
+
+
+@dataclass(frozen=True)
 class LayerStart:
     """A new layer begins; a place to resume at."""
 
@@ -145,7 +152,7 @@ class Call:
     where: str = "process.between_layers.call"
 
 
-Block = Moves | DepositOn | DepositOff | Schedule | LayerStart | Wait | WaitInput | WaitBelow | Call
+Block = Moves | DepositOn | DepositOff | Schedule | Weave | LayerStart | Wait | WaitInput | WaitBelow | Call
 
 
 @dataclass(frozen=True)
@@ -243,6 +250,15 @@ class Program:
     def moves(self) -> tuple[Moves, ...]:
         """The moves alone, in order."""
         return tuple(block for block in self.blocks if isinstance(block, Moves))
+
+    @property
+    def woven(self) -> frozenset[tuple[int, int]]:
+        """Layer and bead of the beads that are laid with a weave."""
+        pairs = zip(self.blocks, self.blocks[1:])
+        return frozenset(
+            (run.layer, run.bead) for block, run in pairs
+            if isinstance(block, Weave) and block.number and isinstance(run, Moves)
+        )
 
 
 def slide_feeds(before: Array, joints: Array, duration: Array, kinds: tuple[str, ...]) -> Array:

@@ -16,7 +16,8 @@ class Event:
 
     kind and value: 'on' and 'off', number and word of the output, or the schedule that an arc instruction names, and ARC;
     'schedule', number of the output and what it is set to; 'wait', s; 'input', number; 'below', number and value of
-    an analogue input; 'call', the program's name; 'layer', its number in a remark. digits: half of the last digit.
+    an analogue input; 'weave', its number, 0 where it ends; 'call', the program's name; 'layer', its number in a remark.
+    digits: half of the last digit.
     """
 
     row: int

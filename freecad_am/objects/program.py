@@ -120,6 +120,10 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     )
     if process.wire.feed_mode != "constant" and post.NO_WIRE and not parameters.dry_run:
         raise refusals.wire_refused(post.NO_WIRE)
+    if process.weaves and post.NO_WEAVE:
+        raise refusals.weave_refused(post.NO_WEAVE)
+    if process.weaves and parameters.motion != "cartesian":
+        raise refusals.weave_refused(refusals.JOINT_WEAVE, "program.motion")
     by = parameters.schedule.by
     if by in post.NO_SCHEDULE and (process.scheduled or by == program_beads.ARC):
         raise refusals.schedule_refused(by, post.NO_SCHEDULE[by])

@@ -20,12 +20,13 @@ NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb", "kuk
 class Post(Protocol):
     """What a post module offers. CONTROLLER: what planning must know of the controller. NO_WIRE: why programs cannot tell
     the speed of the wire along a bead, '' where they can. NO_SCHEDULE: why it cannot be told schedules, by the ways
-    ('output', 'arc') in which it cannot. MOVE_LINE: how a line begins that tells a move, or, in a loop, several.
-    ON_CONTROLLER: what only the controller can show."""
+    ('output', 'arc') in which it cannot. NO_WEAVE: why beads cannot be woven, '' where they can. MOVE_LINE: how a line
+    begins that tells a move, or, in a loop, several. ON_CONTROLLER: what only the controller can show."""
 
     CONTROLLER: Controller
     NO_WIRE: str
     NO_SCHEDULE: Mapping[str, str]
+    NO_WEAVE: str
     MOVE_LINE: re.Pattern[bytes]
     ON_CONTROLLER: tuple[str, ...]
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from ..core.issues import InputError
@@ -98,11 +98,21 @@ def size(pieces: Sequence[Piece]) -> tuple[int, int]:
     return sum(len(piece) for piece in pieces if isinstance(piece, Run)), sum(len(piece) for piece in pieces)
 
 
-def continued(remark: Callable[[str], list[str]]) -> Callable[[list[Piece], int, int], Iterator[list[Piece]]]:
-    """How a bead too long for a file is cut inside its moves, with remarks at both sides of the cut that say so."""
+def continued(
+    remark: Callable[[str], list[str]], woven: Collection[tuple[int, int]] = ()
+) -> Callable[[list[Piece], int, int], Iterator[list[Piece]]]:
+    """How a bead too long for a file is cut inside its moves, with remarks at both sides of the cut that say so. One of the
+    `woven` (layer, bead) is not: InputError BEAD_TOO_LONG."""
     going_on, resumed = remark("bead goes on in the next part"), remark("bead goes on here")
 
     def cut(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
+        runs = [piece for piece in group if isinstance(piece, Run)]
+        if any(run.moves.kind == DEPOSIT and (run.moves.layer, run.moves.bead) in woven for run in runs):
+            raise InputError(
+                "BEAD_TOO_LONG", "program.max_points", f"{place(runs[-1].moves)} is woven and has {sum(map(len, runs))}"
+                " points with its approach, and whether a weave goes on in another program was not confirmed; allow more"
+                " points in one, or a larger chord error",
+            )
         events = sum(len(piece) for piece in group if isinstance(piece, list))
         most = min(most_points, most_lines - events - len(going_on) - len(resumed))
         chunk: list[Piece] = []

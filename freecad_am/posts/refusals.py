@@ -11,7 +11,7 @@ import numpy as np
 from freecad_am.core.types import Array
 
 from ..core.issues import InputError
-from ..core.program import LINEAR_MOVE, Call, DepositOn, Moves, Program, Schedule, WaitBelow
+from ..core.program import LINEAR_MOVE, Call, DepositOn, Moves, Program, Schedule, WaitBelow, Weave
 from .parts import place
 
 CALL = "process.between_layers.call"
@@ -67,6 +67,26 @@ def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 
             "SCHEDULE", "process.schedule", f"the controller is told schedules up to {most}, not {largest}; use another "
             "number, there or in process.classes",
         )
+
+
+def refuse_weave(program: Program, most: int) -> None:
+    """Raises InputError WEAVE for a weave of a number beyond `most`, or of moves that do not run straight."""
+    numbers = [block.number for block in program.blocks if isinstance(block, Weave)]
+    if numbers and program.motion != "cartesian":
+        raise weave_refused(JOINT_WEAVE, "program.motion")
+    if max(numbers, default=0) > most:
+        raise weave_refused(f"the controller has weaves 1 to {most}, not {max(numbers)}")
+
+
+JOINT_WEAVE = "the controller swings the torch about linear moves, so far as is known, and these are joint moves"
+
+
+def weave_refused(why: str, where: str = "process.weave") -> InputError:
+    """The error for a weave that cannot be told."""
+    return InputError(
+        "WEAVE", where, f"{why}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot; elsewhere use "
+        "0 in process.weave and process.classes",
+    )
 
 
 def schedule_refused(by: str, why: str) -> InputError:

@@ -20,6 +20,7 @@ from ..core.program import (
     Wait,
     WaitBelow,
     WaitInput,
+    Weave,
 )
 from ..core.read_moves import ARC, Event, ReadMoves
 from .planned import COMPUTED_AXIS, Planned
@@ -28,6 +29,7 @@ from .planned import COMPUTED_AXIS, Planned
 _FAMILIES = (
     ("VERIFY_DEPOSIT", "the deposit is switched otherwise than planned", ("on", "off")),
     ("VERIFY_SCHEDULE", "another schedule is told than planned", ("schedule",)),
+    ("VERIFY_WEAVE", "beads are woven otherwise than planned", ("weave",)),
     ("VERIFY_WAIT", "it is waited otherwise than planned", ("wait", "input")),
     ("VERIFY_COOLING", "a temperature is waited for otherwise", ("below",)),
     ("VERIFY_CALL", "other programs are called than planned", ("call",)),
@@ -123,6 +125,8 @@ def _happening(program: Program, block: Block) -> list[tuple[float | str, ...]]:
         return [] if program.dry_run else [("wait", float(block.lead)), ("off", *_switched(program, block.schedule))]
     if isinstance(block, Schedule):
         return [("schedule", float(program.schedule_output), float(block.number))]
+    if isinstance(block, Weave):
+        return [("weave", float(block.number))]
     if isinstance(block, LayerStart):
         return [("layer", float(block.layer))]
     if isinstance(block, Wait):

@@ -75,11 +75,13 @@ def classes_of(rows: list[dict[str, Any]]) -> str:
     """What there is of each class of beads."""
     if not rows:
         return ""
-    lines = [("", ["beads", "length, mm", "deposit", "travel speed, mm/s", "schedule"])]
+    woven = ["weave"] if any("weave" in row for row in rows) else []
+    lines = [("", ["beads", "length, mm", "deposit", "travel speed, mm/s", "schedule", *woven])]
     for row in rows:
         low, high = (figure_text(row["travel_speed_mm_s"][end]) for end in ("min", "max"))
         speed = low if low == high else f"{low} to {high}"
         length = f"{row['length_mm']:,.0f}"
         numbers = [str(row["beads"]), length, clock(row["deposit_s"]), speed, figure_text(row["schedule"])]
+        numbers += [figure_text(row["weave"]) for _ in woven]
         lines.append((row["class"].replace("_", " "), numbers))
     return f"<h2>Classes of beads</h2>{table_of(lines)}"

@@ -635,6 +635,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number of the controller&apos;s own weave that beads are laid with; 0 or none: straight.</source>
+        <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Number of the digital input to wait for between layers.</source>
         <translation>Numéro de l&apos;entrée logique à attendre entre les couches.</translation>
     </message>
@@ -1550,6 +1555,11 @@
         <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one</source>
         <translation>ArcL va à la vitesse de ses welddata tant que l&apos;arc brûle, autant qu&apos;on sache, et non à celle qui est planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
+        <source>ArcTech weaves by data that only the pendant makes</source>
+        <translation>ArcTech balaie selon des données que seul le pupitre crée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
@@ -3853,6 +3863,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number of the controller&apos;s own weave that beads are laid with; 0 or none: straight.</source>
+        <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Number of the digital input to wait for between layers.</source>
         <translation>Numéro de l&apos;entrée logique à attendre entre les couches.</translation>
     </message>
@@ -5913,6 +5928,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
+        <source>URScript has no weave of its own, so far as is documented</source>
+        <translation>URScript n&apos;a pas de balayage propre, d&apos;après la documentation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>URScript moves a tool that the flange carries, at its speed; with the part on the robot the tool stands and the speed at the deposition point is another one at every point of the part, which no documented instruction of URScript holds; use `motion: joint`</source>
         <translation>URScript déplace un outil porté par la bride, à la vitesse de celui-ci ; avec la pièce sur le robot, l&apos;outil est fixe et la vitesse au point de dépôt est une autre en chaque point de la pièce, ce qu&apos;aucune instruction documentée d&apos;URScript ne tient ; utilisez `motion: joint`</translation>
     </message>
@@ -5975,6 +5995,11 @@
         <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>VAL 3 has no arc instructions</source>
         <translation>VAL 3 n&apos;a pas d&apos;instructions d&apos;arc</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
+        <source>VAL 3 has no weave, so far as is documented</source>
+        <translation>VAL 3 n&apos;a pas de balayage, d&apos;après la documentation</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
@@ -6050,6 +6075,11 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Walls</source>
         <translation>Contours extérieurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Weave</source>
+        <translation>Balayage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -6672,6 +6702,11 @@
         <translation>une valeur n&apos;est pas un nombre simple</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
+        <source>a weave is an argument of ArcL, which runs at the speed of its welddata while the arc burns, so far as is known</source>
+        <translation>un balayage est un argument de ArcL, qui avance à la vitesse de ses welddata tant que l&apos;arc brûle, à ce que l&apos;on sait</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>a whole ring has no end to start from; cut it where it stands on the substrate</source>
         <translation>un anneau entier n&apos;a pas d&apos;extrémité d&apos;où partir ; coupez-le là où il repose sur le substrat</translation>
@@ -7195,6 +7230,11 @@
         <location filename="../../freecad_am/core/process/model/predicted.py"/>
         <source>beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>beads are woven otherwise than planned</source>
+        <translation>les cordons sont balayés autrement que prévu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -10147,6 +10187,11 @@
         <translation>programme</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
+        <source>programs of five-axis machines have no weave</source>
+        <translation>les programmes des machines à cinq axes n&apos;ont pas de balayage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>programs of {0} are not written with a positioner; plan without a program; waypoints.csv has all axes</source>
         <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; planifier sans programme ; waypoints.csv a tous les axes</translation>
@@ -10708,6 +10753,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the controller has weaves 1 to {0}, not {1}</source>
+        <translation>la commande a les balayages 1 à {0}, pas {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
         <source>the controller is told schedules up to {0}, not {1}; use another number, there or in process.classes</source>
         <translation>le contrôleur reçoit des programmes de soudage jusqu&apos;à {0}, non {1} ; prenez un autre numéro, là ou dans process.classes</translation>
     </message>
@@ -10720,6 +10770,11 @@
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>the controller of {0} does not read {1}; use one of {2}</source>
         <translation>la commande de {0} ne lit pas {1} ; utilisez l&apos;un de {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the controller swings the torch about linear moves, so far as is known, and these are joint moves</source>
+        <translation>la commande balance la torche autour de mouvements linéaires, à ce que l&apos;on sait, et ceux-ci sont articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -13442,6 +13497,11 @@
         <translation>{0} ne contient pas 100 %, la largeur habituelle ; incluez-la</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/parts.py"/>
+        <source>{0} is woven and has {1} points with its approach, and whether a weave goes on in another program was not confirmed; allow more points in one, or a larger chord error</source>
+        <translation>{0} est balayé et a {1} points avec son approche, et il n&apos;a pas été confirmé qu&apos;un balayage se poursuit dans un autre programme ; permettez plus de points dans un seul, ou une plus grande erreur de corde</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>{0} is {1}; give a number of at most {2}</source>
         <translation>{0} est {1} ; donnez un nombre d&apos;au plus {2}</translation>
@@ -14140,6 +14200,11 @@
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0}; export the part again</source>
         <translation>{0} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot; elsewhere use 0 in process.weave and process.classes</source>
+        <translation>{0} ; fanuc et yaskawa balaient avec motion: cartesian et l&apos;outil sur le robot ; ailleurs, utilisez 0 dans process.weave et process.classes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>

@@ -40,10 +40,10 @@ CLASSES = """\
 """
 
 
-def planned(workshop, more):
+def planned(workshop, more, program=""):
     if not (workshop.folder / "bar.step").exists():
         Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
-    (workshop.folder / "bar.yaml").write_text(JOB.replace("CLASSES\n", more))
+    (workshop.folder / "bar.yaml").write_text(JOB.replace("CLASSES\n", more).replace("program: {", "program: {" + program))
     done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     out = workshop.folder / "out"
@@ -246,3 +246,30 @@ def test_phases_that_cannot_be(workshop, more, status, words):
     done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
     assert done.status == status and words in done.err, done.err
     assert not list((workshop.folder / "out").glob("program/*")) if (workshop.folder / "out").exists() else True
+
+
+WEAVE = "  classes:\n    first_layer: {weave: 0}\n    contour: {weave: 3}\n  weave: 7\n"
+
+
+def test_beads_are_woven_as_their_class_says(workshop):
+    """From the job to the text: first layers straight, contours by 3, lines by 7."""
+    rows, report, text = planned(workshop, WEAVE, "motion: cartesian, ")
+    found = re.findall(r"Weave Sine\[(\d+)\] ;\r\n((?: *\d+:L P\[\d+\][^\n]*\n)+) *\d+:  Weave End ;", text)
+    beads = {}
+    for row in rows:
+        if row["kind"] == "deposit":
+            beads.setdefault((int(row["layer"]), int(row["bead"])), row["class"])
+    wanted = [{"contour": "3", "fill": "7"}[name] for name in beads.values() if name != "first_layer"]
+    assert [number for number, _ in found] == wanted and set(wanted) == {"3", "7"}
+    straight = re.sub(r"Weave Sine.*?Weave End", "", text, flags=re.DOTALL)
+    assert len(re.findall(r"DO\[1\]=ON ;\r\n *\d+:L", straight)) == list(beads.values()).count("first_layer") > 0
+    assert {row["class"]: row["weave"] for row in report["classes"]} == {"first_layer": None, "contour": 3, "fill": 7}
+
+
+def test_a_weave_that_cannot_be_told_is_named_before_planning(workshop):
+    planned(workshop, "")
+    job = (workshop.folder / "bar.yaml").read_text()
+    (workshop.folder / "joint.yaml").write_text(job.replace("process:\n", "process:\n  weave: 2\n"))
+    done = workshop.run("plan", "joint.yaml", "-o", "joint")
+    assert done.status == 2 and "error[WEAVE]" in done.err and "motion: cartesian" in done.err
+    assert not list((workshop.folder / "joint").glob("program/*"))

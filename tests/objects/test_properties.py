@@ -28,7 +28,7 @@ TEXTS = {"machine": "staubli-rx60bl", "limits": "paper", "call": "CLEAN", "gas":
          "name": "ER 2319", "source": "l'essai n° 7",
          "post": "siemens", "plane": "0.6 0 -0.8", "deposit_on": "M7", "deposit_off": "H2=0", "unit": "STN1",
          "external": "motoman-motopos-d500 at 1500 0.25 -3 0 45 0 carries part", "world_up": "0 0.1 1",
-         "classes": "first_layer: travel_speed 4.5, schedule 2; fill: lead -5, lead_on 0.25",
+         "classes": "first_layer: travel_speed 4.5, schedule 2; fill: lead -5, lead_on 0.25, weave 2",
          "obstacles": "post = box 60 60 400 at 900 -0.25 0 0 30 0", "touched": "0 0 0 = 900.5 2 -99; 9 0 0.25 = 909 2 -99"}
 
 

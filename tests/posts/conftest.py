@@ -55,6 +55,7 @@ INSTRUCTIONS = [
     r"  DO\[\d+\]=(?:ON|OFF) ;",
     r"  WAIT(?=.{7}\() *\d*\.\d\d\(sec\) ;",
     r"  WAIT DI\[\d+\]=ON    ;",
+    r"  Weave (?:Sine\[[1-9]\d*\]|End) ;",
     r"  CALL [A-Z][A-Z0-9_]{0,35}    ;",
     r"  ![ -:<-~]{1,32} ;",
 ]

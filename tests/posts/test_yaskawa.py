@@ -84,7 +84,7 @@ def test_golden_programs_to_the_byte(root, name):
 
 INSTRUCTIONS = [
     r"MOVJ C(\d{5})(?: BC\1)?(?: EC\1)? VJ=(?:100\.00|\d\d?\.\d\d) PL=[0-8]", r"MOVL C\d{5} V=\d{1,5}(?:\.\d)? PL=[0-8]",
-    r"DOUT OT#\(\d+\) (?:ON|OFF)",
+    r"DOUT OT#\(\d+\) (?:ON|OFF)", r"WVON WEV#\(\d+\)", r"WVOF",
     r"TIMER T=\d{1,3}\.\d\d", r"WAIT IN#\(\d+\)=ON", r"CALL JOB:[A-Z][A-Z0-9_]{0,31}", r"'[ -~]{1,32}",
 ]  # fmt: skip
 

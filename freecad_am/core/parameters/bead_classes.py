@@ -17,6 +17,7 @@ WHERE = "process.classes"
 MORE = ";"  # between two of them
 FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = ("first_layer", "contour", "fill", "closing", "link", "wall")
 LARGEST_SCHEDULE = 65535  # 16 bits
+LARGEST_WEAVE = 255  # files of weaving conditions of a Yaskawa
 _FORM = "write such as: contour: travel_speed 8, schedule 3; fill: lead 5"
 _INNER = {f.ANGLE: math.radians}
 _OUTER = {f.ANGLE: math.degrees}
@@ -86,6 +87,10 @@ class BeadClass:
     )
     lead_off: float | None = f.parameter(
         None, f.TIME, "Deposit switched off this long after a bead of the class ends.", low=0.0, optional=True
+    )
+    weave: int | None = f.parameter(
+        None, f.COUNT, "Number of the controller's own weave that beads of the class are laid with; 0: straight.", low=0,
+        high=LARGEST_WEAVE, optional=True, advanced=True,
     )
     start_length: float | None = _phase("length")
     start_travel_speed: float | None = _phase("travel_speed")

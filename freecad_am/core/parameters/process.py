@@ -17,7 +17,7 @@ OF_FEATURE = (
     "travel_speed", "seam_angle", "seam_step", "direction", "bead_width", "fill_width", "bead_model", "acceleration",
 )
 
-IN_PROCESS = ("travel_speed", "schedule", "lead_on", "lead_off")  # what of a class stands for a key of the process
+IN_PROCESS = ("travel_speed", "schedule", "lead_on", "lead_off", "weave")  # what of a class stands for a key of the process
 
 
 @dataclass(frozen=True)
@@ -170,6 +170,10 @@ class ProcessParameters:
         "such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.",
     )
 
+    weave: int | None = f.parameter(
+        None, f.COUNT, "Number of the controller's own weave that beads are laid with; 0 or none: straight.", low=0,
+        high=bead_classes.LARGEST_WEAVE, optional=True, advanced=True,
+    )
     start: BeadStart = f.group(BeadStart, "What differs where beads begin.")
     end: BeadEnd = f.group(BeadEnd, "What differs where beads end.")
     material: MaterialParameters = f.group(MaterialParameters, "What is deposited.")
@@ -195,6 +199,11 @@ class ProcessParameters:
             if ends:
                 mine[phase] = dataclasses.replace(getattr(self, phase), **ends)  # type: ignore[arg-type]
         return dataclasses.replace(self, **mine) if mine else self
+
+    @property
+    def weaves(self) -> bool:
+        """Whether any bead is laid with a weave of the controller's."""
+        return any((self.weave, *(one.weave for one in bead_classes.classes(self.classes).values())))
 
     @property
     def scheduled(self) -> bool:

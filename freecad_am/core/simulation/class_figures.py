@@ -14,7 +14,7 @@ from ..parameters.process import ProcessParameters
 
 def figures(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
     """Of each class that beads are of, in the usual order: number of beads, mm and s of deposit, lead times left out, least
-    and largest mm/s, and its schedule. Nothing of motions from before there were classes."""
+    and largest mm/s, its schedule, and its weave where any has one. Nothing of motions from before there were classes."""
     found: list[dict[str, Any]] = []
     way = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
     for number, name in enumerate(CLASSES):
@@ -28,5 +28,6 @@ def figures(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
             "deposit_s": float(np.nan_to_num(motion.duration)[rows].sum()),
             "travel_speed_mm_s": {"min": float(motion.speed[rows].min()), "max": float(motion.speed[rows].max())},
             "schedule": process.for_class(name).schedule,
+            **({"weave": process.for_class(name).weave or None} if process.weaves else {}),
         })
     return found

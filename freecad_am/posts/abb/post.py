@@ -51,6 +51,7 @@ LAST_ANALOGUE = 4096
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(external=True, positioner="STN1", whole_beads=True, straight_in_part=True)
 NO_WIRE = "an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried"
+NO_WEAVE = "a weave is an argument of ArcL, which runs at the speed of its welddata while the arc burns, so far as is known"
 NO_SCHEDULE = {
     "arc": "ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one",
 }

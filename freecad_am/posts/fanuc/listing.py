@@ -107,6 +107,11 @@ def arc(word: str, schedule: int) -> str:
     return f"  Arc {word}[{schedule}]    ;"
 
 
+def weave(number: int) -> str:
+    """The weave of a number, which is sine by its schedule of that number, and its end for 0."""
+    return f"  Weave Sine[{number}] ;" if number else "  Weave End ;"
+
+
 def joint_records(degrees: Array, track: Array, external: Array, user_frame: int, tool_frame: int, group: int = 1) -> str:
     """Records P[1].. of joint values (n, 6), of the track (n, 0 or 1) and of another group (n, k), degrees and mm already
     rounded to 3 decimals."""

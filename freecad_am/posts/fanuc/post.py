@@ -16,6 +16,7 @@ import numpy as np
 
 from ...core.controller import Controller
 from ...core.issues import InputError
+from ...core.parameters import bead_classes
 from ...core.program import (
     FIRST_SHARE,
     LINEAR_MOVE,
@@ -31,6 +32,7 @@ from ...core.program import (
     Wait,
     WaitBelow,
     WaitInput,
+    Weave,
 )
 from ..names import Naming
 from ..on_controller import on_controller
@@ -42,6 +44,7 @@ from ..refusals import (
     refuse_incomplete,
     refuse_named_track,
     refuse_schedules,
+    refuse_weave,
     refuse_wire,
 )
 from . import listing as text
@@ -55,6 +58,7 @@ LAST_ANALOGUE = 25  # analogue inputs
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(external=True, positioner="2")
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
+NO_WEAVE = ""  # linear moves can be woven
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
 MOVE_LINE = re.compile(rb" *\d+:[JL] P\[")
@@ -93,7 +97,7 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)]
     head = [f"  UFRAME_NUM={program.user_frame} ;", f"  UTOOL_NUM={program.tool_frame} ;"]
     groups = list(grouped(program, _words(program), lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, MOST_LINES - len(head) - len(remarks), continued(text.remark))
+    parts = packed(groups, program.max_points, MOST_LINES - len(head) - len(remarks), continued(text.remark, program.woven))
     if len(parts) == 1:
         refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
@@ -149,6 +153,7 @@ def _refuse(program: Program) -> None:
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
+    refuse_weave(program, bead_classes.LARGEST_WEAVE)
     for block in program.blocks:
         if isinstance(block, Call):
             program_name(block.program, block.where)
@@ -210,6 +215,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return [] if program.dry_run else [*text.wait(block.lead), off]
     if isinstance(block, Schedule):
         return [f"  GO[{program.schedule_output}]={block.number} ;"]
+    if isinstance(block, Weave):
+        return [text.weave(block.number)]
     if isinstance(block, LayerStart):
         return text.remark(f"layer {block.layer}")
     if isinstance(block, Wait):

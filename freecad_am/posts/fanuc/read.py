@@ -26,6 +26,7 @@ _MOST_CNT, _OWN = 100.0, 6
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
 _GROUP = re.compile(r"GO\[(\d+)(?::[^\]]*)?\]=(\d+)$")
 _ARC = re.compile(r"Arc (Start|End)\[(\d+)\]$")
+_WEAVE = re.compile(r"Weave (?:Sine\[(\d+)\]|End)$")
 _CALL = re.compile(r"CALL (\w+)$")
 _CALLS = re.compile(r"^ *\d*: *CALL (\w+) *; *\r?$", re.MULTILINE)
 _FRAME = re.compile(r"U(FRAME|TOOL)_NUM=(\d+)$")
@@ -179,6 +180,8 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
             run.happens("schedule", float(group[1]), float(group[2]))
         elif arc := _ARC.match(statement):
             _arc(arc, f"{listing.file} line {number}", run)
+        elif weave := _WEAVE.match(statement):
+            run.happens("weave", float(weave[1] or 0))
         elif call := _CALL.match(statement):
             if call[1].upper() in files:
                 run.take(listing)

@@ -39,6 +39,7 @@ NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found do
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(external=True, positioner="2")
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
+NO_WEAVE = "ArcTech weaves by data that only the pendant makes"
 NO_SCHEDULE = {"arc": "instructions of ArcTech name weld data that only the pendant makes"}
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
 MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")

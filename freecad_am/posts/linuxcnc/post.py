@@ -46,6 +46,7 @@ NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_
 _NO_END = 10**9
 CONTROLLER = Controller()
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
+NO_WEAVE = "programs of five-axis machines have no weave"
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"G[01] ")

@@ -47,6 +47,7 @@ __all__ = ["read", "write"]
 _NO_END = 10**9
 CONTROLLER = Controller()
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
+NO_WEAVE = "programs of five-axis machines have no weave"
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"N\d+ (?:G9 )?G[01] ")

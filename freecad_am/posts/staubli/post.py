@@ -37,6 +37,7 @@ NO_ANALOGUE = "the links of analogue inputs differ from controller to controller
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(whole_beads=True)
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
+NO_WEAVE = "VAL 3 has no weave, so far as is documented"
 NO_SCHEDULE = {
     "output": "that VAL 3 sets several outputs to one number was not found documented",
     "arc": "VAL 3 has no arc instructions",

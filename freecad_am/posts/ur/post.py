@@ -55,6 +55,7 @@ AXES = 6
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3)
 NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
+NO_WEAVE = "URScript has no weave of its own, so far as is documented"
 NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
 LAST_REGISTER, LAST_SCHEDULE = 47, 65535
 MOVE_LINE = re.compile(rb" *move[jlp]\(")

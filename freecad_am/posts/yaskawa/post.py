@@ -19,6 +19,7 @@ from freecad_am.core.types import Array
 
 from ...core.controller import Controller
 from ...core.issues import InputError
+from ...core.parameters import bead_classes
 from ...core.program import (
     DEPOSIT,
     FIRST_SHARE,
@@ -34,6 +35,7 @@ from ...core.program import (
     Schedule,
     Wait,
     WaitInput,
+    Weave,
 )
 from ..names import Naming, plain
 from ..on_controller import on_controller
@@ -46,6 +48,7 @@ from ..refusals import (
     refuse_incomplete,
     refuse_named_track,
     refuse_schedules,
+    refuse_weave,
     refuse_wire,
     refuse_without_speeds,
 )
@@ -58,6 +61,7 @@ NO_ANALOGUE = "how a job waits for an analogue input differs with the controller
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(external=True, positioner="ST1", pulses=True)
 NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
+NO_WEAVE = ""  # linear moves can be woven
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE, LAST_FILE = 512, 255, 1000  # groups of eight outputs; files of arc conditions
 MOVE_LINE = re.compile(rb"MOV[JL] ")
@@ -99,7 +103,7 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [line for text in (*program.remarks, *_own_remarks(program, words.off)) for line in _remark(text)]
     meaning = [line for text in _meaning(program) for line in _remark(text)]
     most = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
-    parts = packed(groups, min(program.max_points, most), most, continued(_remark))
+    parts = packed(groups, min(program.max_points, most), most, continued(_remark, program.woven))
     if len(parts) == 1:
         refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.JBI": job(program, name, [*remarks, *meaning], parts[0])}
@@ -161,6 +165,7 @@ def _refuse(program: Program) -> None:
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE, LAST_FILE)
+    refuse_weave(program, bead_classes.LARGEST_WEAVE)
     refuse_continuous(program)
     if len(program.pulses_per_degree) != axes:
         raise InputError("NO_PULSES", "cell.machine", "the machine file has no controller.pulses_per_degree; add them")
@@ -265,6 +270,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return [] if program.dry_run else lines if word == "ON" else [*lines[1:], lines[0]]
     if isinstance(block, Schedule):
         return [f"DOUT OG#({program.schedule_output}) {block.number}"]
+    if isinstance(block, Weave):
+        return [f"WVON WEV#({block.number})" if block.number else "WVOF"]
     if isinstance(block, LayerStart):
         return _remark(f"layer {block.layer}")
     if isinstance(block, Wait):

@@ -33,6 +33,7 @@ _MOVL = re.compile(r"MOVL C(\d{5})()() V=(\d+(?:\.(\d+))?) PL=([0-8])$")
 _OUTPUT = re.compile(r"DOUT OT#\((\d+)\) (ON|OFF)$")
 _OUTPUTS = re.compile(r"DOUT OG#\((\d+)\) (\d+)$")
 _ARC = re.compile(r"ARC(ON ASF|OF AEF)#\((\d+)\)$")
+_WEAVE = re.compile(r"WV(?:ON WEV#\((\d+)\)|OF)$")
 _TIMER = re.compile(r"TIMER T=(\d+\.(\d+))$")
 _INPUT = re.compile(r"WAIT IN#\((\d+)\)=ON$")
 _CALL = re.compile(r"CALL JOB:([A-Z][A-Z0-9_]{0,31})$")
@@ -210,10 +211,9 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
         elif group := _OUTPUTS.match(text):
             run.happens("schedule", float(group[1]), float(group[2]))
         elif arc := _ARC.match(text):
-            if run.output not in ("", ARC) or run.on == arc[1].startswith("ON"):
-                raise unreadable(where, "an output is switched too, or the arc burns already, or not yet")
-            run.output, run.on = ARC, arc[1].startswith("ON")
-            run.happens("on" if run.on else "off", float(arc[2]), ARC)
+            _arc(arc, run, where)
+        elif weave := _WEAVE.match(text):
+            run.happens("weave", float(weave[1] or 0))
         elif timer := _TIMER.match(text):
             run.happens("wait", float(timer[1]), digits=0.5 * 10.0 ** -len(timer[2]))
         elif given := _INPUT.match(text):
@@ -227,6 +227,14 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
             raise unreadable(where, f"the instruction {text!r} is not understood")
         else:
             _remark(text, run, where)
+
+
+def _arc(arc: re.Match[str], run: _Run, where: str) -> None:
+    """The arc is struck, or ends, by a file of conditions."""
+    if run.output not in ("", ARC) or run.on == arc[1].startswith("ON"):
+        raise unreadable(where, "an output is switched too, or the arc burns already, or not yet")
+    run.output, run.on = ARC, arc[1].startswith("ON")
+    run.happens("on" if run.on else "off", float(arc[2]), ARC)
 
 
 def _remark(text: str, run: _Run, where: str) -> None:

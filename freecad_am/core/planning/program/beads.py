@@ -9,7 +9,7 @@ from ...issues import InputError
 from ...motion import AT_END, AT_START, MIDDLE, Roles
 from ...parameters.process import ProcessParameters
 from ...parameters.program import ProgramParameters
-from ...program import Block, Call, DepositOff, DepositOn, Moves, Schedule
+from ...program import Block, Call, DepositOff, DepositOn, Moves, Schedule, Weave
 
 OUTPUT, ARC, CALL = "output", "arc", "call"
 
@@ -36,10 +36,11 @@ def deposited(
         )
     schedule = numbers[0] if by == ARC and not parameters.dry_run else None
     on = DepositOn(own.lead_on, None if moves[0].wire is None else float(moves[0].wire[0]), schedule)
-    blocks: list[Block] = [*_ahead(numbers[0], parameters), on, moves[0]]
+    weave = [Weave(own.weave)] if own.weave else []  # a dry run has it too: it is motion
+    blocks: list[Block] = [*_ahead(numbers[0], parameters), on, *weave, moves[0]]
     for run, number in runs[1:]:  # posts may stop between runs, so that there are no more of them than schedules
         blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
-    return [*blocks, DepositOff(own.lead_off, schedule)]
+    return [*blocks, *([Weave(0)] if weave else []), DepositOff(own.lead_off, schedule)]
 
 
 def parted(phase: Roles, own: ProcessParameters) -> list[tuple[slice, int | None]]:

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The controller's own weave in the texts: each bead has that of its class between its start and its end, and no other one;
+whatever else a text says is refused, and so is what a controller cannot be told."""
+
+import dataclasses
+import functools
+import re
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import ERROR, InputError
+from freecad_am.core.parameters.bead_classes import CLASSES
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.program import DepositOff, DepositOn, Weave
+from freecad_am.objects.program import refuse
+from freecad_am.posts import catalogue
+from freecad_am.verify import verify
+from tests.posts.fanuc_programs import GOLDEN_TABLE
+from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
+from tests.posts.test_yaskawa import GOLDENS, faults
+from tests.programs import build
+
+SETUPS = {"fanuc": "fanuc tool-on-robot", "yaskawa": "yaskawa tool-on-robot"}
+BEGINS = {"fanuc": r"Weave Sine\[(\d+)\]", "yaskawa": r"WVON WEV#\((\d+)\)"}
+ENDS = {"fanuc": r"Weave End", "yaskawa": r"WVOF"}
+ON, OFF = {"fanuc": r"DO\[1\]=ON", "yaskawa": r"OT#\(1\) ON"}, {"fanuc": r"DO\[1\]=OFF", "yaskawa": r"OT#\(1\) OFF"}
+MOVE = {"fanuc": r"^ *\d+:([JL]) P\[", "yaskawa": r"^MOV([JL]) "}
+OF = {"wall": 4, "contour": 2, "fill": None}  # that of the process, one of its own, straight
+
+
+@functools.cache
+def written(post, dry_run=False):
+    cell, _, motion = planned(SETUPS[post])
+    number = (motion.layer + motion.bead) % 3
+    motion = dataclasses.replace(motion, bead_class=np.array([CLASSES.index(name) for name in OF])[number])
+    process = dataclasses.replace(PROCESS, weave=4, classes="contour: weave 2; fill: weave 0")
+    program = build(motion, cell, process, ProgramParameters(post=post, motion="cartesian", dry_run=dry_run), "job")
+    return cell, motion, program, catalogue.load(post).write(program)
+
+
+def codes(post, files):
+    cell, motion, program, _ = written(post)
+    try:
+        found = verify(cell, motion, program, files, catalogue.load(post), CHORD_ERROR)
+    except InputError as error:
+        return {error.code}
+    return {issue.code for issue in found.issues if issue.level == ERROR}
+
+
+def instructions(files):
+    return [line for name in sorted(files) for line in files[name].decode("latin-1").splitlines()]
+
+
+@pytest.mark.parametrize("post", SETUPS)
+@pytest.mark.parametrize("dry_run", [False, True])
+def test_every_linear_move_of_a_bead_is_woven_as_its_class_says_and_no_rapid_is(post, dry_run):
+    _, motion, _, files = written(post, dry_run)
+    assert dry_run or codes(post, files) == set()
+    weave, on, of_bead, moved = None, dry_run, [], False
+    for line in instructions(files):
+        if begun := re.search(BEGINS[post], line):
+            assert weave is None and on
+            weave = int(begun[1])
+        elif re.search(ENDS[post], line):
+            assert weave is not None and on
+            weave = None
+        elif re.search(ON[post], line):
+            on = True
+        elif re.search(OFF[post], line):
+            assert weave is None
+            on = False
+        elif move := re.match(MOVE[post], line):
+            straight = move[1] == "L"
+            if straight and not moved:
+                of_bead.append(weave)
+            assert weave == (of_bead[-1] if straight else None)
+            moved = straight
+    begins = np.flatnonzero(motion.deposit & (motion.point == 0))
+    assert of_bead == [OF[CLASSES[number]] for number in motion.bead_class[begins]]
+    assert set(of_bead) == {4, 2, None} and weave is None
+
+
+@pytest.mark.parametrize("post", SETUPS)
+def test_a_text_with_another_weave_is_refused(post):
+    files = written(post)[3]
+    begin, end = (rf"(?m)^[^\n]*{pattern[post]}[^\n]*\n" for pattern in (BEGINS, ENDS))
+    move = rf"(?m){MOVE[post]}[^\n]*\n"
+    tried = 0
+    for name, content in files.items():
+        text = content.decode("latin-1")
+        for pattern in (begin, end):
+            for place in list(re.finditer(pattern, text))[:4]:
+                line, before, after = place[0], text[: place.start()], text[place.end() :]
+                following = re.compile(move).search(after)
+                earlier = list(re.finditer(move, before))
+                changed = [before + after, before + line + line + after]
+                if following:
+                    changed.append(before + after[: following.end()] + line + after[following.end() :])
+                if earlier:
+                    changed.append(before[: earlier[-1].start()] + line + before[earlier[-1].start() :] + after)
+                if number := re.search(BEGINS[post], line):
+                    changed.append(before + line.replace(number[1] + number[0][-1], f"9{number[0][-1]}") + after)
+                for damaged in changed:
+                    tried += 1
+                    assert codes(post, {**files, name: damaged.encode("latin-1")}) & {"VERIFY_WEAVE", "VERIFY_ORDER"}, line
+    assert tried > 20
+
+
+def woven(of, number):
+    """A program with the weave in its beads."""
+    blocks = []
+    for block in of.blocks:
+        ends = [Weave(0)] if isinstance(block, DepositOff) else []
+        blocks += [*ends, block, *([Weave(number)] if isinstance(block, DepositOn) else [])]
+    return dataclasses.replace(of, blocks=tuple(blocks), name="woven")
+
+
+def test_golden_programs_to_the_byte(root, assert_listings):
+    listing = catalogue.load("fanuc").write(woven(GOLDEN_TABLE, 12))
+    assert listing == {"WOVEN.LS": (root / "tests/golden/fanuc/WOVEN.LS").read_bytes()}
+    assert_listings(listing)
+    job = catalogue.load("yaskawa").write(woven(GOLDENS["linear"], 255))
+    assert job == {"WOVEN.JBI": (root / "tests/golden/yaskawa/WOVEN.JBI").read_bytes()}
+    assert list(faults("WOVEN.JBI", job["WOVEN.JBI"])) == []
+
+
+@pytest.mark.parametrize("post", SETUPS)
+def test_a_woven_bead_is_not_cut_apart_and_a_straight_one_is(post):
+    program = written(post)[2]
+    most = int(max(len(run) for run in program.moves)) - 1
+    with pytest.raises(InputError) as error:
+        catalogue.load(post).write(dataclasses.replace(program, max_points=most))
+    assert (error.value.code, error.value.where) == ("BEAD_TOO_LONG", "program.max_points")
+    assert "woven" in error.value.message
+    straight = tuple(block for block in program.blocks if not isinstance(block, Weave))
+    assert len(catalogue.load(post).write(dataclasses.replace(program, blocks=straight, max_points=most))) > 1
+
+
+@pytest.mark.parametrize(("post", "motion", "setup", "where", "words"), [
+    ("abb", "cartesian", "abb tool-on-robot", "process.weave", "ArcL"),
+    ("kuka", "cartesian", "kuka tool-on-robot", "process.weave", "ArcTech"),
+    ("ur", "cartesian", "ur tool-on-robot", "process.weave", "URScript"),
+    ("staubli", "joint", "staubli tool-on-robot", "process.weave", "VAL 3"),
+    ("siemens", "joint", "table", "process.weave", "five-axis"),
+    ("linuxcnc", "joint", "table", "process.weave", "five-axis"),
+    ("fanuc", "joint", "fanuc part-on-robot", "program.motion", "joint moves"),
+    ("yaskawa", "joint", "yaskawa tool-on-robot", "program.motion", "joint moves"),
+])
+@pytest.mark.parametrize("process", [ProcessParameters(weave=1), ProcessParameters(classes="fill: weave 3")])
+def test_what_cannot_be_woven_is_refused_before_planning(post, motion, setup, where, words, process):
+    cell = planned(setup)[0]
+    parameters = ProgramParameters(post=post, motion=motion)
+    refuse(cell, ProcessParameters(weave=0, classes="fill: weave 0"), parameters)  # straight can be said by all
+    with pytest.raises(InputError) as error:
+        refuse(cell, process, parameters)
+    assert (error.value.code, error.value.where) == ("WEAVE", where)
+    assert words in error.value.message and "fanuc and yaskawa weave with motion: cartesian" in error.value.message
+
+
+@pytest.mark.parametrize("post", SETUPS)
+def test_posts_refuse_what_they_are_given_wrongly(post):
+    program = written(post)[2]
+    joint = dataclasses.replace(program, motion="joint")
+    large = tuple(Weave(256) if isinstance(block, Weave) and block.number else block for block in program.blocks)
+    for wrong in (joint, dataclasses.replace(program, blocks=large)):
+        with pytest.raises(InputError) as error:
+            catalogue.load(post).write(wrong)
+        assert error.value.code == "WEAVE"
+
+
+@pytest.mark.parametrize("text", ["fill: weave 256", "fill: weave -1", "fill: weave 2.5", "fill: weave sine"])
+def test_weaves_that_are_not_numbers_of_one_are_refused(text):
+    with pytest.raises(InputError) as error:
+        ProcessParameters(classes=text)
+    assert error.value.code == "BAD_VALUE" and "fill" in f"{error.value}"
