@@ -242,8 +242,9 @@ def _move(listing: Listing, some: slice, run: _Run) -> None:
         _refuse(listing, some.start + int(np.argmax(wrong)), run)
     run.cartesian = cartesian
     frames = listing.records.frames
-    selected = [frames[row] for row in rows]
-    changes = [k for k in range(len(rows)) if k == 0 or selected[k] != selected[k - 1]]
+    alike = frames.count(frames[0]) == len(frames)
+    selected = frames if alike else [frames[row] for row in rows]
+    changes = [0] if alike else [k for k in range(len(rows)) if k == 0 or selected[k] != selected[k - 1]]
     for first, end in zip(changes, [*changes[1:], len(rows)]):
         if selected[first] != run.recorded:
             _select(listing, int(rows[first]), run, int(moves.line[some][first]))

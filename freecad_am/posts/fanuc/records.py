@@ -29,7 +29,7 @@ _JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\
 _ONE = re.compile(
     r"\s*\n" + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)") + r"\s*"
 )
-_NUMBERED, _GROUP, _NAMES, _VALUES = 1, 2, range(5, 17, 2), range(6, 17, 2)
+_NUMBERED, _GROUP, _FRAMES_OF, _NAMES, _VALUES = 1, 2, (3, 4), range(5, 17, 2), range(6, 17, 2)
 # the same with a track, and the axes of another motion group, in the same frames
 _MORE = re.compile(
     _FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"(?:,\s*E1 ?= *(-?\d*\.\d+) *mm)?"
@@ -64,6 +64,8 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
     more = several or "E1" in text
     found = _with_more(file, text) if more else _joint_records(text) or _any_records(file, text, positions)
     _check_groups(file, lines, found)
+    if (np.diff(found.point) > 0).all():
+        return found._replace(moved=_groups_of(lines))
     order = np.argsort(found.point, kind="stable")
     if (np.diff(found.point[order]) == 0).any():
         raise unreadable(file, "a position is recorded twice")
@@ -124,12 +126,17 @@ def _joint_records(text: str) -> Records | None:
         if found is None:
             return None
         mine = [records[row] for row in some]
-        numbers = alike.numbers(mine, shape, [found.span(group) for group in (_NUMBERED, _GROUP, *_NAMES, *_VALUES)])
+        told = [group for group in _FRAMES_OF if shape[slice(*found.span(group))] != "F"]
+        groups = (_NUMBERED, _GROUP, *_NAMES, *_VALUES, *told)
+        numbers = alike.numbers(mine, shape, [found.span(group) for group in groups])
         if (numbers[:, 1:8] != [1, 1, 2, 3, 4, 5, 6]).any():
             return None
-        point[some], values[some] = numbers[:, 0], numbers[:, 8:]
+        point[some], values[some] = numbers[:, 0], numbers[:, 8:14]
         decimals = min(decimals, *(len(found[group].partition(".")[2]) for group in _VALUES))
-        (a, b), (c, d) = found.span(3), found.span(4)
+        (a, b), (c, d) = (found.span(group) for group in _FRAMES_OF)
+        if len(some) == len(records) and (numbers[:, 14:] == numbers[0, 14:]).all():
+            frames = [(mine[0][a:b], mine[0][c:d])] * len(records)
+            continue
         for row, record in zip(some, mine):
             frames[row] = record[a:b], record[c:d]
     return Records(point, values, [()] * len(records), frames, 0.5 * 10.0**-decimals, False)
