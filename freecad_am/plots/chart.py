@@ -65,7 +65,8 @@ class Chart:
     limits: least and most value allowed, infinite where there is none; what lies beyond is shaded, values there are marked.
     band: a range of x that is as wanted. marks: values of y with a name to compare with; upright: of x. borders: x of the
     starts of layers, and layers, their numbers. span: of y, where it is not as the values ask for. unlimited: why there are
-    no limits, where one would look for them. plane: x and y are places in a plane, drawn to the same scale.
+    no limits, where one would look for them. plane: x and y are places in a plane, drawn to the same scale. names: x and y
+    of places that have a name.
     """
 
     title: str
@@ -82,6 +83,7 @@ class Chart:
     span: tuple[float, float] | None = None
     unlimited: str = ""
     plane: bool = False
+    names: tuple[tuple[float, float, str], ...] = ()
 
     def wrong(self, values: Array) -> NDArray[np.bool_]:
         """Which values (n,) lie beyond the limits."""

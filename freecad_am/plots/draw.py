@@ -16,6 +16,7 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from .chart import DOTS, MARKED, OUTLINE, STEP, Chart, Curve
 from .envelope import envelope
 from .look import BAR, Look
+from .named import named
 
 DPI = 100.0
 # of a frame, in pixels: what is left free at its sides, above for its title, below for its scale
@@ -153,6 +154,7 @@ class _Frame:
         for curve in self.chart.curves:
             self._curve(axes, curve)
         self._marks(axes)
+        named(axes, self.chart, self.look.ink, TITLE)
         self._title()
 
     def _scales(self, axes: Any) -> None:

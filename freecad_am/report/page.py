@@ -79,7 +79,8 @@ def render(content: Content) -> str:
         "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         *_joints(content, pictures),
         "" if content.toolpath.fitted is None else scan_figures.section(content.toolpath.fitted, content.toolpath.frame),
-        "" if content.toolpath.predicted is None else predicted_figures.section(content.toolpath.predicted),
+        "" if content.toolpath.predicted is None else predicted_figures.section(
+            content.toolpath.predicted, pictures.predicted(), shown),
         _process(content, pictures),
         _on_hub(content, pictures),
         *(_spacings(one) for one in content.features if one.rows),

@@ -9,7 +9,7 @@ from types import ModuleType
 
 import numpy as np
 
-from freecad_am.plots import joints, process
+from freecad_am.plots import deviation, joints, process
 from freecad_am.plots.chart import Chart, together
 from freecad_am.plots.fit import fit
 from freecad_am.plots.look import PAGE
@@ -18,7 +18,7 @@ from freecad_am.plots.source import Source
 
 from .of_feature import OfFeature
 
-HALF, WHOLE, TALL = 460, 940, 230  # pixels
+HALF, WHOLE, TALL, MAP = 460, 940, 230, 330  # pixels
 MISSING = "The plots are left out, because matplotlib is not installed here; install python3-matplotlib and plan again."
 
 
@@ -71,11 +71,20 @@ class Pictures:
             charts = (*charts, fit(*source.model, source.process.bead_width))
         return self._half(charts)
 
+    def predicted(self) -> list[str]:
+        """The predicted deposit against the part."""
+        shape = self.source.toolpath.predicted
+        if shape is None or shape.deviation is None:
+            return []
+        found = deviation.charts(shape.deviation, shape.allowance)
+        tall = sum(chart.plane for chart in found)
+        return [*self._drawn(found[:tall], HALF, MAP), *self._half(found[tall:])]
+
     def _half(self, charts: Sequence[Chart]) -> list[str]:
         return self._drawn(charts, HALF)
 
-    def _drawn(self, charts: Sequence[Chart], width: int) -> list[str]:
+    def _drawn(self, charts: Sequence[Chart], width: int, height: int = TALL) -> list[str]:
         if self.modules is None:
             return []
         draw, files = self.modules
-        return [files.inline(draw.figure([chart], PAGE, width, TALL)[0], chart.title) for chart in charts]
+        return [files.inline(draw.figure([chart], PAGE, width, height)[0], chart.title) for chart in charts]

@@ -20,7 +20,7 @@ def findings(issues: list[dict[str, Any]], shown: Shown) -> str:
         return ""
     rows = []
     for issue in sorted(issues, key=lambda entry: ("error", "warning", "note").index(entry["level"]))[:_MOST_ISSUES]:
-        place = _place(issue, shown)
+        place = place_of(issue, shown)
         rows.append(
             f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
             f'<td class="place">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
@@ -29,7 +29,7 @@ def findings(issues: list[dict[str, Any]], shown: Shown) -> str:
     return f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}'
 
 
-def _place(place: dict[str, Any], shown: Shown) -> str:
+def place_of(place: dict[str, Any], shown: Shown) -> str:
     """Layer, bead and point, as far as they are told; a click shows them in the path."""
     words = " ".join(f"{word} {place[word]}" for word in ("layer", "bead", "point") if place[word] is not None)
     row = shown.row_of(place["layer"], place["bead"], place["point"])
@@ -43,7 +43,7 @@ def preflight(promises: list[dict[str, Any]], shown: Shown) -> str:
     rows = []
     for one in promises:
         mark, word = _MARKS[one["ok"]]
-        where = "" if one["place"] is None else _place(one["place"], shown)
+        where = "" if one["place"] is None else place_of(one["place"], shown)
         worst = "" if one["worst"] is None else f"{figure_text(one['worst'])} {one['unit']}".strip()
         sign = "\u2265" if one["at_least"] else "\u2264"
         bound = "" if one["bound"] is None else f"{sign} {figure_text(one['bound'])} {one['unit']}".strip()

@@ -3,14 +3,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.fitted import PredictedShape
+from freecad_am.core.geometry.fitted import DeviationMap, PredictedShape
 from freecad_am.core.geometry.formatting import place
+from freecad_am.plots.deviation import name_of, step_of
 
-from .tables import pairs_of
+from .colour_key import key_of
+from .places import place_of
+from .tables import grid_of, pairs_of
+from .turned.columns import Shown
 
 MM3 = 1000.0  # in a cm3
 
@@ -25,17 +30,36 @@ def as_dict(found: PredictedShape) -> dict[str, Any]:
         "worst": {
             "place": found.worst.tolist(), "layer": found.layer, "bead": found.bead, "point": found.point,
         },
-        "layers": [
-            {"layer": int(layer), "drift_mm": float(found.drift[layer])}
-            for layer in np.flatnonzero(np.isfinite(found.drift))
-        ],
+        "layers": [_layer(found, int(layer)) for layer in np.flatnonzero(np.isfinite(found.drift))],
+        **({} if found.deviation is None else _deviation(found.deviation)),
     }
 
 
-def section(found: PredictedShape) -> str:
-    """The section of the page."""
+def _layer(found: PredictedShape, layer: int) -> dict[str, Any]:
+    """A row of `layers`; least and mean are those of the places nearest to it, None where there are none."""
+    row: dict[str, Any] = {"layer": layer, "drift_mm": float(found.drift[layer])}
+    if found.deviation is not None:
+        least, mean = (None if np.isnan(value) else float(value) for value in found.deviation.layers[layer])
+        row["beyond_mm"] = {"min": least, "mean": mean}
+    return row
+
+
+def _deviation(found: DeviationMap) -> dict[str, Any]:
+    """The worst places by name, and how deviations are spread over the area."""
+    return {
+        "worst_places": [
+            {"name": name_of(k), "place": found.places[k].tolist(), "beyond_mm": float(found.beyond[k]),
+             "layer": int(layer), "bead": int(bead), "point": int(point)}
+            for k, (layer, bead, point) in enumerate(found.worst)
+        ],
+        "spread": {"edges_mm": found.edges.tolist(), "area_share": found.shares.tolist()},
+    }
+
+
+def section(found: PredictedShape, pictures: Sequence[str], shown: Shown) -> str:
+    """The section of the page, with the maps and charts that are drawn of it."""
     known = found.drift[np.isfinite(found.drift)]
-    return pairs_of("Predicted deposit against the part", {
+    figures = pairs_of("Predicted deposit against the part", {
         "Fed by the wire": f"{found.fed / MM3:.4g} cm3",
         "Predicted deposit": f"{found.laid / MM3:.4g} cm3 in cubes of {found.edge:.3g} mm",
         "Allowance asked for": f"{found.allowance:g} mm",
@@ -45,3 +69,17 @@ def section(found: PredictedShape) -> str:
         "Faces that stick out": f"{100.0 * found.outside:.3g} %",
         "Layers end off where the next begins": f"{known.min(initial=0.0):.3g} to {known.max(initial=0.0):.3g} mm",
     })
+    if found.deviation is None:
+        return figures
+    key = f'<p class="sub">Deposit beyond the faces, mm: {key_of(step_of(found.deviation))}</p>' if pictures else ""
+    return figures + grid_of(pictures) + key + _worst(found.deviation, shown)
+
+
+def _worst(found: DeviationMap, shown: Shown) -> str:
+    """The worst places with their names in the maps; a click shows what of the path is nearest."""
+    rows = "".join(
+        f'<tr><td>{one["name"]}</td><td>{one["beyond_mm"]:.3f}</td><td>{place(np.array(one["place"]))}</td>'
+        f'<td class="place">{place_of(one, shown)}</td></tr>' for one in _deviation(found)["worst_places"]
+    )
+    head = "".join(f"<th>{word}</th>" for word in ("worst places", "beyond the faces, mm", "place", "of the path"))
+    return f'<div class="table"><table><tr>{head}</tr>{rows}</table></div>'

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from freecad_am.core.geometry.fitted import Fitted
-from freecad_am.core.inspection.bands import band_of, bands
+from freecad_am.core.inspection.bands import band_of, bands, css
 from freecad_am.core.types import Array
 
+from .colour_key import key_of
 from .svg import Plot
 from .tables import grid_of
 
@@ -36,13 +37,9 @@ def section(fitted: Fitted, frame: Array) -> str:
     """The section of the page: both pictures as seen along Z of the feature's frame (4, 4)."""
     before = _map(f"Layer {fitted.layer} as planned", fitted.places, fitted.off, frame)
     after = _map(f"Layer {fitted.layer} as laid", fitted.laid, fitted.left, frame)
-    key = "".join(
-        f'<span style="white-space:nowrap"><span style="color:{_css(band.colour)}">&#9632;</span> {escape(band.text)}&ensp;'
-        "</span> " for band in bands(TOLERANCE)
-    )
     return (
         f"<h2>Fitted to {escape(fitted.file)}</h2>{grid_of([before, after])}"
-        f'<p class="sub">How far the scan lies above the layer, mm: {key}</p>'
+        f'<p class="sub">How far the scan lies above the layer, mm: {key_of(TOLERANCE)}</p>'
     )
 
 
@@ -57,13 +54,9 @@ def _map(title: str, places: Array, off: Array, frame: Array) -> str:
          0.5 * (float(values.min()) + float(values.max())) + 0.5 * scale * size)
         for values, size in ((x, wide), (y, high))
     )
-    shades, number = [_css(band.colour) for band in bands(TOLERANCE)], band_of(off[some], TOLERANCE)
+    shades, number = [css(band.colour) for band in bands(TOLERANCE)], band_of(off[some], TOLERANCE)
     plot.parts += [
         f'<circle cx="{px:.1f}" cy="{py:.1f}" r="{DOT}" fill="{shades[k]}"/>'
         for px, py, k in zip(plot.to_x(x).tolist(), plot.to_y(y).tolist(), number.tolist(), strict=True)
     ]
     return plot.text()
-
-
-def _css(colour: tuple[float, float, float]) -> str:
-    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)

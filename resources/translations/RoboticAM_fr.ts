@@ -2182,6 +2182,11 @@
         <translation>Déposer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/plots/deviation.py"/>
+        <source>Deposit beyond the faces</source>
+        <translation>Dépôt au-delà des faces</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Deposit off</source>
         <translation>Dépôt arrêt</translation>
@@ -3215,6 +3220,11 @@
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
         <source>Layer</source>
         <translation>Couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/deviation.py"/>
+        <source>Layer by layer</source>
+        <translation>Couche par couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -7297,6 +7307,11 @@
         <translation>au-delà d&apos;une limite</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/plots/deviation.py"/>
+        <source>beyond the faces</source>
+        <translation>au-delà des faces</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
         <source>block numbers do not rise</source>
         <translation>les numéros de bloc ne montent pas</translation>
@@ -10427,6 +10442,11 @@
         <translation>part</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/plots/deviation.py"/>
+        <source>share of the area</source>
+        <translation>part de la surface</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>share of the length</source>
         <translation>part de la longueur</translation>
@@ -12225,6 +12245,11 @@
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>up</source>
         <translation>haut</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/deviation.py"/>
+        <source>up in the picture</source>
+        <translation>vers le haut de l&apos;image</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from freecad_am.core.inspection import table
-from freecad_am.core.inspection.bands import band_of, bands
+from freecad_am.core.inspection.bands import band_of, bands, css
 from freecad_am.core.types import Array
+from freecad_am.report.colour_key import key_of
 from freecad_am.report.style import STYLE
 from freecad_am.report.svg import Plot
 
@@ -57,7 +58,7 @@ def _map(one: Any) -> str:
     up = z * np.cos(_TILT) + y * np.sin(_TILT)
     order = np.argsort(-y)  # the nearer ones last
     plot = _framed("Deviation map, seen from the front", x, up)
-    shades, number = [_css(band.colour) for band in bands(one.tolerance)], band_of(one.deviation[chosen], one.tolerance)
+    shades, number = [css(band.colour) for band in bands(one.tolerance)], band_of(one.deviation[chosen], one.tolerance)
     px, py = plot.to_x(x), plot.to_y(up)
     plot.parts += [
         f'<circle cx="{px[k]:.1f}" cy="{py[k]:.1f}" r="{_DOT}" fill="{shades[number[k]]}"/>' for k in order
@@ -81,7 +82,7 @@ def _histogram(one: Any) -> str:
     edges, counts = one.spread.edges, one.spread.counts
     low, high = min(float(edges[0]), -one.tolerance), max(float(edges[-1]), one.tolerance)
     plot = Plot("Points by deviation", (low, high), (0.0, 1.05 * float(counts.max())), "deviation, mm", "points", height=330)
-    shades = [_css(band.colour) for band in bands(one.tolerance)]
+    shades = [css(band.colour) for band in bands(one.tolerance)]
     number = band_of(0.5 * (edges[:-1] + edges[1:]), one.tolerance)
     left, top, ground = plot.to_x(edges), plot.to_y(counts), float(plot.to_y(np.zeros(1))[0])
     plot.parts += [
@@ -94,18 +95,9 @@ def _histogram(one: Any) -> str:
 
 
 def _key(tolerance: float) -> str:
-    entries = "".join(
-        f'<span style="white-space:nowrap"><span style="color:{_css(band.colour)}">&#9632;</span> '
-        f"{escape(band.text)}&ensp;</span> "
-        for band in bands(tolerance)
-    )
-    return f"<figcaption>deviation, mm: {entries}</figcaption>"
+    return f"<figcaption>deviation, mm: {key_of(tolerance)}</figcaption>"
 
 
 def _notes(one: Any) -> str:
     lines = "".join(f"<li>{escape(issue.message)}</li>" for issue in one.issues)
     return f"<ul>{lines}</ul>" if lines else ""
-
-
-def _css(colour: tuple[float, float, float]) -> str:
-    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)

@@ -43,6 +43,11 @@ def band_of(deviation: Array, tolerance: float) -> NDArray[np.int64]:
     return band
 
 
+def css(colour: tuple[float, float, float]) -> str:
+    """A colour as #rrggbb."""
+    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)
+
+
 def colours(deviation: Array, within: NDArray[np.bool_], tolerance: float) -> Array:
     """Colours (n, 3) of deviations (n,); grey where they do not count."""
     found = np.array(_COLOURS)[band_of(deviation, tolerance)]

@@ -18,6 +18,7 @@ from ...core.issues import WARNING, InputError, Issue
 from ...core.parameters.process import ProcessParameters
 from ...core.process.shape import compare
 from ...core.process.shape.compare import Compared
+from ...core.process.shape.deviation import deviation_map
 from ...core.process.shape.faces import BOTH, OUTSIDE, Faces, faces, thinned, together
 from ...core.process.shape.laying import PredictedDeposit, parts_of, predicted_deposit
 from ...core.strategies.families import family_of
@@ -57,7 +58,9 @@ def with_shape_issues(toolpath: CoreToolpath, targets: Sequence[Target], allowan
         deposit, found = predicted(toolpath, targets, progress.report)
     except InputError as error:
         return dataclasses.replace(toolpath, issues=(*toolpath.issues, Issue(WARNING, NOTHING, error.message)))
-    shape = compare.figures(deposit, found, allowance)
+    shape = dataclasses.replace(
+        compare.figures(deposit, found, allowance), deviation=deviation_map(deposit, found, len(toolpath.layers)),
+    )
     return dataclasses.replace(toolpath, predicted=shape, issues=(*toolpath.issues, *issues(toolpath, targets, shape)))
 
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from ...core.controller import Controller
 from ...core.issues import InputError
-from ...core.parameters import bead_classes
 from ...core.program import (
     FIRST_SHARE,
     LINEAR_MOVE,
@@ -59,6 +58,7 @@ LAST_ANALOGUE = 25  # analogue inputs
 CONTROLLER = Controller(external=True, positioner="2")
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 NO_WEAVE = ""  # linear moves can be woven
+LAST_WEAVE = 255  # of numbers of weave schedules
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
 MOVE_LINE = re.compile(rb" *\d+:[JL] P\[")
@@ -153,7 +153,7 @@ def _refuse(program: Program) -> None:
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
-    refuse_weave(program, bead_classes.LARGEST_WEAVE)
+    refuse_weave(program, LAST_WEAVE)
     for block in program.blocks:
         if isinstance(block, Call):
             program_name(block.program, block.where)

@@ -19,7 +19,6 @@ from freecad_am.core.types import Array
 
 from ...core.controller import Controller
 from ...core.issues import InputError
-from ...core.parameters import bead_classes
 from ...core.program import (
     DEPOSIT,
     FIRST_SHARE,
@@ -62,6 +61,7 @@ NO_ANALOGUE = "how a job waits for an analogue input differs with the controller
 CONTROLLER = Controller(external=True, positioner="ST1", pulses=True)
 NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
 NO_WEAVE = ""  # linear moves can be woven
+LAST_WEAVE = 255  # files of weaving conditions
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE, LAST_FILE = 512, 255, 1000  # groups of eight outputs; files of arc conditions
 MOVE_LINE = re.compile(rb"MOV[JL] ")
@@ -165,7 +165,7 @@ def _refuse(program: Program) -> None:
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE, LAST_FILE)
-    refuse_weave(program, bead_classes.LARGEST_WEAVE)
+    refuse_weave(program, LAST_WEAVE)
     refuse_continuous(program)
     if len(program.pulses_per_degree) != axes:
         raise InputError("NO_PULSES", "cell.machine", "the machine file has no controller.pulses_per_degree; add them")
