@@ -29,10 +29,11 @@ METRES[:3, 3] = 1e-3
 # who judges which class of wrist, and how many poses
 JUDGED = (
     ("eaik", "fanuc-arcmate120ic", 10_000), ("eaik", "ur-ur10e", 10_000), ("ssik", "fanuc-crx10ia", 10_000),
-    ("ssik", "motoman-hc10", 1000),
+    ("ssik", "motoman-hc10", 10_000),
 )
 OF_SSIK = {"fanuc-crx10ia": "fanuc_crx10ia", "motoman-hc10": "hc10"}
-OTHER_WRISTS = {"ur-ur10e": 2.0, "fanuc-crx10ia": 60.0}  # machines, and us a pose
+# machines, and us a pose
+OTHER_WRISTS = {"ur-ur10e": 2.0, "fanuc-crx10ia": 60.0, "motoman-hc10": 60.0, "abb-crb15000-5-95": 60.0}
 
 
 def run() -> list[Row]:

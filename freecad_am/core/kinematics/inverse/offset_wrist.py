@@ -3,13 +3,15 @@
 
 Axes 4 and 5 meet in a point that axis 6 turns about itself. For each angle of axis 6 the triangle of shoulder, elbow and
 that point gives axis 4, for either side of axis 1 and either elbow; what is left is the angle between axes 4 and 5, one
-function of axis 6 whose zeros are all solutions, at most 16 of them. `offset_wrist_search` finds them.
+function of axis 6 whose zeros are all solutions, at most 16 of them. `offset_wrist_polynomial` finds them where axis 4 runs
+along the forearm and square to axis 5, `offset_wrist_search` those of all others.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +20,7 @@ from ...geometry import frames
 from ...geometry.angles import TURN
 from ...types import Array, Mask
 from ..chain import Chain
+from . import offset_wrist_polynomial as polynomial
 from . import offset_wrist_search as search
 from .offset_wrist_plane import Curves, geometry
 from .offset_wrist_search import Zeros
@@ -25,6 +28,7 @@ from .offset_wrist_search import Zeros
 CHUNK = 2048
 MAX_SOLUTIONS = 16  # solutions of six revolute joints
 STEP_RAD = 1e-5  # of axis 6, by which the slope is taken
+UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +152,7 @@ class OffsetWristArm:
     def _solve_piece(self, poses: Array, out: Array, named: NDArray[np.intp]) -> None:
         """Write the solutions `out` (16, m, 6) of poses (m, 4, 4), and their words (16, m)."""
         curves = self._curves(poses)
-        zeros = search.zeros(curves)
+        zeros = polynomial.zeros(curves) if polynomial.applies(curves) else search.zeros(curves)
         if not len(zeros.pose):
             return
         q = self._angles(poses, curves, zeros)
@@ -173,29 +177,43 @@ class OffsetWristArm:
         at_rest = self.chain.frames(np.zeros(6))
         z = at_rest.directions
         spot = geometry(curves, zeros.pose, zeros.angle, zeros.side, zeros.bent)
-        one = np.arctan2(spot.sine, spot.cosine)
-        three = np.arctan2(spot.fore_ahead, spot.fore_above)
-        two = np.arctan2(spot.ahead - self.fore * spot.fore_ahead, spot.above - self.fore * spot.fore_above)
-        q = np.empty((len(one), 6))
-        q[:, 0] = (one - self.turns[0]) * self.signs[0]
-        q[:, 1] = (two - self.turns[1]) * self.signs[1]
-        q[:, 2] = (three - two - (self.turns[2] - self.turns[1])) * self.signs[2]
+        fore = np.stack([spot.fore_ahead, spot.fore_above])
+        upper = np.stack([spot.ahead, spot.above]) - self.fore * fore
+        three, two = np.arctan2(*fore), np.arctan2(*upper)
+        q = np.empty((6, len(three)))
+        q[0] = (np.arctan2(spot.sine, spot.cosine) - self.turns[0]) * self.signs[0]
+        q[1] = (two - self.turns[1]) * self.signs[1]
+        q[2] = (three - two - (self.turns[2] - self.turns[1])) * self.signs[2]
+        six = (poses[:, :3, :3] @ (at_rest.flange[:3, :3].T @ z[5])).T[:, zeros.pose]
+        # axes 5 and 6 as the arm with axes 1 to 3 at zero would have them
+        plane = _less((spot.sine, spot.cosine), self.turns[0])
+        turned = _less(fore / np.hypot(*fore), self.turns[2])
         normal = z[1] * self.signs[1]
-        before = frames.rotation_about((0.0, 0.0, 1.0), one - self.turns[0]) @ frames.rotation_about(
-            normal, three - self.turns[2])
-        q[:, 3] = _turned(before, z[3], z[4], np.stack(spot.five, axis=-1))
-        before = before @ frames.rotation_about(z[3], q[:, 3])
-        six = poses[zeros.pose, :3, :3] @ (at_rest.flange[:3, :3].T @ z[5])
-        q[:, 4] = _turned(before, z[4], z[5], six)
-        q[:, 5] = zeros.angle
+        five, six = (_turned_back(normal, turned, _turned_back(UP, plane, seen)) for seen in (np.stack(spot.five), six))
+        fourth = _towards(z[3], z[4], five)
+        six = _turned_back(z[3], fourth / np.hypot(*fourth), six)
+        q[3], q[4], q[5] = np.arctan2(*fourth), np.arctan2(*_towards(z[4], z[5], six)), zeros.angle
         q -= TURN * np.rint(q * (1.0 / TURN))
-        return q
+        return q.T
 
 
-def _turned(before: Array, axis: Array, vector: Array, wanted: Array) -> Array:
-    """The angles (k,) about an axis (3,) that bring a vector (3,) to those wanted (k, 3), both seen after `before`
-    (k, 3, 3)."""
-    seen = np.einsum("kji,kj->ki", before, wanted)
+def _less(one: Any, angle: float) -> Array:
+    """Sine and cosine (2, k) of angles of which they are given, less an angle."""
+    sine, cosine = one
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.stack([sine * cos - cosine * sin, cosine * cos + sine * sin])
+
+
+def _turned_back(axis: Array, by: Array, vectors: Array) -> Array:
+    """Vectors (3, k) turned back about an axis (3,) by angles of which sine and cosine (2, k) are given."""
+    across = np.cross(axis, np.eye(3)).T @ vectors
+    result: Array = by[1] * vectors - by[0] * across + axis[:, None] * ((1.0 - by[1]) * (axis @ vectors))
+    return result
+
+
+def _towards(axis: Array, vector: Array, wanted: Array) -> Array:
+    """Sine and cosine (2, k), of some length, of the angles about an axis (3,) that bring a vector (3,) to those wanted
+    (3, k)."""
     across = vector - axis * float(axis @ vector)
-    result: Array = np.arctan2(seen @ np.cross(axis, across), seen @ across)
+    result: Array = np.stack([np.cross(axis, across), across]) @ wanted
     return result

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Zeros of the polynomial of arms such as CRX and HC10 are those of the search along loops, which shares none of it."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.kinematics.inverse import offset_wrist_polynomial as polynomial
+from freecad_am.core.kinematics.inverse import offset_wrist_search as search
+from freecad_am.core.kinematics.inverse import recognition
+from tests.core.kinematics.arms import CROOKED_CRX, CRX_10IA, GOFA_5, GOFA_10, HC10, apart, chain, second_opinion
+
+pytest.importorskip("PyKDL")
+
+
+@pytest.fixture(params=[CRX_10IA, HC10], ids=["CRX-10iA", "HC10"], scope="module")
+def arm(request):
+    of = chain(request.param)
+    return of, recognition.arm_of(of)
+
+
+def _curves(arm, q):
+    return arm[1]._curves(arm[0].forward(q))
+
+
+def _rows(zeros):
+    """Pose, side, elbow, angle in [0, 2 pi), sine of the elbow, whether the slope is positive; in order."""
+    rows = np.stack([zeros.pose, zeros.side, zeros.elbow, zeros.angle % (2 * np.pi), zeros.bent[0], zeros.slope > 0], axis=1)
+    return rows[np.lexsort(rows.T[3::-1])]
+
+
+def test_only_arms_of_its_kind_are_taken():
+    for figures, wanted in ((CRX_10IA, True), (HC10, True), (GOFA_5, False), (GOFA_10, False), (CROOKED_CRX, False)):
+        of = chain(figures)
+        assert polynomial.applies(recognition.arm_of(of)._curves(of.forward(np.zeros((1, 6))))) == wanted
+
+
+def test_zeros_are_those_of_the_search(arm, monkeypatch):
+    curves = _curves(arm, np.random.default_rng(11).uniform(-np.pi, np.pi, (1000, 6)))
+    expected = _rows(search.zeros(curves))
+    asked = []
+    real = search.zeros
+    monkeypatch.setattr(search, "zeros", lambda some: asked.append(some.point.shape[2]) or real(some))
+    found = _rows(polynomial.zeros(curves))
+    assert found.shape == expected.shape and np.array_equal(found[:, [0, 1, 2, 5]], expected[:, [0, 1, 2, 5]])
+    assert np.abs(found[:, 3:5] - expected[:, 3:5]).max() < 1e-9
+    assert sum(asked) < 10
+
+
+def test_zeros_that_meet_are_found(arm):
+    """Where two solutions meet, the determinant of PyKDL's Jacobian being zero, and about there: all that the search has."""
+    of, _ = arm
+    kdl = second_opinion(of)
+    met = []
+    for row in np.random.default_rng(12).uniform(-np.pi, np.pi, (150, 6)):
+        around = np.tile(row, (181, 1))
+        around[:, 4] = np.linspace(-np.pi, np.pi, 181)
+        size = np.linalg.det(kdl.jacobian(around))
+        where = np.flatnonzero(size[1:] * size[:-1] < 0.0)
+        if len(where):
+            at = where[0]
+            row[4] = around[at, 4] + (around[1, 4] - around[0, 4]) * size[at] / (size[at] - size[at + 1])
+            met.append(row)
+    assert len(met) > 100
+    for off in (0.0, 1e-5, 1e-3, 1e-2):
+        q = np.array(met) + np.array([0, 0, 0, 0, off, 0])
+        curves = _curves(arm, q)
+        zeros, expected = polynomial.zeros(curves), _rows(search.zeros(curves))
+        found = _rows(zeros)
+        same = (found[:, None, :3] == expected[:, :3]).all(axis=2)
+        away = np.where(same, np.abs(np.exp(1j * found[:, 3, None]) - np.exp(1j * expected[:, 3])), 9.0)
+        assert away.min(axis=0).max() < 1e-6
+        # what the search has not is a solution too, and rare
+        assert np.abs(search.values(curves, zeros.pose, zeros.angle, zeros.side, zeros.elbow)).max() < 1e-7
+        assert (away.min(axis=1) > 1e-6).sum() <= 8
+        if off:  # where they meet exactly the condition is flat: test_offset_wrist says how near to it is found
+            assert np.nanmin(apart(arm[1].inverse(of.forward(q)), q), axis=0).max() < 1e-5
+
+
+def test_the_polynomial_is_the_condition_on_axis_5_of_both_sides(arm):
+    """At angles of axis 6 within reach: zero of one elbow in front and of the other at the back; its degree is 4."""
+    rng = np.random.default_rng(13)
+    curves = _curves(arm, rng.uniform(-np.pi, np.pi, (300, 6)))
+    length = 1.0 / (curves.upper + curves.fore)
+    each, one = np.arange(300), np.ones(300)
+    angles = 2.0 * np.pi / 64 * np.arange(64)
+    value = np.stack([polynomial._terms_at(curves, length, each, angle * one).value for angle in angles])
+    assert np.abs(np.fft.rfft(value, axis=0)[5:]).max() < 1e-12 * np.abs(value).max()
+    seen = 0
+    for angle, row in zip(angles, value):
+        at = polynomial._terms_at(curves, length, each, angle * one)
+        inside = at.squared - at.common**2 > 1e-3
+        for side in (one, -one):
+            product = np.prod([search.values(curves, each, angle * one, side, elbow * one) for elbow in (1.0, -1.0)], axis=0)
+            np.testing.assert_allclose((product * (at.radius**2 * at.squared))[inside], row[inside], atol=1e-12)
+        assert (row[at.squared < at.common**2] > 0.0).all()
+        seen += inside.sum()
+    assert seen > 5000
+
+
+def test_a_pair_that_the_search_passes_over_is_found():
+    """HC10, its elbow nearly stretched: between both zeros, 0.01 rad apart, the condition stays below 1e-5."""
+    of = chain(HC10)
+    q = np.array([[2.04783863, 1.06449714, 0.01974395, -2.99700261, 0.04945112, 1.16245284]])
+    found = recognition.arm_of(of).inverse(second_opinion(of).forward(q))[:, 0]
+    assert np.isfinite(found).all(axis=1).sum() == 12
+    assert np.nanmin(apart(found, q)) < 1e-9
