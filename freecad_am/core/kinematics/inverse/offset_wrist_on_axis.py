@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Solutions of arms with an offset wrist whose point of axes 4 and 5 lies on axis 1, or next to it.
+
+There the place of the point no longer tells the plane of the arm, and while axis 6 sweeps the point past axis 1 the plane
+turns by half a turn within a few digits of its angle. So the plane is taken from the condition between axes 4 and 5, two of
+them for each elbow, and the angle of axis 6 is that at which the point lies in it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...geometry.angles import TURN
+from ...types import Array, Index, Mask
+from .offset_wrist_plane import TINY, Curves, geometry
+from .offset_wrist_search import Zeros
+
+# of the length of the stretched arm: how near to axis 1 the point passes where this is done, how far from it solutions are
+# taken, and within what no others are, for their planes have too few digits
+PASS_SHARE, SOLVED_SHARE, NOISE_SHARE = 2e-5, 1e-3, 1e-7
+SAME_RAD, SAME_SINE = 1e-7, 1e-3
+MISMATCH = 1e-8  # of the cosine between axes 4 and 5: a sign that only changes with the plane's half turn is not a solution
+SAMPLES, ROUNDS = 128, 40
+STEP_RAD = 1e-2
+PLANE_SHARE = 1e-13  # of the length of the stretched arm
+
+
+def exact(curves: Curves, zeros: Zeros) -> tuple[Zeros, Array]:
+    """Zeros with those next to axis 1 exact, and sine and cosine (2, k) of their planes; NaN where the point tells it."""
+    length = curves.upper + curves.fore
+    row, angle = _passes(curves, length)
+    if not len(row):
+        return zeros, np.full((2, len(zeros.pose)), np.nan)
+    found, plane = _solved(curves, length, np.repeat(row, 4), np.repeat(angle, 4), np.tile([1.0, 1.0, -1.0, -1.0], len(row)),
+                           np.tile([1.0, -1.0], 2 * len(row)))
+    kept = np.flatnonzero(~_replaced(curves, zeros, found, plane, row, NOISE_SHARE * length))
+    together = Zeros(*(np.concatenate([one[..., kept], other], axis=-1) for one, other in zip(zeros, found)))
+    return together, np.concatenate([np.full((2, len(kept)), np.nan), plane], axis=1)
+
+
+def _replaced(curves: Curves, zeros: Zeros, found: Zeros, plane: Array, passing: Index, noise: float) -> Mask:
+    """Which zeros (k,) at poses `passing` were found exactly, or have a plane that cannot be told."""
+    known = np.zeros(curves.point.shape[2], dtype=bool)
+    known[passing] = True
+    result: Mask = known[zeros.pose]
+    there = np.flatnonzero(result)
+    x, y = zeros.side[there] * _point(curves, zeros.pose[there], zeros.angle[there])[0][:2]
+    away = np.hypot(x, y)
+    apart = zeros.angle[there, None] - found.angle
+    same = np.abs(apart - TURN * np.rint(apart * (1.0 / TURN))) < SAME_RAD
+    for own, other in ((zeros.pose, found.pose), (zeros.side, found.side), (zeros.elbow, found.elbow)):
+        same &= own[there, None] == other
+    x, y = x[:, None] - away[:, None] * plane[1], y[:, None] - away[:, None] * plane[0]
+    same &= np.hypot(x, y) < SAME_SINE * away[:, None]
+    mismatch = np.abs(geometry(curves, zeros.pose[there], zeros.angle[there], zeros.side[there], zeros.bent[:, there]).value)
+    result[there] = (away < noise) | (mismatch > MISMATCH) | same.any(axis=1)
+    return result
+
+
+def _point(curves: Curves, pose: Index, angle: Array) -> tuple[Array, Array, Array]:
+    """The point of axes 4 and 5 (3, k) and its first two derivatives by the angle of axis 6."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    constant, by_cos, by_sin = curves.point[:, :, pose]
+    around: Array = cos * by_cos + sin * by_sin
+    return constant + around, cos * by_sin - sin * by_cos, -around
+
+
+def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
+    """The pose (k,) and angle of axis 6 (k,) wherever the point passes close to axis 1."""
+    centre, cos, sin = curves.point[:, :2]
+    # the point is on axis 1 where the centre is the ellipse's affine map of a unit vector; its distance bounds from below
+    size = np.abs(cos[0] * sin[1] - cos[1] * sin[0])
+    mapped = np.hypot(sin[1] * centre[0] - sin[0] * centre[1], cos[0] * centre[1] - cos[1] * centre[0])
+    likely = np.flatnonzero(np.abs(mapped - size) <= PASS_SHARE * length * np.sqrt((cos * cos + sin * sin).sum(axis=0)))
+    if not len(likely):
+        return likely, np.zeros(0)
+    angles = np.arange(SAMPLES) * (TURN / SAMPLES)
+    at = _point(curves, likely[:, None], angles)[0]  # type: ignore[arg-type]
+    away = np.hypot(at[0], at[1])
+    row, number = np.nonzero((away <= np.roll(away, 1, axis=1)) & (away < np.roll(away, -1, axis=1)))
+    pose, angle = likely[row], angles[number]
+    for _ in range(ROUNDS):
+        (x, y, _), (u, v, _), (du, dv, _) = _point(curves, pose, angle)
+        curved = u * u + v * v + x * du + y * dv
+        # Gauss's part alone where the whole is not convex
+        curved = np.where(curved > 0.0, curved, u * u + v * v + TINY)
+        angle = angle - np.clip((x * u + y * v) / curved, -STEP_RAD, STEP_RAD)
+    x, y, _ = _point(curves, pose, angle)[0]
+    close = np.hypot(x, y) < PASS_SHARE * length
+    return pose[close], angle[close]
+
+
+def _solved(curves: Curves, length: float, pose: Index, angle: Array, elbow: Array, way: Array) -> tuple[Zeros, Array]:
+    """Zeros near angles of axis 6 (k,), of an elbow 1 or -1 and one of the two ways 1 or -1 in which axis 5 is met, and sine
+    and cosine (2, k) of the plane."""
+    ahead, before = np.zeros(len(pose)), (angle, np.full(len(pose), np.nan))
+    for _ in range(ROUNDS):
+        (x, y, above), (u, v, _), _ = _point(curves, pose, angle)
+        bent, along, five, plane, sure = _met(curves, pose, angle, ahead, above, elbow, way)
+        ahead = x * plane[1] + y * plane[0]
+        off, slope = x * plane[0] - y * plane[1], u * plane[0] - v * plane[1]
+        # the plane turns with the angle too: a secant, once the steps are those of one
+        moved = angle - before[0]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            secant = (off - before[1]) / moved
+        slope = np.where(np.isfinite(secant) & (np.abs(moved) > 1e-10) & (secant * slope > 0.0), secant, slope)
+        before = angle, off
+        angle = angle - np.clip(off / np.where(slope == 0.0, TINY, slope), -STEP_RAD, STEP_RAD)
+    kept = np.flatnonzero(sure & (np.abs(off) < PLANE_SHARE * length) & (np.abs(ahead) < SOLVED_SHARE * length))
+    sweep = (x * v - y * u) / (x * x + y * y + TINY)
+    rising = along[0] * (plane[1] * five[1] - plane[0] * five[0]) * sweep
+    side = np.where(ahead >= 0.0, 1.0, -1.0)
+    columns: tuple[Any, ...] = (pose, angle, side, elbow, bent, rising)
+    return Zeros(*(column[..., kept] for column in columns)), plane[:, kept]
+
+
+def _met(
+    curves: Curves, pose: Index, angle: Array, ahead: Array, above: Array, elbow: Array, way: Array
+) -> tuple[Array, Array, Array, Array, Mask]:
+    """Sine and cosine (2, k) of the elbow's bend, axis 4 in the plane (2, k), axis 5 (3, k), sine and cosine (2, k) of the
+    plane in which they meet as they must, and where they can (k,)."""
+    forward = ahead - curves.ahead
+    squared = forward * forward + above * above
+    bend = (squared - (curves.upper**2 + curves.fore**2)) / (2.0 * curves.upper * curves.fore)
+    bent = np.stack([elbow * np.sqrt(np.maximum(1.0 - bend * bend, 0.0)), bend])
+    common, turn = (curves.fore + curves.upper * bend) / (squared + TINY), curves.upper * bent[0] / (squared + TINY)
+    fore = common * forward + turn * above, common * above - turn * forward
+    cos, sin = curves.lean
+    along = np.stack([fore[0] * cos + fore[1] * sin, fore[1] * cos - fore[0] * sin])
+    constant, by_cos, by_sin = curves.five[:, :, pose]
+    five = constant + np.cos(angle) * by_cos + np.sin(angle) * by_sin
+    wanted = curves.square - along[1] * five[2]
+    size = along[0] * np.hypot(five[0], five[1])
+    share = wanted / np.where(size == 0.0, TINY, size)
+    towards = np.arctan2(five[1], five[0]) + way * np.arccos(np.clip(share, -1.0, 1.0))
+    return bent, along, five, np.stack([np.sin(towards), np.cos(towards)]), (np.abs(bend) <= 1.0) & (np.abs(share) <= 1.0)
