@@ -73,7 +73,7 @@ def _with_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None]
     other = plan(dataclasses.replace(job, features=features), "")
     feasible = not has_errors(other.issues)
     close(other)
-    note = Issue(NOTE, REMEDY, f"with {what} this job is feasible; it was planned so") if feasible else Issue(
+    note = Issue(NOTE, REMEDY, f"with {what} this job is feasible; tried, not applied") if feasible else Issue(
         NOTE, NO_REMEDY, f"with {what} the nozzle is clear, but the job is not feasible, which was tried")
     stages.issues = [note if issue is text else issue for issue in stages.issues]
     return stages

@@ -12473,8 +12473,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
-        <source>with {0} this job is feasible; it was planned so</source>
-        <translation>avec {0}, ce travail est faisable ; il a été planifié ainsi</translation>
+        <source>with {0} this job is feasible; tried, not applied</source>
+        <translation>avec {0}, ce travail est faisable ; essayé, non appliqué</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>

@@ -51,7 +51,7 @@ def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3, done.err
     first = done.err.splitlines()[0]
-    assert first.startswith("note[REMEDY] job: with `") and first.endswith("this job is feasible; it was planned so")
+    assert first.startswith("note[REMEDY] job: with `") and first.endswith("this job is feasible; tried, not applied")
     told = re.findall(r"`(\w+)\.(\w+): ([^`]+)`", first)
     assert told and EXPECTED[name] in first
     report = json.loads(workshop.files()["report.json"])
@@ -140,7 +140,7 @@ def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(workshop, kind, 
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3 and f"error[{code}]" in done.err, done.err
     assert done.err.splitlines()[0] == (
-        "note[REMEDY] job: with `build_direction.mode: fixed` this job is feasible; it was planned so"), done.err
+        "note[REMEDY] job: with `build_direction.mode: fixed` this job is feasible; tried, not applied"), done.err
     workshop.write_job(written_for(kind, more + "build_direction: {mode: fixed}\n"))
     again = workshop.run("plan", "cup.yaml", "--no-page")
     assert again.status == 0 and "error[" not in again.err and "REMEDY" not in again.err, again.err

@@ -125,7 +125,7 @@ def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Pro
                               "anew are feasible; the whole job was not tried")]
             whole -= 1
             if not has_errors(change.issues(toolpath, True, progress)):
-                return [Issue(NOTE, REMEDY, f"with {change.remedy} this job is feasible; it was planned so")]
+                return [Issue(NOTE, REMEDY, f"with {change.remedy} this job is feasible; tried, not applied")]
             if not whole:
                 break
         except AmError:  # what cannot be asked for is not a remedy

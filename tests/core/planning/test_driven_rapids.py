@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from freecad_am.core.collision.bead_ends import Beads
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import ERROR, has_errors
 from freecad_am.core.kinematics import cell as cells
@@ -15,6 +16,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.rapids import clearance
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.kdl.chain import KdlArm
 from tests.core.planning.test_random_cells import conditions
@@ -272,3 +274,29 @@ def test_a_retract_beyond_all_reach_is_refused_with_its_place(sliced, cell_of):
     assert {issue.code for issue in wrong} == {"RAPID_UNREACHABLE"} and not motion.reachable.all()
     assert [issue.layer for issue in wrong] == list(range(len(toolpath.layers)))
     assert all("cannot be reached at any height" in issue.message for issue in wrong)
+
+
+def test_few_looks_find_what_all_of_them_do(on_table, monkeypatch):
+    """Moves at random, many through the wall and some that graze it: as at every look, a fraction of which is taken."""
+    cell, path = on_table
+    asked = []
+    touched = clearance.RapidObstacles._touched
+    monkeypatch.setattr(clearance.RapidObstacles, "_touched", lambda self, nozzle, looks, moves: (
+        asked.append(len(looks.move)), touched(self, nozzle, looks, moves))[1])
+    beads = [one.bead for one in path.beads]
+    obstacles = clearance.RapidObstacles(cell, Beads.of(beads, 8.0, 1.0), ())
+    random = np.random.default_rng(3)
+    ends = np.concatenate([one.joints for one in path.beads])[random.integers(300, size=(2, 80))]
+    ends[:, :, 2] += random.uniform(-2.0, 20.0, size=(2, 80))
+    moves = clearance.Moves(*ends, np.full(80, 300))
+    met = obstacles.met(moves)
+    few = sum(asked)
+    every = clearance._driven(cell, moves, clearance.FINE)
+    hit = touched(obstacles, obstacles._nozzle(moves, every), every, moves)
+    assert (met == (np.bincount(every.move, hit, minlength=80) > 0)).all()
+    assert 20 < met.sum() < 70 and few < 0.25 * len(every.move)
+    nozzle = obstacles._nozzle(moves, every)
+    hit = [obstacles._deposit_touched(nozzle, every, moves).any(),
+           obstacles._around(every.tip).touched(nozzle.bodies, every.tip, every.axis).any()]
+    assert obstacles.names(moves) == [name for name, one in zip(["the deposit", "the platform"], hit, strict=True) if one]
+    assert obstacles.names(moves.of(np.flatnonzero(~met))) == []

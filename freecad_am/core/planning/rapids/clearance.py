@@ -8,7 +8,8 @@ deposited by then, and against the triangles of the bodies around the part.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import functools
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -29,6 +30,7 @@ SLIDE = 5.0
 # anything, with the nozzle itself
 COARSE = 5.0
 FINE = 0.5
+FEW = 8  # one look in so many is enough to find that most moves meet something
 # moves driven at once, so that large jobs need no more memory than small ones
 MOVES = 4096
 
@@ -54,6 +56,13 @@ class Looks(NamedTuple):
     move: Index
     share: Array
 
+    def of(self, rows: Index) -> Looks:
+        """Those of the rows."""
+        return Looks(self.tip[rows], self.axis[rows], self.move[rows], self.share[rows])
+
+
+Touching = Callable[[Nozzle, Looks], Mask]
+
 
 class RapidObstacles:
     """What is in the way of rapids: beads of their width and height, with the row from which they are there, platform and
@@ -76,7 +85,8 @@ class RapidObstacles:
         known = np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1))
         for first in range(0, len(known), MOVES):
             rows = known[first : first + MOVES]
-            met[rows] = self._met(moves.of(rows))
+            some = moves.of(rows)
+            met[rows] = self._met(some, functools.partial(self._touched, moves=some))
         return met
 
     def names(self, moves: Moves) -> list[str]:
@@ -84,22 +94,36 @@ class RapidObstacles:
         moves = moves.of(np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1)))
         if not len(moves.start):
             return []
-        looks = _driven(self.cell, moves, FINE)
-        nozzle = self._nozzle(moves, looks)
-        found = ["the deposit"] if self._deposit_touched(nozzle, looks, moves).any() else []
-        near = [(body.name, scene((body,), looks.tip, nozzle.reach).bodies) for body in self.bodies]
-        return found + [name for name, one in near if one.touched(nozzle.bodies, looks.tip, looks.axis).any()]
+        tip = _driven(self.cell, moves, COARSE).tip
+        radius, slope, length = self._size
+        reach = float(np.hypot(length, radius + slope * length)) + COARSE
+        touching: dict[str, Touching] = {"the deposit": functools.partial(self._deposit_touched, moves=moves)}
+        for body in self.bodies:
+            touching[body.name] = functools.partial(_body_touched, scene((body,), tip, reach).bodies)
+        return [name for name, touched in touching.items() if self._met(moves, touched).any()]
 
-    def _met(self, moves: Moves) -> Mask:
+    def _met(self, moves: Moves, touching: Touching) -> Mask:
+        """(k,) whether anything is met on each of the moves: `touching` tells of what, and at which looks."""
+        met = np.zeros(len(moves.start), dtype=bool)
         looks = _driven(self.cell, moves, COARSE)
-        near = self._touched(_thicker(self._nozzle(moves, looks), 0.5 * COARSE), looks, moves)
-        before = np.flatnonzero((looks.move[1:] == looks.move[:-1]) & (near[1:] | near[:-1]))
+        nozzle = self._nozzle(moves, looks)
+
+        def mark(rows: Index) -> None:
+            met[looks.move[rows[touching(nozzle.rows(rows), looks.of(rows))]]] = True
+
+        # most moves on which anything is met run deep into it: few looks tell that
+        mark(np.arange(0, len(looks.move), FEW))
+        left = np.flatnonzero(~met[looks.move])
+        near = np.zeros(len(looks.move), dtype=bool)
+        near[left] = touching(_thicker(nozzle, 0.5 * COARSE).rows(left), looks.of(left))
+        mark(np.flatnonzero(near))
+        before = np.flatnonzero((looks.move[1:] == looks.move[:-1]) & (near[1:] | near[:-1]) & ~met[looks.move[:-1]])
         parts = int(np.ceil(COARSE / FINE))
         step = np.linspace(0.0, 1.0, parts + 1)
         share = looks.share[before, None] + step * (looks.share[before + 1] - looks.share[before])[:, None]
         close = _looks(self.cell, moves, np.repeat(looks.move[before], parts + 1), share.ravel())
-        touched = self._touched(self._nozzle(moves, close), close, moves)
-        return np.bincount(close.move, touched, minlength=len(moves.start)) > 0
+        touched = touching(self._nozzle(moves, close), close)
+        return met | (np.bincount(close.move, touched, minlength=len(moves.start)) > 0)
 
     def _touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
         found = self._deposit_touched(nozzle, looks, moves)
@@ -164,6 +188,10 @@ def _looks(cell: Cell, moves: Moves, move: Index, share: Array) -> Looks:
     joints = moves.start[move] + share[:, None] * (moves.end - moves.start)[move]
     tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
     return Looks(tip, axis, move, share)
+
+
+def _body_touched(bodies: Bodies, nozzle: Nozzle, looks: Looks) -> Mask:
+    return bodies.touched(nozzle.bodies, looks.tip, looks.axis)
 
 
 def _thicker(nozzle: Nozzle, more: float) -> Nozzle:
