@@ -42,3 +42,39 @@ def test_an_open_mesh_is_a_wall_on_the_platform(workshop):
     (workshop.folder / "vase.yaml").write_text(JOB.replace("vase.stl}", "vase.stl, start_edges: [Edge9]}"), encoding="utf-8")
     refused = workshop.run("plan", "vase.yaml")
     assert (refused.status, refused.err.count("error[UNKNOWN_EDGE]")) == (2, 1), refused.err
+
+
+CELL = """\
+cell: {machine: abb-irb4600-40-255, setup: tool-on-robot, deposition_point: [1500, 0, 700, 0, 0, 0],
+  platform_diameter: 200 mm, branch: auto, mount: %s}
+program: {post: none}
+"""
+
+
+def planned_at(workshop, low, mount):
+    """Status, messages, and of the deposit Z in the part (n,) and axes (n, 6) of a vase whose lowest end is at Z = low."""
+    side = Mesh.createCylinder(30.0, 60.0, 0, 4.0, 60)  # along X
+    side.rotate(0.0, -np.pi / 2.0, 0.0)
+    side.translate(0.0, 0.0, low - side.BoundBox.ZMin)
+    side.write(str(workshop.folder / "vase.stl"))
+    job = JOB.replace("height: 5 mm", "height: 15 mm") + CELL % mount
+    (workshop.folder / "vase.yaml").write_text(job, encoding="utf-8")
+    done = workshop.run("plan", "vase.yaml", "-o", "out", "--no-page")
+    if done.status:
+        return done.status, done.err, None, None
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    axes = np.array([[float(row[key]) for key in row if key[0] == "q" and key.endswith("_deg")] for row in rows])
+    return done.status, done.err, np.array([float(row["z_mm"]) for row in rows]), axes
+
+
+def test_an_open_mesh_drawn_at_another_height_than_the_platform_is_put_onto_it(workshop):
+    """As many open meshes are: about their middle, or in the air. The robot moves as for the mesh drawn at zero."""
+    status, messages, _, _ = planned_at(workshop, -90.8, "auto")
+    assert (status, messages.count("error[OFF_PLATFORM]")) == (2, 1) and "use mount: feature" in messages, messages
+    _, _, height, axes = planned_at(workshop, 0.0, "auto")
+    assert axes.shape[1] == 6 and height.min() == pytest.approx(0.0, abs=0.01)
+    for low in (-90.8, 35.0):
+        status, messages, z, q = planned_at(workshop, low, "feature")
+        assert status == 0, messages
+        assert z == pytest.approx(height + low, abs=1e-3) and q == pytest.approx(axes, abs=0.01)

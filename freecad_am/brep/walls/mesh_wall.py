@@ -62,7 +62,7 @@ def find_mesh_wall(
     issues = [*wall.issues, *start.issues, *several_loops(start.first, label)]
     return replace(
         wall, first=tuple(start.first), behind=start.behind, rims=with_ends(wall, rims, tuple(start.first), start.behind),
-        issues=tuple(issues),
+        issues=tuple(issues), ground=_lowest(wall) if substrate is None else None,
     )
 
 
@@ -103,10 +103,14 @@ def _from_edges(wall: MeshWall, names: Sequence[str], label: str) -> _Start:
     return _Start(chosen, np.zeros(len(wall.vertices), dtype=bool), [])
 
 
+def _lowest(wall: MeshWall) -> float:
+    return float((wall.vertices if wall.samples is None else wall.samples)[:, 2].min())
+
+
 def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
     """From the open ends that stand on the plane through its lowest place, else from about the floor that lies there, else
     from the lowest open end."""
-    lowest = float((wall.vertices if wall.samples is None else wall.samples)[:, 2].min())
+    lowest = _lowest(wall)
     loops = _loops(wall)
     standing = [loop for loop in loops if loop[:, 2].max() < lowest + height]
     if standing:

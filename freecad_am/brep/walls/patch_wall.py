@@ -60,6 +60,7 @@ def find_patch_wall(
     issues += several_loops(first, label)
     return replace(
         wall, first=tuple(first), behind=behind, rims=with_ends(wall, rims, tuple(first), behind), issues=tuple(issues),
+        ground=float(wall.vertices[:, 2].min()) if substrate is None else None,
     )
 
 

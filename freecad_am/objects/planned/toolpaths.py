@@ -150,11 +150,14 @@ def _of_wall(of: Given) -> CoreToolpath:
         from ...core.strategies.walls import fronts as family
     else:
         from ...core.strategies.walls import plan as family
+    on_another = getattr(of.wall, "ground", None) is None or of.stands is not None
     made = family.plan(of.wall, of.strategy, of.build, of.process, _share)
     if of.cell is not None:
         points = np.vstack([bead.points for _, _, bead in made])
         stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
-        platform.refuse_below(of.wall.label, points, stands, of.cell.platform_diameter)
+        platform.refuse_below(
+            of.wall.label, points, stands, of.cell.platform_diameter, platform.MOVE if on_another else platform.MOUNT
+        )
     return dataclasses.replace(made, surroundings=of.wall.surroundings)
 
 

@@ -74,6 +74,7 @@ class PatchWall:
     patch: (m,) the number in `patches` of each triangle's own; uv: (m, 3, 2) the parameters of its corners there.
     first: where layers start. behind: (n,) True for vertices on the substrate's side of that, which are not deposited.
     surroundings: bodies to keep the nozzle clear of, the substrate first. depths: how the part lies about the wall.
+    ground: mm along Z of the plane that it stands on, through its lowest place, where nothing carries it but the platform.
     """
 
     vertices: Array
@@ -89,6 +90,14 @@ class PatchWall:
     issues: tuple[Issue, ...] = ()
     surroundings: tuple[Body, ...] = ()
     depths: PartDepths | None = None
+    ground: float | None = None
+
+    @property
+    def frame(self) -> Array:
+        """(4, 4) the wall's own frame in part coordinates: that of the part, raised to what the wall stands on."""
+        frame = np.eye(4)
+        frame[2, 3] = 0.0 if self.ground is None else self.ground
+        return frame
 
     @cached_property
     def mesh(self) -> Mesh:

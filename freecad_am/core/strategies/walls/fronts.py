@@ -69,7 +69,7 @@ def plan(
     progress(FINDING, "build directions")
     layers, found = _layers(wall, pieces, strategy, build, process, normal)
     return Toolpath(
-        layers, np.eye(4), height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface",
+        layers, wall.frame, height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface",
         bead_width=process.bead_width,
     )
 

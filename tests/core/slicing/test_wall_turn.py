@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How sharply a circle and an ellipse turn in their plane, also with nodes that lie on one another but for rounding."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.curves.space_curve import SpaceCurve
+from freecad_am.core.slicing.directions.wall_turn import turns_in_wall
+
+SKEW = 1e-3  # rad, of the tangents where two nodes nearly coincide
+
+
+def ellipse(a, b, nodes, near=(), closed=True):
+    """Nodes at even angles, and after those of the numbers `near` one more a nanometre on, its tangent askew."""
+    w = np.linspace(0.0, 2.0 * np.pi if closed else np.pi, nodes)
+    w = np.sort(np.r_[w, w[list(near)] + 1e-6 / max(a, b)])
+    points = np.stack([a * np.cos(w), b * np.sin(w), np.zeros(len(w))], axis=1)
+    slope = np.stack([-a * np.sin(w), b * np.cos(w), np.zeros(len(w))], axis=1)
+    for k in np.flatnonzero(np.diff(w) < 1e-5) + 1:
+        slope[k] = slope[k] @ [[1.0, SKEW, 0.0], [-SKEW, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    if closed:
+        points[-1], slope[-1] = points[0], slope[0]
+    return SpaceCurve(w, points, slope, slope, closed)
+
+
+def rates(curve):
+    return turns_in_wall(curve, np.tile([0.0, 0.0, 1.0], (len(curve.points), 1)))
+
+
+@pytest.mark.parametrize("near", [(), (5,), (0,), (98,), (5, 6, 40)])
+@pytest.mark.parametrize("closed", [True, False])
+def test_a_circle_turns_by_its_curvature(near, closed):
+    found = rates(ellipse(50.0, 50.0, 100, near, closed))
+    step = (2.0 if closed else 1.0) * np.pi * 50.0 / 99.0
+    assert found == pytest.approx(1.0 / 50.0, abs=1.05 * SKEW / step + 1e-5)
+
+
+def test_the_sharpest_place_of_an_ellipse_stays_where_it_is():
+    found = rates(ellipse(40.0, 10.0, 2001, (500,)))
+    assert found.max() == pytest.approx(40.0 / 10.0**2, rel=0.01)
+    assert np.argmax(found) in (0, len(found) - 1, 1000, 1001, 999, 1002)
