@@ -76,6 +76,7 @@ HEADLESS_OF_VERSION = (
         ("objects/test_developable_feature", "a_bead_width_that_a_macro_gives_is_meant"),
         ("objects/test_developable_feature", "meshes_are_solids_too_and_repairs_are_told"),
         ("objects/test_inspection_documents", "feature_toolpath_shape_and_mesh_tell_the_same"),
+        ("objects/test_scan", "a_fitted_wall_is_held_against_its_faces_once_it_is_fitted"),
         ("objects/test_sequence", "the_order_is_that_of_the_list"),
         ("objects/test_solid_feature", "a_damaged_mesh_is_filled_as_the_whole_one"),
         ("objects/test_solid_feature", "a_mesh_and_the_shape_it_is_of_are_filled_alike"),
@@ -85,7 +86,9 @@ HEADLESS_OF_VERSION = (
     )),
     *(f"--ignore=tests/objects/test_{name}.py" for name in ("memory", "one_thread", "rotor_rapids")),
     *(f"--ignore=tests/brep/test_{name}.py" for name in ("fine_mesh", "mesh_wall", "part_depths", "three_mf")),
-    *(f"--ignore=tests/posts/test_{name}.py" for name in ("contract", "mutations", "nc_read", "fanuc_read", "staubli_read")),
+    *(f"--ignore=tests/posts/test_{name}.py" for name in (
+        "contract", "driven_texts", "mutations", "nc_read", "fanuc_read", "staubli_read",
+    )),
 )
 WINDOW_OF_VERSION = (
     *(f"tests/gui/test_{name}.py" for name in ("fields", "long_work", "picking", "reopen", "robust_events", "samples")),
@@ -135,6 +138,8 @@ def private_home(folder: Path) -> dict[str, str]:
         "PYTHONDONTWRITEBYTECODE": "1", "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
         # parts run at the same time, and threads of two would wait for one another's cores
         "OPENBLAS_NUM_THREADS": os.environ.get("OPENBLAS_NUM_THREADS", "1"),
+        # as commands have it (freecad_am/batch/boot.py): the same numbers, with less around each call
+        "NUMPY_EXPERIMENTAL_ARRAY_FUNCTION": "0",
         # hundreds of lines about another version's own modules
         **({"PYTEST_ADDOPTS": "--disable-warnings"} if os.environ.get("FREECAD_AM_VERSION") else {}),
     }

@@ -307,7 +307,8 @@ def test_where_curved_layers_cannot_be_carried_out_there_are_planes(workshop):
         "cell: {machine: abb-irb4600-40-255, setup: tool-on-robot, mount: feature, platform_diameter: 150 mm, "
         "nozzle: {diameter: 12 mm, half_angle: 70, length: 60 mm}}\nprogram: {post: abb}\n"
     )
-    text = AUTO.replace("auto,", "auto, bead_spacing: 6 mm,") + "process: {bead_width: 6 mm}\n" + cell
+    coarse = AUTO.replace("layer_height: 5 mm, chord_error: 0.1 mm", "layer_height: 8 mm, chord_error: 0.4 mm")
+    text = coarse.replace("auto,", "auto, bead_spacing: 6 mm,") + "process: {bead_width: 6 mm}\n" + cell
     report, rows = planned(workshop, text)
     (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "PROPOSED"]
     assert told.startswith("kind: solid, layers: planes: ") and "these end with SINGULAR, so planes are laid" in told
