@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What a job does not deposit of its part stands in report.json, or the job is refused."""
 
+import csv
 import json
 import math
+import re
 
 import FreeCAD
+import numpy as np
 import Part
 import pytest
 from scipy.integrate import quad
@@ -75,3 +78,31 @@ def test_a_bracket_is_refused_as_a_part_of_revolution_and_told_of_as_solids_on_i
     laid, covered = report["totals"]["volume_cm3"], found["deposited_cm3"] + found["beside_cm3"]
     assert laid > 1.4 * covered and found["twice_cm3"] == pytest.approx(laid - covered, rel=0.06)
     assert twice["level"] == "warning" and f"{found['twice_cm3']:.3g} cm3" in twice["message"]
+
+
+def test_how_much_of_a_first_layer_lies_beside_the_platform(workshop):
+    """A block of 60 mm on a disc of 50: the length that the report tells is that of the written points beyond its edge."""
+    Part.makeBox(60, 60, 8, FreeCAD.Vector(-30, -30, 0)).exportStep(str(workshop.folder / "cup.step"))
+    text = workshop.text.replace("strategy:\n", "strategy:\n  kind: solid\n  bead_spacing: 6 mm\n")
+    text = text.replace("diameter: 100 mm", "diameter: 50 mm").replace("process:\n", "process:\n  bead_width: 6 mm\n")
+    workshop.write_job(text)
+    done = workshop.run("plan", "cup.yaml", "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    report = json.loads((workshop.folder / "out" / "report.json").read_text())
+    (issue,) = [one for one in report["issues"] if one["code"] == "OVER_PLATFORM"]
+    told = re.match(r"([\d.]+) mm of the first layer lie over the edge of the platform, up to ([\d.]+) mm beyond",
+                    issue["message"])
+    with open(workshop.folder / "out" / "waypoints.csv", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["layer"] == "0" and row["kind"] != "rapid"]
+    points = np.array([[float(row[axis]) for axis in ("x_mm", "y_mm")] for row in rows])
+    same = np.array([one["bead"] == other["bead"] for one, other in zip(rows, rows[1:])])
+    share = (np.arange(2000) + 0.5) / 2000
+    along = points[:-1, None] + share[:, None] * (points[1:] - points[:-1])[:, None]
+    off = np.linalg.norm(along, axis=2) - 25.0
+    length = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    beside = (((off > 3.0).mean(axis=1) * length)[same]).sum()
+    assert beside > 50.0 and float(told[1]) == pytest.approx(beside, rel=0.02)
+    assert off[same].max() - 1.0 < float(told[2]) <= off[same].max() + 0.01  # in the middle of a piece of the bead
+    assert "OVER_PLATFORM" in done.err
+    (promise,) = [one for one in report["preflight"] if "platform while it deposits" in one["promise"]]
+    assert promise["ok"] is False and promise["place"]["layer"] == 0
