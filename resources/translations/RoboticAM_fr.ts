@@ -4433,8 +4433,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
-        <source>RZ as in Chalvin 2020, or the true rotation about the tool axis</source>
-        <translation>RZ comme dans Chalvin 2020, ou la vraie rotation autour de l&apos;axe de l&apos;outil</translation>
+        <source>RZ as in Chalvin 2020, the true rotation about the tool axis, or another external axis than across</source>
+        <translation>RZ comme dans Chalvin 2020, la vraie rotation autour de l&apos;axe de l&apos;outil, ou un autre axe externe que celui en travers</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -14390,6 +14390,11 @@
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>{} ({})</source>
         <translation>{} ({})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
+        <source>{} against {} at layer {} bead {} point {}</source>
+        <translation>{} contre {} à la couche {} cordon {} point {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/pick.py"/>

@@ -411,6 +411,43 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere):
     assert one.board.title.startswith("e2 at layer ")
     hand.do("mousemove", *on_screen(one.canvas, here, float(board.values(np.full(len(board.columns), phi))[column])))
     person.until(lambda: "   e2 " in one.form.readout.text(), "the axes under the mouse")
+    _two_against_each_other(person, hand, one, panel, point)
     person.choose(panel, "across", "the path")
     box.activated.emit(box.currentIndex())
     person.until(lambda: one.board.across is None, "the path across", LONG)
+
+
+def _two_against_each_other(person, hand, one, panel, point):
+    """e2 across, e1 upwards: where both are planned is marked, the rotation is the plan's, the axes under the mouse are
+    those of the place, and there is no curve to drag."""
+    box = person.field(panel, "axis")
+    person.choose(panel, "axis", "e1")
+    box.activated.emit(box.currentIndex())
+    person.until(lambda: one.board.up == 0 and one.canvas.painted is not None, "e1 upwards", LONG)
+    person.until(lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG)
+    planned = one.source.planned.beads[1]
+    pair, picture = one.board.pair, one.board.pictures[one.draft.branch]
+    assert picture.margin.shape == (len(pair.values), len(one.board.offsets)) == one.canvas.painted.hatched.shape
+    assert one.board.title.startswith("e2 against e1 at layer ") and not one.canvas.curves and not one.canvas.handles
+    assert pair.values[0] <= planned.joints[point, 6] <= pair.values[-1] and pair.phi == planned.phi[point]
+    texts, height = one.canvas.heights
+    low, high = (float(text.rstrip("°")) for text in (texts[0][1], texts[-1][1]))
+    where = low + (height + np.pi) / TURN * (high - low)
+    assert abs(where - np.degrees(planned.joints[point, 6])) < 0.51  # texts are whole degrees
+    there = one.board.cell(one.draft.branch, int(one.board.marks[1]), height)
+    turns = (there.joints - planned.joints[point])[6:]
+    assert np.abs(turns).max() < np.radians(3.0) and there.phi == planned.phi[point]
+    hand.do("mousemove", *on_screen(one.canvas, 20, 0.8 * np.pi))
+    wanted = np.degrees([pair.values[round(0.9 * (len(pair.values) - 1))], one.board.offsets[20]])
+
+    def told():
+        words = one.form.readout.text().split()
+        found = [float(words[words.index(name) + 1].rstrip("°")) for name in ("e1", "e2") if name in words]
+        return len(found) == 2 and np.abs(np.array(found) - wanted).max() < 5.0
+
+    person.until(lambda: told() or "out of reach" in one.form.readout.text(), "the axes under the mouse")
+    person.screenshot("map_e2_against_e1")
+    person.choose(panel, "axis", "RZ")
+    box.activated.emit(box.currentIndex())
+    person.until(lambda: one.board.up is None and one.canvas.painted is not None, "RZ upwards", LONG)
+    assert one.canvas.heights is None and one.canvas.curves

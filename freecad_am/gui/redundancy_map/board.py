@@ -19,6 +19,7 @@ from ...core.planning.redundancy.curve import Followed
 from ...core.planning.redundancy.map import RZ, Columns, Picture, RedundancyMap
 from ..texts.translation import tr
 from .draft import CONSTANT, Draft
+from .pair import Pair, pair_of
 from .source import Source
 
 MOST_LABELS = 14
@@ -44,13 +45,14 @@ class Cell:
 
 class Board:
     """The columns of a job, or of one layer of it, or the values of an external axis (`across`) at a point (bead, point) of
-    it, the middle of the bead where none is named, and what was computed for them."""
+    it, the middle of the bead where none is named, and what was computed for them; `up`: another external axis upwards."""
 
     def __init__(
         self, source: Source, layer: int | None, axis: str, across: int | None = None,
-        at: tuple[int, int | None] | None = None,
+        at: tuple[int, int | None] | None = None, up: int | None = None,
     ) -> None:
-        self.source, self.layer, self.axis, self.across = source, layer, axis, across
+        self.source, self.layer, self.axis, self.across, self.up = source, layer, axis, across, up
+        self.pair: Pair | None = None
         self.beads = [k for k, (of, _) in enumerate(source.places) if layer is None or of == layer]
         self.offsets: Array | None = None
         if across is None or at is None:
@@ -61,6 +63,8 @@ class Board:
             point = len(bead) // 2 if at[1] is None else at[1]
             self.offsets = rotation_across.span(source.task(source.branch), bead, point, across, ACROSS)
             self.columns = rotation_across.across(source.beads, source.cell, (at[0], point), across, self.offsets)
+            if up is not None:
+                self.pair = pair_of(source, (at[0], point), (across, up), self.offsets)
         self.map: RedundancyMap | None = None
         self.pictures: dict[int, Picture] = {}
         self.looked: dict[int, int] = {}  # branches whose links were looked at, one of so many rows
@@ -70,6 +74,8 @@ class Board:
 
     def compute(self, branch: int) -> tuple[RedundancyMap, Picture]:
         """The cells of all branches, where they are not known yet, and the picture of one."""
+        if self.pair is not None:
+            return self.pair.compute(branch, self.map)
         task = self.source.task(branch)
         cells = self.map or redundancy_map.redundancy_map(task, self.columns, self.axis, self.source.toolpath.surroundings)
         return cells, self.pictures.get(branch) or redundancy_map.picture(task, cells, branch)
@@ -87,11 +93,13 @@ class Board:
     def arm(self, branch: int, every: int) -> NDArray[np.bool_]:
         """(R, C) where links of the robot touch something; one of so many rows is looked at."""
         assert self.map is not None
+        if self.pair is not None:
+            return self.pair.arm(branch, self.map)
         return redundancy_map.arm_touched(self.source.task(branch), self.map, branch, self.source.arm, self.moment, every)
 
     def take_arm(self, branch: int, touched: NDArray[np.bool_], every: int) -> None:
         """Keep what was looked at."""
-        self.looked[branch] = every
+        self.looked[branch] = every if self.pair is None else 1
         self.pictures[branch] = dataclasses.replace(self.pictures[branch], arm=touched)
 
     def shows(self, bead: int) -> bool:
@@ -103,6 +111,9 @@ class Board:
         """What the columns are."""
         if self.offsets is not None:
             layer, bead, point = self.place(0)
+            if self.pair is not None:
+                return tr("{} against {} at layer {} bead {} point {}").format(
+                    self._across_name, self.pair.name, layer, bead, point)
             return tr("{} at layer {} bead {} point {}").format(self._across_name, layer, bead, point)
         if self.layer is not None:
             return tr("points of layer {}").format(self.layer)
@@ -229,7 +240,11 @@ class Board:
         points, task = self.columns.points, self.source.task(branch)
         at = points.each(np.array([column]))
         phi = redundancy_map.rotation_of(task.cell, at.tool, np.array([value]), self.axis)
-        joints = redundancy_map.joints_at(task, self.columns, column, float(phi[0]))[branch]
+        number, columns = column, self.columns
+        if self.pair is not None:
+            phi, number, columns = np.array([self.pair.phi]), self.pair.number(column, value), self.pair.cells
+            at = columns.points.each(np.array([number]))
+        joints = redundancy_map.joints_at(task, columns, number, float(phi[0]))[branch]
         offset = np.abs(task.given_rows.offset(joints))
         reached = bool(np.isfinite(joints).all())
         condition = float(task.condition(at, phi, joints[None])[0]) if reached else 0.0
@@ -240,7 +255,7 @@ class Board:
             self.place(column), float(task.cell.rz_of_phi(at.tool, phi)[0]), float(phi[0]), joints,
             float(1.0 - offset.max()) if reached else -np.inf,
             task.given_rows.labels[int(offset.argmax())] if reached else "",
-            condition, float(task.thresholds(at)[0]), made is not None and bool(made.touching[column]), outside,
+            condition, float(task.thresholds(at)[0]), made is not None and bool(made.touching[number]), outside,
             self._arm_at(branch, column, joints),
         )
 

@@ -43,6 +43,8 @@ class Canvas(QtGui.QWidget):
         self.handles: list[Handle] = []
         self.bad: Array = np.zeros((0, 2))  # column, value of points that do not serve
         self.title = ""
+        # where the heights of the map are no angles: texts beside them, and that of the plan
+        self.heights: tuple[list[tuple[float, str]], float] | None = None
         self.low, self.high = -np.pi, np.pi
         self.drag: Dragged | None = None
         self.pressed: tuple[float, float] | None = None

@@ -63,5 +63,6 @@ class Cells:
     def _draw(self) -> None:
         board = self.board
         self.canvas.title = board.title
+        self.canvas.heights = None if board.pair is None else (board.pair.labels, board.pair.planned)
         self.canvas.set_map(painted(board.pictures[self.branch], self.kind), board.marks, board.labels)
         self.drawn()

@@ -43,9 +43,8 @@ class Controls(QtGui.QWidget):
         )
         self.kind = self._combo("colours", tr("Colours"), tr("What the colours tell"), chosen)
         self.kind.addItems([tr(kind) for kind in KINDS])
-        self.axis = self._combo("axis", tr("Upwards"), tr("RZ as in Chalvin 2020, or the true rotation about the tool axis"),
-                                chosen)
-        self.axis.addItems([tr("RZ"), tr("rotation")])
+        help = tr("RZ as in Chalvin 2020, the true rotation about the tool axis, or another external axis than across")
+        self.axis = self._combo("axis", tr("Upwards"), help, chosen)
         self.across = self._add_across()
         self.type = self._combo("curve", tr("Curve"), tr("One polynomial per bead, or one RZ for the whole job"), curve)
         self.type.addItems([tr("polynomials"), tr("constant RZ")])
@@ -103,10 +102,13 @@ class Controls(QtGui.QWidget):
         if not self.filling:
             self.set_value(number, value)
 
-    def wanted(self) -> tuple[int | None, str, int | None]:
-        """Which layer, None for all; what goes upwards; and which external axis across, None for the path."""
-        layer, across = self.layer.value(), self.across.currentIndex()
-        return None if layer < 0 else layer, AXES[self.axis.currentIndex()], across - 1 if across > 0 else None
+    def wanted(self) -> tuple[int | None, str, int | None, int | None]:
+        """Which layer, None for all; the rotation upwards; which external axis across, None for the path; and which external
+        axis upwards, None for the rotation."""
+        layer, across, axis = self.layer.value(), self.across.currentIndex() - 1, self.axis.currentIndex()
+        up = axis - len(AXES) if axis >= len(AXES) and across not in (-1, axis - len(AXES)) else None
+        return (
+            None if layer < 0 else layer, AXES[axis if axis < len(AXES) else 0], across if across >= 0 else None, up)
 
     # ---- what is shown
 
@@ -117,7 +119,6 @@ class Controls(QtGui.QWidget):
         self.layer.setRange(-1, max(layer for layer, _ in source.places))
         self.layer.setValue(-1 if board.layer is None else board.layer)
         self._fill_branches(board, draft.branch)
-        self.axis.setCurrentIndex(AXES.index(board.axis))
         self._fill_across(board)
         self.type.setCurrentIndex(CURVES.index(draft.kind))
         constant = draft.kind == CONSTANT
@@ -139,10 +140,13 @@ class Controls(QtGui.QWidget):
 
     def _fill_across(self, board: Board) -> None:
         machine = board.source.cell.machine
-        names = [tr("the path"), *machine.axes[len(machine.axes) - machine.external :]]
-        if [self.across.itemText(k) for k in range(self.across.count())] != names:
-            self.across.clear()
-            self.across.addItems(names)
+        external = list(machine.axes[len(machine.axes) - machine.external :])
+        names = [tr("the path"), *external]
+        for combo, texts in ((self.across, names), (self.axis, [tr("RZ"), tr("rotation"), *external])):
+            if [combo.itemText(k) for k in range(combo.count())] != texts:
+                combo.clear()
+                combo.addItems(texts)
+        self.axis.setCurrentIndex(AXES.index(board.axis) if board.up is None else len(AXES) + board.up)
         self.across.setCurrentIndex(0 if board.across is None else board.across + 1)
         self.across.setEnabled(len(names) > 1)
 

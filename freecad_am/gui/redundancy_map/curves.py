@@ -61,6 +61,8 @@ def drawn(
     planned: beads of the joint path; compared: other methods; followed: what the user's own asks of the machine; shows:
     whether the curve of a name is to be seen.
     """
+    if board.pair is not None:
+        return [], [], np.zeros((0, 2))  # the rotation is what is planned there
     curves = [
         Curve(board.path_values(draft, paths), COLOURS[name], dashed=name == PLANNED)
         for name, paths in [(PLANNED, planned), *((one.name, one.paths) for one in compared)] if shows(name)

@@ -138,13 +138,13 @@ class RedundancyMapDock:
 
     def _chosen(self) -> None:
         """Another layer, branch, axis, or other colours."""
-        layer, axis, across = wanted = self.controls.wanted()
+        layer, axis, across, up = wanted = self.controls.wanted()
         branch = self.controls.branch.currentIndex()
-        if wanted != (self.board.layer, self.board.axis, self.board.across):
+        if wanted != (self.board.layer, self.board.axis, self.board.across, self.board.up):
             if layer is not None and layer not in {of for of, _ in self.source.places}:
                 self._fill_controls()
                 return
-            self.board = Board(self.source, layer, axis, across, (self.bead, self.clicked.get(self.bead)))
+            self.board = Board(self.source, layer, axis, across, (self.bead, self.clicked.get(self.bead)), up)
             shown = self.board.columns.bead
             self.bead = int(shown[np.abs(shown - self.bead).argmin()])
         if branch != self.draft.branch:

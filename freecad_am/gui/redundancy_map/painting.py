@@ -69,6 +69,9 @@ class Painting:
             for seam in self.canvas.seams[1:]:
                 across = float(self.canvas.x_of(seam - 0.5))
                 painter.drawLine(QtCore.QPointF(across, area.top()), QtCore.QPointF(across, area.bottom()))
+        if self.canvas.heights is not None:
+            down = float(self.canvas.y_of(self.canvas.heights[1]))
+            painter.drawLine(QtCore.QPointF(area.left(), down), QtCore.QPointF(area.right(), down))
         painter.setPen(QtGui.QPen(QtGui.QColor(0, 0, 0, 120), 1.0, QtCore.Qt.DashLine))
         first = int(np.ceil((self.canvas.low - np.pi) / TURN))
         for turn in range(first, int(np.floor((self.canvas.high - np.pi) / TURN)) + 1):
@@ -114,15 +117,11 @@ class Painting:
         painter.setBrush(QtCore.Qt.NoBrush)
         painter.drawRect(area)
         line = painter.fontMetrics().height()
-        for step in (30, 45, 90, 180, 360):
-            if np.degrees(self.canvas.high - self.canvas.low) / step <= max(3.0, area.height() / (1.6 * line)):
-                break
-        first = int(np.ceil(np.degrees(self.canvas.low) / step - 1e-9))
-        for number in range(first, int(np.floor(np.degrees(self.canvas.high) / step + 1e-9)) + 1):
-            down = float(self.canvas.y_of(np.radians(number * step)))
+        for height, text in self._heights(area.height() / (1.6 * line)):
+            down = float(self.canvas.y_of(height))
             painter.drawLine(QtCore.QPointF(area.left() - 4.0, down), QtCore.QPointF(area.left(), down))
             box = QtCore.QRectF(0.0, down - 0.5 * line, LEFT - 7.0, line)
-            painter.drawText(box, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, f"{number * step}°")
+            painter.drawText(box, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, text)
         last = -1e9
         for column, text in self.canvas.layers:
             across, wide = float(self.canvas.x_of(column)), 8.0 + painter.fontMetrics().boundingRect(text).width()
@@ -134,6 +133,17 @@ class Painting:
             painter.drawText(box, QtCore.Qt.AlignCenter, text)
         box = QtCore.QRectF(area.left(), area.bottom() + 2.0 + line, area.width(), line)
         painter.drawText(box, QtCore.Qt.AlignCenter, self.canvas.title)
+
+    def _heights(self, most: float) -> list[tuple[float, str]]:
+        """Heights that are marked beside the map, and their texts; about so many at most."""
+        if self.canvas.heights is not None:
+            return list(self.canvas.heights[0])
+        low, high = np.degrees(self.canvas.low), np.degrees(self.canvas.high)
+        for step in (30, 45, 90, 180, 360):
+            if (high - low) / step <= max(3.0, most):
+                break
+        numbers = range(int(np.ceil(low / step - 1e-9)), int(np.floor(high / step + 1e-9)) + 1)
+        return [(float(np.radians(number * step)), f"{number * step}°") for number in numbers]
 
     def _draw_legend(self, painter: Any) -> None:
         """The ramp with round numbers, then the classes, above the map."""

@@ -384,6 +384,38 @@ def on_positioner(dome):
     return Task(cell, 0, JointParameters()), [path.bead for path in planned.beads]
 
 
+def test_two_external_axes_against_each_other_are_as_one_at_a_time(on_positioner):
+    """Each row is the map of the other axis across, with this one there, at the same rotation; joints are PyKDL's."""
+    task, beads = on_positioner
+    cell, at, rotation = task.cell, (1, 7), 0.4
+    values = tuple(spin_across.span(task, beads[1], 7, axis, count) for axis, count in ((2, 9), (1, 5)))
+    pairs = spin_across.of_two(beads, cell, at, (2, 1), values)
+    assert len(pairs) == 45 and (pairs.bead == 1).all() and (pairs.point == 7).all()
+    found = spin_map.redundancy_map(task, pairs, spin_map.ROTATION, values=np.array([rotation]))
+    shown = spin_across.in_rows(spin_map.picture(task, found, 0), 5)
+    assert shown.margin.shape == shown.condition.shape == shown.singular.shape == shown.forbidden.shape == (5, 9)
+    whole, reached = KdlArm(cell.machine), 0
+    for row, upwards in enumerate(values[1]):
+        external = beads[1].external.copy()
+        external[7, 1] = upwards
+        line = spin_across.across([beads[0], dataclasses.replace(beads[1], external=external)], cell, at, 2, values[0])
+        alone = spin_map.redundancy_map(task, line, spin_map.ROTATION, values=np.array([rotation]))
+        picture = spin_map.picture(task, alone, 0)
+        np.testing.assert_allclose(shown.margin[row], picture.margin[0], atol=1e-12)
+        np.testing.assert_allclose(shown.condition[row], picture.condition[0], atol=1e-12)
+        assert np.array_equal(shown.feasible[row], picture.feasible[0])
+        for column, across in enumerate(values[0]):
+            q = spin_map.joints_at(task, pairs, row * 9 + column, rotation)[0]
+            assert np.isfinite(q).all() == (shown.margin[row, column] > -np.inf)
+            if np.isfinite(q).all():
+                reached += 1
+                np.testing.assert_allclose(q[[7, 8]], [upwards, across], atol=1e-12)
+                tip, tool = cell.tip_in_part(whole.forward([q]))
+                assert np.abs(tip[0] - beads[1].points[7]).max() < 1e-6
+                assert np.abs(tool[0] - beads[1].tool[7]).max() < 1e-9
+    assert reached > 5
+
+
 @pytest.mark.parametrize("across", [None, 0, 1, 2])
 def test_cells_beside_a_positioner_are_where_pykdl_finds_them(on_positioner, across):
     """Along the path with the external axes as they are planned, or one of them across at one point."""

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The map of the free rotation against an external axis at one point, the others as they are planned there."""
+"""The map of the free rotation against an external axis at one point, or of two external axes against each other, all others
+as they are planned there."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,16 +13,42 @@ from ...kinematics.cell import Cell
 from ...toolpath import Bead
 from ...types import Array
 from ..task import Task
-from .map import Columns, alone, planned_external
+from .map import Columns, Picture, alone, planned_external
 
 
 def across(beads: Sequence[Bead], cell: Cell, at: tuple[int, int], axis: int, values: Array) -> Columns:
     """One point of the beads, at (bead, point), with values (C,) rad or mm of one of the external axes, the others as they
     are planned there: a column of each."""
+    return _with(beads, cell, at, (axis,), (values,))
+
+
+def of_two(
+    beads: Sequence[Bead], cell: Cell, at: tuple[int, int], axes: tuple[int, int], values: tuple[Array, Array]
+) -> Columns:
+    """One point of the beads, at (bead, point), with all pairs of values (C,) and (R,), rad or mm, of two external axes, the
+    others as they are planned there: R rows of C columns, one row after the other."""
+    across, up = np.meshgrid(*values)
+    return _with(beads, cell, at, axes, (across.ravel(), up.ravel()))
+
+
+def in_rows(of: Picture, rows: int) -> Picture:
+    """A picture (1, R C) of pairs as one (R, C)."""
+    return dataclasses.replace(
+        of, margin=of.margin.reshape(rows, -1), condition=of.condition.reshape(rows, -1),
+        threshold=of.threshold.reshape(rows, -1), outside=of.outside.reshape(rows, -1),
+        forbidden=of.forbidden.reshape(rows, -1), arm=None if of.arm is None else of.arm.reshape(rows, -1),
+    )
+
+
+def _with(
+    beads: Sequence[Bead], cell: Cell, at: tuple[int, int], axes: tuple[int, ...], values: tuple[Array, ...]
+) -> Columns:
+    """One point with external axes elsewhere: each at values (n,)."""
     bead, point = at
-    count = len(values)
+    count = len(values[0])
     external = np.tile(planned_external(beads[bead])[point], (count, 1))
-    external[:, axis] = values
+    for axis, value in zip(axes, values, strict=True):
+        external[:, axis] = value
     position, tool, parameter = (
         np.repeat(getattr(beads[bead], name)[point : point + 1], count, axis=0) for name in ("points", "tool", "parameter")
     )
