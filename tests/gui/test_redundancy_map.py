@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from freecad_am import api
+from freecad_am.core.kinematics.limits import margins
 from freecad_am.core.parameters.joints import given_polynomials
 from freecad_am.core.planning.redundancy import across as spin_across
 from freecad_am.core.planning.redundancy import curve as spin_curve
 from freecad_am.core.planning.redundancy import map as spin_map
+from freecad_am.core.simulation.margins import speed_ratios
 from freecad_am.gui.path.colouring import NONE, TOO_NEAR
 from freecad_am.gui.redundancy_map import dock as docks
 from freecad_am.gui.redundancy_map.canvas import TURN
@@ -379,6 +381,7 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere):
     path = api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
     assert path.Status == UP_TO_DATE, api.issues(path)
     panel, one = opened(person, path)
+    _coloured_by_all_axes(path, one.source.cell)
     assert one.board.across is None and len(one.source.beads) == len(one.source.planned.beads)
     board = one.board
     np.testing.assert_allclose(
@@ -415,6 +418,22 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere):
     person.choose(panel, "across", "the path")
     box.activated.emit(box.currentIndex())
     person.until(lambda: one.board.across is None, "the path across", LONG)
+
+
+def _coloured_by_all_axes(path, cell):
+    """Beads of the view by the share that robot and positioner have left, and by speeds: the positioner's count."""
+    motion, limits, view = api.result(path).motion, cell.limits, path.ViewObject
+    assert motion.joints.shape[1] == 8
+    share = np.nanmin(np.concatenate([
+        margins(motion.joints, limits.lower, limits.upper),
+        margins(motion.joints @ limits.coefficients.T, limits.coupled_lower, limits.coupled_upper)], axis=1), axis=1)
+    view.Colouring = "joint margin"
+    assert view.Proxy.scale.least == pytest.approx(100.0 * share[motion.deposit].min())
+    assert view.Proxy.scale.most == pytest.approx(100.0 * share[motion.deposit].max())
+    ratio = speed_ratios(motion.joints, motion.duration, cell.machine.max_speed)
+    view.Colouring = "joint speed"
+    assert view.Proxy.scale.most == pytest.approx(100.0 * ratio.max(axis=1)[motion.deposit].max())
+    view.Colouring = "joint margin"
 
 
 def _two_against_each_other(person, hand, one, panel, point):

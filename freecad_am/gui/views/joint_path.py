@@ -14,7 +14,10 @@ from numpy.typing import NDArray
 from freecad_am.core.types import Array
 
 from ...core.issues import ERROR, InputError
+from ...core.kinematics.external import coupled
 from ...core.kinematics.machines import machine as machines
+from ...core.parameters.cell import CellParameters
+from ...core.parameters.external import externals
 from ...core.parameters.strategy import RevolutionParameters
 from ...core.simulation.margins import from_next, speed_ratios
 from ...objects import user_machines
@@ -180,8 +183,11 @@ def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
     machine."""
     if obj.Cell is None:
         raise InputError("NO_INPUT", obj.Label, "its cell is gone")
-    machine = machines.load(obj.Cell.Machine, tuple(user_machines.folders()))
-    joints, limits = seen.course.joints, machine.limits(seen.limits)
+    folders, settings = tuple(user_machines.folders()), obj.Cell.Proxy.parameters(obj.Cell, CellParameters)
+    machine = machines.load(settings.machine, folders)
+    joints, limits, mechanisms = seen.course.joints, machine.limits(seen.limits), externals(settings.external)
+    if mechanisms:
+        machine, limits, _ = coupled(machine, limits, mechanisms, settings.upward(), folders)
     if joints.shape[1] != limits.axes:
         raise InputError("BAD_INPUT", obj.Label, f"{machine.title} has other axes than the joint path")
     if kind == MARGIN:
