@@ -9502,6 +9502,11 @@
         <translation>la plupart des solides de {0} se dressent sur un cylindre ou un cône de l&apos;un d&apos;eux</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <source>move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
+        <translation>remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>moves of more than one tool or work object are mixed</source>
         <translation>des mouvements de plus d&apos;un outil ou d&apos;un objet de travail sont mêlés</translation>
