@@ -198,3 +198,36 @@ def test_points_off_edges(rng):
     assert (off_edges(shape, (), points) <= off_edges(shape, (top,), points) + 1e-9).all()
     many = off_edges(shape, (top,), np.tile(points, (50, 1)))
     assert np.isfinite(many).sum() == 500 and np.isfinite(many[[0, -1]]).all()
+
+
+@pytest.mark.parametrize("inverted", [(), (0,), (1,), (0, 1)])
+def test_distances_outside_of_boxes_that_cross_whichever_way_they_are_turned(rng, inverted):
+    """What is inside of one of them is inside: by the equations of both."""
+    sizes, corners = np.array([[40.0, 30, 20], [40.0, 30, 20]]), np.array([[0.0, 0, 0], [7.0, 11, 5]])
+    vertices, triangles = [], []
+    for k in range(2):
+        points, faces = Part.makeBox(*sizes[k], Vector(*corners[k])).tessellate(1.0)
+        faces = np.array(faces)[:, ::-1] if k in inverted else np.array(faces)
+        triangles += (faces + len(vertices)).tolist()
+        vertices += [tuple(point) for point in points]
+    places = rng.uniform([-8.0, -8, -8], [55.0, 49, 33], (600, 3))
+    off = [
+        np.linalg.norm(np.maximum(np.abs(places - corner - 0.5 * size) - 0.5 * size, 0.0), axis=1)
+        for size, corner in zip(sizes, corners)
+    ]
+    found = off_mesh(np.array(vertices), np.array(triangles), places)
+    true = np.minimum(*off)
+    assert found[true > 0.0] == pytest.approx(true[true > 0.0], abs=1e-9)
+    assert found[true == 0.0].max() <= off_part.DEFLECTION and (np.maximum(*off) == 0.0).sum() > 20
+
+
+def test_distances_in_a_hollow_of_a_mesh(rng):
+    """A box in another, turned inward: what is in there is outside, as far as from its sides or farther."""
+    vertices, triangles = [], []
+    for size, at, way in ((40.0, 0.0, 1), (20.0, 10.0, -1)):
+        points, faces = Part.makeBox(size, size, size, Vector(at, at, at)).tessellate(1.0)
+        triangles += (np.array(faces)[:, ::way] + len(vertices)).tolist()
+        vertices += [tuple(point) for point in points]
+    places = rng.uniform(11.0, 29.0, (200, 3))
+    found = off_mesh(np.array(vertices), np.array(triangles), places)
+    assert (found > (10.0 - np.abs(places - 20.0)).min(axis=1) - 1e-9).all()

@@ -87,10 +87,19 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
 
 def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
     """Distances (n,) mm of points (n, 3) outside of a mesh, 0 inside of any piece of it, whatever triangles of others cross
-    that. Holes count as closed, however large: which are, the feature has told."""
+    that, and of any that is inside out. Holes count as closed, however large: which are, the feature has told."""
     whole = inside_of(Body("", vertices, triangles))
-    if whole is not None:
-        return np.where(whole.holds(points), 0.0, _away(_searched(vertices, triangles), points))
+    if whole is None:
+        return _off_pieces(vertices, triangles, points)
+    away = np.where(whole.holds(points), 0.0, _away(_searched(vertices, triangles), points))
+    doubtful = away > DEFLECTION  # a piece inside out takes away from those that it cuts: its own side counts
+    if doubtful.any():
+        away[doubtful] = np.minimum(away[doubtful], _off_pieces(vertices, triangles, points[doubtful]))
+    return away
+
+
+def _off_pieces(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
+    """The same, each piece of the mesh mended and looked at by itself."""
     try:
         pieces = repaired(vertices, triangles.astype(np.intp), "", np.inf, True).solids
     except InputError:  # the side of the nearest triangle is all there is
