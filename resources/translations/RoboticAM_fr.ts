@@ -305,8 +305,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far the deposit stands out on all sides of the part, to be machined off.</source>
-        <translation>De combien le dépôt dépasse de tous les côtés de la pièce, pour être usiné.</translation>
+        <source>How far the deposit stands out beside the part, to be machined off; above it by the layers that begin less than that above its last one.</source>
+        <translation>De combien le dépôt dépasse sur les côtés de la pièce, à usiner ; au-dessus, des couches qui commencent moins haut que cela au-dessus de sa dernière.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -2903,8 +2903,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far the deposit stands out on all sides of the part, to be machined off.</source>
-        <translation>De combien le dépôt dépasse de tous les côtés de la pièce, pour être usiné.</translation>
+        <source>How far the deposit stands out beside the part, to be machined off; above it by the layers that begin less than that above its last one.</source>
+        <translation>De combien le dépôt dépasse sur les côtés de la pièce, à usiner ; au-dessus, des couches qui commencent moins haut que cela au-dessus de sa dernière.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>

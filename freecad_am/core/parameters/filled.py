@@ -100,7 +100,8 @@ class FilledParameters(LayerParameters):
         1, f.COUNT, "How many contours lie round lines and the like; inf: contours alone.", low=0, words=("inf",)
     )
     margin: float = f.parameter(
-        0.0, f.LENGTH, "How far the deposit stands out on all sides of the part, to be machined off.", low=0.0
+        0.0, f.LENGTH, "How far the deposit stands out beside the part, to be machined off; above it by the layers that "
+        "begin less than that above its last one.", low=0.0
     )
     order: str = f.parameter(
         "around-axis", f.CHOICE, "The same layer of all solids on a base in turn, around the axis, the same ring of each "

@@ -19,7 +19,7 @@ from ...core.parameters.process import ProcessParameters
 from ...core.process.shape import compare
 from ...core.process.shape.compare import Compared
 from ...core.process.shape.deviation import deviation_map
-from ...core.process.shape.faces import BOTH, OUTSIDE, Faces, faces, thinned, together
+from ...core.process.shape.faces import BOTH, OUTSIDE, Faces, faces, thinned, together, uncovered
 from ...core.process.shape.laying import PredictedDeposit, parts_of, predicted_deposit
 from ...core.strategies.families import family_of
 from ...core.toolpath import Toolpath as CoreToolpath
@@ -85,7 +85,7 @@ def predicted(toolpath: CoreToolpath, targets: Sequence[Target], report: Report)
                          "process.machining_allowance")
     deposit = predicted_deposit(parts, lambda share, text: report(0.8 * share, f"predicting the deposit, {text}"))
     report(0.8, "comparing the predicted deposit with the part")
-    found = compare.compared(deposit, together(asked))
+    found = compare.compared(deposit, uncovered(asked))
     if not len(found.faces):
         raise InputError(NOTHING, "toolpath", "the part has no faces above where the deposit begins")
     return deposit, found

@@ -7,12 +7,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
+from ...geometry.columns import dots
 from ...geometry.mesh.solid import spread
 from ...types import Array, Index, Mask
 
 PLACES = 20_000  # about
 LEAF_SIZE = 2 * PLACES
+FACING = 0.99  # cosine between faces that touch
+CONTACT = 0.05  # mm that such faces are apart at most
+SPACINGS = 1.0  # of places, between those that stand for the same face
 OUTSIDE, BOTH = "outside", "both"
 
 
@@ -57,6 +62,22 @@ def thinned(some: Faces) -> Faces:
     areas = np.diff(ends[chosen], prepend=0.0)
     areas[-1] += ends[-1] - ends[chosen[-1]]
     return Faces(some.points[chosen], some.normals[chosen], areas, some.open[chosen])
+
+
+def uncovered(some: Sequence[Faces]) -> Faces:
+    """Faces of several parts as one, without the places where one part stands on another: nothing is machined there. A place
+    is covered where the nearest one of another part is in the same plane, looks the other way, and is no farther than places
+    lie apart."""
+    kept = []
+    for k, one in enumerate(some):
+        free = ~one.open
+        for other in (*some[:k], *some[k + 1 :]):
+            away, near = cKDTree(other.points).query(one.points)
+            out = np.abs(dots(one.points - other.points[near], one.normals))
+            facing = dots(one.normals, other.normals[near]) < -FACING
+            free &= ~((away < SPACINGS * np.sqrt(other.areas[near])) & (out < CONTACT) & facing & ~other.open[near])
+        kept.append(one.rows(free | one.open))
+    return together(kept)
 
 
 def together(some: Sequence[Faces]) -> Faces:
