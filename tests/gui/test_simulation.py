@@ -11,6 +11,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import WARNING, Issue
+from freecad_am.core.kinematics import external
 from freecad_am.core.planning.beads import moving_tool
 from freecad_am.core.simulation.achievable_feed import achievable_feed
 from freecad_am.core.simulation.watch import ISSUE, LIMIT, SINGULAR, SLOWED, TOUCHES
@@ -423,3 +424,33 @@ def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(perso
     tool.simulate()  # as a macro may
     assert docks._open == []
     assert "make one first" in person.window.statusBar().currentMessage()
+
+
+def test_positioner_and_its_bodies_are_drawn_where_its_axes_are(person, hemisphere):
+    """Seen from the robot's base they are where PyKDL has the positioner's own chain, and the part goes with the last one."""
+    doc = hemisphere.Document
+    feature = api.make_feature(doc, hemisphere, layer_height=15, max_from_vertical=10)
+    cell = api.make_cell(
+        doc, machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto", platform=20,
+        external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part", nozzle_tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0),
+    )
+    path = api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
+    panel, simulation = opened(person, path)
+    scene, links, times = simulation.scene, simulation.scene.external_links, simulation.run.times
+    numbers = [link.link for link in links.links]
+    assert {0, 1, 2} <= set(numbers)
+    own = KdlArm(external.load("motoman-motopos-d500"))  # the positioner alone, as its own file has it
+    turned, to_face, to_part = [], [], []
+    for share in (0.1, 0.3, 0.45, 0.7, 0.9):
+        person.field(panel, "time").setValue(round(share * fields.STEPS))
+        person.idle(0.05)
+        angles = times.at(simulation.player.time).joints[6:]
+        drawn = [np.array(value.getValue().getValue()).T for value in links.matrices]
+        base, table = drawn[numbers.index(0)], drawn[numbers.index(2)]
+        turned.append(angles)
+        to_face.append(frames.inverse(frames.inverse(base) @ table) @ own.forward(angles[None])[0])
+        to_part.append(frames.inverse(table) @ matrix(scene.part))
+    assert np.ptp(turned, axis=0).min() > 0.2
+    for found in (to_face, to_part):
+        np.testing.assert_allclose(np.array(found)[:, :3, :3] - found[0][:3, :3], 0.0, atol=1e-5)
+        np.testing.assert_allclose(np.array(found)[:, :3, 3] - found[0][:3, 3], 0.0, atol=1e-2)
