@@ -126,8 +126,8 @@ def _joint_records(text: str) -> Records | None:
         if found is None:
             return None
         mine = [records[row] for row in some]
-        told = [group for group in _FRAMES_OF if shape[slice(*found.span(group))] != "F"]
-        groups = (_NUMBERED, _GROUP, *_NAMES, *_VALUES, *told)
+        stated = [group for group in _FRAMES_OF if shape[slice(*found.span(group))] != "F"]
+        groups = (_NUMBERED, _GROUP, *_NAMES, *_VALUES, *stated)
         numbers = alike.numbers(mine, shape, [found.span(group) for group in groups])
         if (numbers[:, 1:8] != [1, 1, 2, 3, 4, 5, 6]).any():
             return None

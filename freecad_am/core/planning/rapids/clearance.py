@@ -30,7 +30,7 @@ SLIDE = 5.0
 # anything, with the nozzle itself
 COARSE = 5.0
 FINE = 0.5
-FEW = 8  # one look in so many is enough to find that most moves meet something
+STRIDE = 8  # one look in so many is enough to find that most moves meet something
 # moves driven at once, so that large jobs need no more memory than small ones
 MOVES = 4096
 
@@ -112,7 +112,7 @@ class RapidObstacles:
             met[looks.move[rows[touching(nozzle.rows(rows), looks.of(rows))]]] = True
 
         # most moves on which anything is met run deep into it: few looks tell that
-        mark(np.arange(0, len(looks.move), FEW))
+        mark(np.arange(0, len(looks.move), STRIDE))
         left = np.flatnonzero(~met[looks.move])
         near = np.zeros(len(looks.move), dtype=bool)
         near[left] = touching(_thicker(nozzle, 0.5 * COARSE).rows(left), looks.of(left))
