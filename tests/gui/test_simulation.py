@@ -427,7 +427,7 @@ def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(perso
 
 
 def test_positioner_and_its_bodies_are_drawn_where_its_axes_are(person, hemisphere):
-    """Seen from the robot's base they are where PyKDL has the positioner's own chain, and the part goes with the last one."""
+    """Seen from what stands they are where PyKDL has the positioner's own chain, and the part goes with the last one."""
     doc = hemisphere.Document
     feature = api.make_feature(doc, hemisphere, layer_height=15, max_from_vertical=10)
     cell = api.make_cell(
