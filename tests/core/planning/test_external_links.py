@@ -36,21 +36,36 @@ def cell(hemisphere):
     return cell_for(hemisphere, nozzle=SHORT)
 
 
+def off_rod(points, rod):
+    """mm (n,), how far points are from a rod."""
+    axis = (rod.end - rod.start) / rod.length
+    along = (points - rod.start) @ axis
+    out = np.linalg.norm(points - rod.start - along[:, None] * axis, axis=1) - rod.radius
+    return np.hypot(np.maximum(out, 0.0), np.maximum(np.maximum(-along, along - rod.length), 0.0))
+
+
 def nearest(cell, joints, rods):
-    """mm, how far points within the positioner's boxes are from rods of the links, the least of all joints (k, axes)."""
-    bodies, links, seen = bodies_of(POSITIONER), cell.links(joints), cell.external_link_frames(joints)
+    """mm, how far points within the positioner's boxes are from rods of the links, the least of all joints (k, axes); of
+    points in balls that are farther than the least so far, none is nearer."""
+    links, seen = cell.links(joints), cell.external_link_frames(joints)
+    balls = []
+    for points in bodies_of(POSITIONER):
+        some = [points[k : k + 200] for k in range(0, len(points), 200)]
+        middles = np.array([one.mean(axis=0) for one in some])
+        balls.append((some, middles, [np.linalg.norm(one - at, axis=1).max() for one, at in zip(some, middles)]))
     least = np.inf
     for k in range(len(joints)):
-        for body, points in enumerate(bodies):
+        for body, (some, middles, radii) in enumerate(balls):
             for link in range(1, 7):
                 to_link = np.linalg.inv(links[k, link]) @ seen[k, body]
-                inside = points @ to_link[:3, :3].T + to_link[:3, 3]
+                placed = middles @ to_link[:3, :3].T + to_link[:3, 3]
                 for rod in rods[link]:
-                    axis = (rod.end - rod.start) / rod.length
-                    along = (inside - rod.start) @ axis
-                    out = np.linalg.norm(inside - rod.start - along[:, None] * axis, axis=1) - rod.radius
-                    beyond = np.maximum(np.maximum(-along, along - rod.length), 0.0)
-                    least = min(least, float(np.hypot(np.maximum(out, 0.0), beyond).min()))
+                    bound = off_rod(placed, rod) - radii
+                    for ball in np.argsort(bound):
+                        if bound[ball] > least:
+                            break
+                        inside = some[ball] @ to_link[:3, :3].T + to_link[:3, 3]
+                        least = min(least, float(off_rod(inside, rod).min()))
     return least
 
 

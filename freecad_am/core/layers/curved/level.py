@@ -85,12 +85,12 @@ class Cubes:
         t = at - cell
         first = cell @ self._strides
         value, slope = np.zeros(len(points)), np.zeros((len(points), 3))
+        to, off = t.T, (1.0 - t).T
         for corner in np.ndindex(2, 2, 2):
             here = self.field[first + int(np.array(corner) @ self._strides)]
-            share = np.where(np.array(corner) == 1, t, 1.0 - t)
-            value += share.prod(axis=1) * here
-            for axis in range(3):
-                rest = np.delete(share, axis, axis=1).prod(axis=1)
+            x, y, z = (to[axis] if corner[axis] else off[axis] for axis in range(3))
+            value += x * y * z * here
+            for axis, rest in enumerate((y * z, x * z, x * y)):
                 slope[:, axis] += (1.0 if corner[axis] else -1.0) * rest * here / self.step
         return value, slope
 
