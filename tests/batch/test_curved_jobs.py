@@ -46,6 +46,18 @@ def mushroom():
     return Part.makeCylinder(6, 20.5).fuse(cap).removeSplitter()
 
 
+def bracket():
+    """An upright with an arm that stands out by 28 mm, half way up."""
+    return Part.makeBox(14, 12, 38).fuse(Part.makeBox(29, 12, 12, FreeCAD.Vector(13, 0, 16))).removeSplitter()
+
+
+def struts():
+    """A trunk that parts in three, each of which leans by 40 degrees."""
+    ways = [FreeCAD.Vector(np.cos(turn), np.sin(turn), 1.2) for turn in np.radians([0.0, 120.0, 240.0])]
+    arms = [Part.makeCylinder(5, 30, FreeCAD.Vector(0, 0, 12), way) for way in ways]
+    return Part.makeCylinder(7, 18).fuse(arms).removeSplitter()
+
+
 @pytest.fixture
 def planned(workshop):
     def run(shape, layers="geodesic", height=HEIGHT, more="", mode="", clearance="none", cell=""):
@@ -123,7 +135,9 @@ def from_beads(points, below, build):
     return away
 
 
-@pytest.mark.parametrize("shape", [tee, wye, mushroom])
+@pytest.mark.parametrize("shape", [
+    tee, wye, mushroom, pytest.param(bracket, marks=pytest.mark.long), pytest.param(struts, marks=pytest.mark.long),
+])
 def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(planned, shape):
     """To a program: nothing over nothing, and the nozzle is clear of what stands; one of 80 deg would not be, but for the
     mushroom, where nothing ever stands higher than the tip."""
@@ -237,6 +251,24 @@ def test_layers_of_a_blade_have_the_shape_of_its_hub(planned, workshop, layers):
     assert np.abs(off - 2.0 * layer).max() < 0.25 and layer.max() >= 7
     assert report["deposit"]["left_out_cm3"] < 5e-5 * blade.Volume
     assert report["unsupported_mm"] == 0.0
+
+
+def test_layers_on_a_plate_that_is_not_flat_are_as_far_from_it_as_they_are_many(planned, workshop):
+    """A saddle of splines: distances of the written points from it, by the geometry kernel."""
+    side = np.linspace(-40.0, 40.0, 9)
+    saddle = Part.BSplineSurface()
+    saddle.interpolate([[FreeCAD.Vector(x, y, 0.004 * (x * x - y * y) + 2.0 * np.sin(x / 15.0)) for y in side] for x in side])
+    face = saddle.toShape()
+    plate = face.extrude(FreeCAD.Vector(0, 0, -12))
+    plate.exportStep(str(workshop.folder / "plate.step"))
+    block = Part.makeBox(26, 22, 40, FreeCAD.Vector(-10, -14, -15)).cut(face.extrude(FreeCAD.Vector(0, 0, -60)))
+    done, report, rows = planned(block, "offset", 2.0, more="}\nsubstrate: {file: plate.step")
+    assert done.status == 0, done.err
+    points, layer = column(rows, "x_mm", "y_mm", "z_mm"), np.array([int(row["layer"]) for row in rows])
+    assert layer.max() >= 8 and report["unsupported_mm"] == 0.0
+    some = slice(None, None, 7)
+    away = [face.distToShape(Part.Vertex(*point))[0] for point in points[some]]
+    assert np.abs(away - 2.0 * layer[some]).max() < 0.25
 
 
 @pytest.mark.parametrize(("make", "height", "mode", "code", "word"), [
