@@ -176,3 +176,28 @@ def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
     for part, words in (("G20\n", "inches"), ("G0 X1\n", "no move of it extrudes")):
         done, _, _ = planned("slicer.gcode", part)
         assert done.status == 2 and "error[BAD_GCODE]" in done.err and words in done.err, done.err
+
+
+def test_a_sketch_of_a_document_is_laid_where_it_stands(workshop, planned):
+    """Two lines and an arc, on a plane that leans: read back from the text of their own placement."""
+    placement = FreeCAD.Placement(V(5, -7, 30), FreeCAD.Rotation(V(1, 0, 0), 25))
+    document = FreeCAD.newDocument("Drawn")
+    try:
+        sketch = document.addObject("Sketcher::SketchObject", "Path")
+        sketch.addGeometry([Part.LineSegment(V(0, 0, 0), V(30, 0, 0)), Part.LineSegment(V(30, 20, 0), V(0, 20, 0)),
+                            Part.ArcOfCircle(Part.Circle(V(30, 10, 0), V(0, 0, 1), 10), -np.pi / 2, np.pi / 2)], False)
+        sketch.Placement = placement
+        document.recompute()
+        document.saveAs(str(workshop.folder / "drawn.FCStd"))
+    finally:
+        FreeCAD.closeDocument(document.Name)
+    content = (workshop.folder / "drawn.FCStd").read_bytes()
+    done, report, rows = planned("drawn.FCStd", content, part=", object: Path")
+    assert done.status == 0, done.err
+    back = np.array([placement.inverse().multVec(V(*point)) for point in column(rows, "x_mm", "y_mm", "z_mm")])
+    assert np.abs(back[:, 2]).max() < 1e-5 and report["counts"]["beads"] == 1
+    on_lines = (np.abs(back[:, 1] - np.where(back[:, 1] < 10.0, 0.0, 20.0)) < 1e-5) & (back[:, 0] < 30.0 + 1e-5)
+    on_arc = np.abs(np.hypot(back[:, 0] - 30.0, back[:, 1] - 10.0) - 10.0) < 1e-5
+    assert (on_lines | on_arc).all() and on_arc.sum() > 10
+    ways = np.linalg.norm(np.diff(back, axis=0), axis=1).sum()
+    assert ways == pytest.approx(60.0 + 10.0 * np.pi, abs=0.2)
