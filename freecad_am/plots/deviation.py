@@ -10,14 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from freecad_am.core.geometry.fitted import DeviationMap
-from freecad_am.core.inspection.bands import STEPS, band_of, bands, css
+from freecad_am.core.inspection.bands import band_of, bands, css, step_of
+from freecad_am.core.process.shape.deviation import name_of
 from freecad_am.core.types import Array
 
 from .chart import DOTS, MARKED, Bars, Chart, Curve, Quantity
 
 TILT = math.radians(30.0)  # from above, as the part is looked at
-NICE = (1.0, 2.0, 5.0, 10.0)
-IN_BANDS = 0.95  # of the places lie within the outermost bands' limit
 FACING = 0.05  # cosine to the eye of faces that are seen
 
 
@@ -43,18 +42,6 @@ _VIEWS = (
 X = Quantity("across", "mm")
 
 
-def name_of(number: int) -> str:
-    """What the worst place of this number is called."""
-    return "ABCDEFGHIJ"[number]
-
-
-def step_of(found: DeviationMap) -> float:
-    """mm that the bands of colour are wide: a round figure, of which three reach as far as most deviations."""
-    rough = max(float(np.quantile(np.abs(found.beyond), IN_BANDS)), 1e-3) / STEPS
-    power = 10.0 ** math.floor(math.log10(rough))
-    return float(power * next(step for step in NICE if step * power >= rough * (1.0 - 1e-9)))
-
-
 def charts(found: DeviationMap, allowance: float) -> tuple[Chart, ...]:
     """The part from the sides on which places face the eye, the spread of deviations, and the layers."""
     maps = [chart for view in _VIEWS if (chart := _map(found, view)) is not None]
@@ -70,10 +57,10 @@ def _map(found: DeviationMap, view: _View) -> Chart | None:
     if not seen.any():
         return None
     x, y = found.places @ np.asarray(view.across), found.places @ view.up
-    number = band_of(found.beyond, step_of(found))
+    number = band_of(found.beyond, step_of(found.beyond))
     dots = [
         Curve(band.text, x[rows], y[rows], css(band.colour), DOTS)
-        for k, band in reversed(list(enumerate(bands(step_of(found))))) if (rows := seen & (number == k)).any()
+        for k, band in reversed(list(enumerate(bands(step_of(found.beyond))))) if (rows := seen & (number == k)).any()
     ]
     names = tuple(
         (float(x[k]), float(y[k]), name_of(k)) for k in range(len(found.worst)) if seen[k]

@@ -10,7 +10,8 @@ import numpy as np
 
 from freecad_am.core.geometry.fitted import DeviationMap, PredictedShape
 from freecad_am.core.geometry.formatting import place
-from freecad_am.plots.deviation import name_of, step_of
+from freecad_am.core.inspection.bands import step_of
+from freecad_am.core.process.shape.deviation import name_of
 
 from .colour_key import key_of
 from .places import place_of
@@ -71,7 +72,7 @@ def section(found: PredictedShape, pictures: Sequence[str], shown: Shown) -> str
     })
     if found.deviation is None:
         return figures
-    key = f'<p class="sub">Deposit beyond the faces, mm: {key_of(step_of(found.deviation))}</p>' if pictures else ""
+    key = f'<p class="sub">Deposit beyond the faces, mm: {key_of(step_of(found.deviation.beyond))}</p>' if pictures else ""
     return figures + grid_of(pictures) + key + _worst(found.deviation, shown)
 
 

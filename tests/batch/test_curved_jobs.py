@@ -257,7 +257,8 @@ def test_layers_on_a_plate_that_is_not_flat_are_as_far_from_it_as_they_are_many(
     """A saddle of splines: distances of the written points from it, by the geometry kernel."""
     side = np.linspace(-40.0, 40.0, 9)
     saddle = Part.BSplineSurface()
-    saddle.interpolate([[FreeCAD.Vector(x, y, 0.004 * (x * x - y * y) + 2.0 * np.sin(x / 15.0)) for y in side] for x in side])
+    saddle.interpolate([
+        [FreeCAD.Vector(x, y, 0.004 * (x * x - y * y) + 2.0 * np.sin(x / 15.0)) for y in side] for x in side])
     face = saddle.toShape()
     plate = face.extrude(FreeCAD.Vector(0, 0, -12))
     plate.exportStep(str(workshop.folder / "plate.step"))

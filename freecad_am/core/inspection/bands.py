@@ -4,6 +4,7 @@ sides."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,8 @@ from numpy.typing import NDArray
 from ..types import Array
 
 STEPS = 3  # tolerances at which bands end
+NICE = (1.0, 2.0, 5.0, 10.0)  # tolerances, times powers of ten
+IN_BANDS = 0.95  # of the deviations lie within the outermost limit, where no tolerance is given
 _COLOURS = (
     (0.19, 0.21, 0.58), (0.10, 0.45, 0.82), (0.35, 0.75, 0.93), (0.25, 0.68, 0.30), (0.98, 0.83, 0.22), (0.96, 0.53, 0.12),
     (0.80, 0.09, 0.13),
@@ -53,3 +56,11 @@ def colours(deviation: Array, within: NDArray[np.bool_], tolerance: float) -> Ar
     found = np.array(_COLOURS)[band_of(deviation, tolerance)]
     found[~within] = PAST_EDGES
     return found
+
+
+def step_of(deviation: Array) -> float:
+    """mm that the bands are wide where no tolerance is given: a round figure, of which STEPS reach as far as most of the
+    deviations (n,)."""
+    rough = max(float(np.quantile(np.abs(deviation), IN_BANDS)), 1e-3) / STEPS
+    power = 10.0 ** math.floor(math.log10(rough))
+    return float(power * next(step for step in NICE if step * power >= rough * (1.0 - 1e-9)))

@@ -7,7 +7,7 @@ import base64
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from freecad_am.core.motion import Motion
 from freecad_am.core.simulation.margins import from_next, speed_ratios
 from freecad_am.core.types import Array
-from freecad_am.plots.source import Source
+
+if TYPE_CHECKING:
+    from freecad_am.plots.source import Source  # slow to import, and not every report has a page
 
 MOST_ROWS = 200_000  # of a page; of longer motions every second row is shown, every third ..
 STEPS = 65534  # of a column between its least and its largest value

@@ -33,6 +33,11 @@ def deviation_map(of: PredictedDeposit, found: Compared, layers: int) -> Deviati
     )
 
 
+def name_of(number: int) -> str:
+    """What the worst place of this number is called."""
+    return "ABCDEFGHIJ"[number]
+
+
 def _worst(points: Array, deviation: Array) -> Index:
     """Rows of the places with the least, each away from those before."""
     apart = APART * float(np.linalg.norm(np.ptp(points, axis=0)))
