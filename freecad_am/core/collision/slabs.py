@@ -59,6 +59,5 @@ def near(slabs: Slabs, solid: Frustum, node: Index, tip: Array, axis: Array) -> 
 
 def _directions(ways: Array, otherwise: Array) -> Array:
     """Unit vectors (n, 3) of ways; those others where they have no length."""
-    size = lengths(ways)
-    found: Array = np.where((size > 0.0)[:, None], ways / np.where(size > 0.0, size, 1.0)[:, None], otherwise)
+    found: Array = np.where((lengths(ways) > 0.0)[:, None], unit_rows(ways), otherwise)
     return found

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 
 def place(point: Iterable[float]) -> str:
@@ -21,6 +21,12 @@ def deviation(distance: float) -> str:
 def count(number: float) -> str:
     """About how many, as text: to two digits, 47,000,000, of very many 4.7e+12."""
     return f"{float(f'{number:.1e}'):,.0f}" if number < 1e12 else f"{number:.1e}"
+
+
+def round_step(rough: float, steps: Sequence[float]) -> float:
+    """The least of rising steps, from 1 to 10, times a power of ten that is no less than a positive number."""
+    power = 10.0 ** math.floor(math.log10(rough))
+    return float(power * next(step for step in steps if step * power >= rough * (1.0 - 1e-9)))
 
 
 def at_least(number: float) -> float:

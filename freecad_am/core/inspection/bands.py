@@ -4,12 +4,12 @@ sides."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.formatting import round_step
 from ..types import Array
 
 STEPS = 3  # tolerances at which bands end
@@ -61,6 +61,4 @@ def colours(deviation: Array, within: NDArray[np.bool_], tolerance: float) -> Ar
 def step_of(deviation: Array) -> float:
     """mm that the bands are wide where no tolerance is given: a round figure, of which STEPS reach as far as most of the
     deviations (n,)."""
-    rough = max(float(np.quantile(np.abs(deviation), IN_BANDS)), 1e-3) / STEPS
-    power = 10.0 ** math.floor(math.log10(rough))
-    return float(power * next(step for step in NICE if step * power >= rough * (1.0 - 1e-9)))
+    return round_step(max(float(np.quantile(np.abs(deviation), IN_BANDS)), 1e-3) / STEPS, NICE)

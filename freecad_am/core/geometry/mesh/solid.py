@@ -128,7 +128,7 @@ class Search:
 
     @cached_property
     def flat(self) -> bool:
-        """Whether all triangles lie the same way: there is no inside then."""
+        """Whether all triangles are parallel: there is no inside then."""
         return bool((np.abs(self.units @ self.units[0]) > 1.0 - PARALLEL).all())
 
     def away(self, points: Array) -> Array:

@@ -95,8 +95,7 @@ class RapidObstacles:
         if not len(moves.start):
             return []
         tip = _driven(self.cell, moves, COARSE).tip
-        radius, slope, length = self._size
-        reach = float(np.hypot(length, radius + slope * length)) + COARSE
+        reach = self._reach + COARSE
         touching: dict[str, Touching] = {"the deposit": functools.partial(self._deposit_touched, moves=moves)}
         for body in self.bodies:
             touching[body.name] = functools.partial(_body_touched, scene((body,), tip, reach).bodies)
@@ -137,6 +136,12 @@ class RapidObstacles:
         found: Mask = self.deposited.touched(nozzle.deposit, looks.tip, looks.axis, moves.deposited[looks.move])
         return found
 
+    @property
+    def _reach(self) -> float:
+        """Largest distance of a point of the nozzle from its tip, mm."""
+        radius, slope, length = self._size
+        return float(np.hypot(length, radius + slope * length))
+
     def _around(self, tip: Array) -> Bodies:
         """The bodies that nozzles at the tips (k, 3) may meet. Trees of bodies take long and are kept for the next moves."""
         low, high = tip.min(axis=0), tip.max(axis=0)
@@ -146,9 +151,7 @@ class RapidObstacles:
             more = 0.5 * (high - low) if known else np.zeros(3)
             least, most = self._box
             self._box = np.array([np.where(low < least, low - more, least), np.where(high > most, high + more, most)])
-            radius, slope, length = self._size
-            reach = float(np.hypot(length, radius + slope * length))
-            self._bodies = scene(self.bodies, self._box, reach).bodies
+            self._bodies = scene(self.bodies, self._box, self._reach).bodies
         return self._bodies
 
     def _nozzle(self, moves: Moves, looks: Looks) -> Nozzle:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...geometry.fitted import DeviationMap
+from ...geometry.formatting import round_step
 from ...types import Array, Index
 from .compare import Compared
 from .laying import PredictedDeposit
@@ -52,9 +53,7 @@ def _worst(points: Array, deviation: Array) -> Index:
 def _spread(deviation: Array, areas: Array) -> tuple[Array, Array]:
     """Edges (k + 1,) mm of bars, and the share (k,) of the area in each; 0 is an edge."""
     low, high = float(deviation.min()), float(deviation.max())
-    rough = max(high - low, 1e-6) / BARS
-    power = 10.0 ** np.floor(np.log10(rough))
-    width = power * min(step for step in STEPS if step * power >= rough * (1.0 - 1e-9))
+    width = round_step(max(high - low, 1e-6) / BARS, STEPS)
     edges = width * np.arange(np.floor(low / width), np.floor(high / width) + 2)
     return edges, np.histogram(deviation, edges, weights=areas)[0] / areas.sum()
 
