@@ -4,22 +4,21 @@
 A post that is a fixture, a table on which the part stands and a tall finished wall, which the same job drives links into
 without the key: the library has to see that too, or it sees nothing. And a screen between robot and part, which is refused
 by name. Judged by others on what was saved: joints of every row of waypoints.csv, and at nine places between two rows,
-through PyKDL's chain of the machine, and distances by python-fcl between the rods of the links and the body.
+through PyKDL's chain of the machine, and distances by python-fcl between the rods of the links and the body. What moves
+against links, these among themselves, is in `arm_apart`.
 """
 
 from __future__ import annotations
 
-import csv
 import json
-import os
-import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
-from typing import Any
 
+import arm_apart
 import numpy as np
+from arm_jobs import CLEARANCE, EXAMPLE, box_text, carried_out, cylinder, places
 
 from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.machines import machine
@@ -27,10 +26,7 @@ from tests.kdl_links import KdlLinks
 
 from rows import Row
 
-ROOT = Path(__file__).resolve().parent.parent
-EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
-CLEARANCE, TIMES = 10.0, 3.0  # mm that are kept, and times the planning may take
-BETWEEN = 10  # places looked at from one row to the next, the row's own among them
+TIMES = 3.0  # the planning may take, of what it takes without
 ROUNDS = 5  # of both jobs in turns
 ROBOT, STATION, LEAN = "fanuc-arcmate120ic", (1000.0, 0.0, -100.0), 45.0
 JOB = """version: 1
@@ -82,7 +78,7 @@ def run() -> list[Row]:
     for body in CLEARED:
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            (folder / "post.stl").write_text(_box(body), encoding="utf-8")
+            (folder / "post.stl").write_text(box_text(body.low, body.size), encoding="utf-8")
             done = [
                 [_planned(folder, body, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm")] for _ in range(ROUNDS)
             ]
@@ -96,75 +92,42 @@ def run() -> list[Row]:
                 TIMES * plain, "s", 1.0),
         ]
     _refused()
-    return found
+    return found + arm_apart.run()
 
 
 def _refused() -> None:
     """The screen, which nothing clears, is refused by name, with link, layer and bead."""
     with tempfile.TemporaryDirectory() as name:
-        done = _carried_out(Path(name), SCREEN, f", arm_clearance: {CLEARANCE:g} mm")
+        done = carried_out(Path(name), SCREEN.job(f", arm_clearance: {CLEARANCE:g} mm"))
     told = "error[ARM_CLEARANCE] layer 0 bead 0: link q", f"mm to {SCREEN.name}"
     assert done.returncode == 3 and all(text in done.stderr for text in told), done.stderr
 
 
-def _carried_out(folder: Path, body: Standing, key: str) -> subprocess.CompletedProcess[str]:
-    (folder / "arm.yaml").write_text(body.job(key), encoding="utf-8")
-    command = [str(ROOT / "freecad-am"), "plan", str(folder / "arm.yaml"), "-o", str(folder / "out"), "--no-page"]
-    environment = {name: value for name, value in os.environ.items() if name not in ("BENCH_INSIDE", "VIRTUAL_ENV")}
-    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
-
-
 def _planned(folder: Path, body: Standing, key: str) -> tuple[float | None, float]:
     """The least distance in mm, None without python-fcl, and seconds that the joint path took."""
-    done = _carried_out(folder, body, key)
+    done = carried_out(folder, body.job(key))
     assert not done.returncode, done.stderr
     report = json.loads((folder / "out" / "report.json").read_text(encoding="utf-8"))
-    return _nearest(folder / "out" / "waypoints.csv", body), float(report["timing_s"]["joint_path"])
+    return _nearest(folder, body), float(report["timing_s"]["joint_path"])
 
 
-def _nearest(table: Path, body: Standing) -> float | None:
+def _nearest(folder: Path, body: Standing) -> float | None:
     """Least distance in mm of links from the body along a saved path."""
     try:
         import fcl
     except ImportError:
         return None
-    with open(table, encoding="utf-8", newline="") as file:
-        rows = [[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in csv.DictReader(file)]
-    joints = np.radians(rows)
-    shares = np.linspace(0.0, 1.0, BETWEEN, endpoint=False)[:, None, None]
-    joints = (joints[:-1] + shares * np.diff(joints, axis=0)).reshape(-1, 6)
     robot = machine.load(ROBOT)
     arm, least = KdlLinks(robot), np.inf
     # the part stands at the deposition point, its frame as that of the base
     middle = robot.base[:3, :3] @ (np.add(body.low, 0.5 * np.array(body.size)) + STATION) + robot.base[:3, 3]
     box = fcl.CollisionObject(fcl.Box(*body.size), fcl.Transform(middle))
-    links = [(number, [_rod(fcl, rod) for rod in rods]) for number, rods in enumerate(link_rods.of_robot(robot.chain))]
-    for q in joints:
+    links = [(number, [cylinder(fcl, rod) for rod in rods]) for number, rods in enumerate(link_rods.of_robot(robot.chain))]
+    for q in places(folder):
         for number, rods in links[1:]:
             pose = arm.frame(q, number)
             turn, place = pose[:3, :3], pose[:3, 3]
-            for cylinder, turned, at in rods:
-                moving = fcl.CollisionObject(cylinder, fcl.Transform(turn @ turned, place + turn @ at))
+            for solid, turned, at in rods:
+                moving = fcl.CollisionObject(solid, fcl.Transform(turn @ turned, place + turn @ at))
                 least = min(least, fcl.distance(moving, box, fcl.DistanceRequest(), fcl.DistanceResult()))
     return max(float(least), 0.0)
-
-
-def _rod(fcl: Any, rod: Any) -> tuple[Any, np.ndarray, np.ndarray]:
-    """A cylinder of the library, and where it is in the frame of its link."""
-    axis = (rod.end - rod.start) / rod.length
-    one = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    one /= np.linalg.norm(one)
-    turned = np.column_stack([one, np.cross(axis, one), axis])
-    return fcl.Cylinder(rod.radius, rod.length), turned, 0.5 * (rod.start + rod.end)
-
-
-def _box(body: Standing) -> str:
-    """The body as a text of STL."""
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * body.size + body.low
-    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    lines = ["solid post"]
-    for a, b, c, d in faces:
-        for triangle in ((a, b, c), (a, c, d)):
-            points = [f"vertex {x:g} {y:g} {z:g}" for x, y, z in corners[list(triangle)]]
-            lines += ["facet normal 0 0 0", "outer loop", *points, "endloop", "endfacet"]
-    return "\n".join([*lines, "endsolid post", ""])
