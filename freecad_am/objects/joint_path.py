@@ -133,7 +133,8 @@ class JointPath(Stage):
             motion, rapid_issues = assemble(
                 joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height, cylinders
             )
-            near = () if not cylinders else arm_issues(motion, cell, toolpath, process, (*joint_path.issues, *rapid_issues))
+            near = () if not cylinders else arm_issues(
+                motion, cell, toolpath, process, cylinders, (*joint_path.issues, *rapid_issues))
             issues = (*joint_path.issues, *rapid_issues, *near, *_not_kept(cell), *_drawn_plain(cell), *_moved(cell))
             issues = (*issues, *_heights_as_run(joint_path, toolpath, process))
             asked = Tried(

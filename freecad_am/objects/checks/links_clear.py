@@ -36,18 +36,25 @@ def arm_of(
     machines with rotary axes, of whose links no file tells enough."""
     if not cell.arrangement.links_known:
         return None
-    cylinders = link_cylinders.of_robot(cell.robot.chain, shapes)
+    return _touches(motion, cell, toolpath, process, link_cylinders.of_robot(cell.robot.chain, shapes), most, clearance)
+
+
+def _touches(
+    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, cylinders: arm_kept.Cylinders,
+    most: int | None, clearance: float,
+) -> ArmTouches:
     deposited = deposit_obstacles(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
     return arm_touches(motion, ArmContact(cell, cylinders, toolpath.surroundings, deposited, clearance), most)
 
 
 def arm_issues(
-    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, known: Sequence[Issue]
+    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, cylinders: arm_kept.Cylinders,
+    known: Sequence[Issue],
 ) -> tuple[Issue, ...]:
-    """An error for each bead that nothing known is told of, on which or on the way to which a link comes too near."""
+    """An error for each bead that nothing known is told of, on which or on the way to which one of the links, which are
+    these cylinders, comes too near."""
     assert cell.arm_clearance is not None
-    touches = arm_of(motion, cell, toolpath, process, meshes_of(cell.machine), clearance=cell.arm_clearance)
-    assert touches is not None
+    touches = _touches(motion, cell, toolpath, process, cylinders, None, cell.arm_clearance)
     done = {(issue.layer, issue.bead) for issue in known if issue.code == arm_kept.CODE}
     found = []
     for row in np.flatnonzero(touches.link != NONE).tolist():

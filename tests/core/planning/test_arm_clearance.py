@@ -13,6 +13,9 @@ from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import cylinders as link_rods
+from freecad_am.core.kinematics.links import own
+from freecad_am.core.kinematics.links.own import OwnLinks
+from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
@@ -230,3 +233,22 @@ def counting(asked, own=arm_kept.ArmKept.rotations_near):
         asked.append(joints.shape[0] * joints.shape[1])
         return own(self, joints, bead, places)
     return rotations_near
+
+
+def test_pairs_of_links_are_found_once_for_the_same_robot_and_anew_for_another():
+    robot = cells.resolve(CellParameters(machine="ur-ur5e"), np.eye(4)).robot
+    limits, rods = robot.limits("maker"), link_rods.of_robot(robot.chain)
+    first = OwnLinks.of(robot.chain, limits, rods, CLEARANCE)
+    assert OwnLinks.of(robot.chain, limits, link_rods.of_robot(robot.chain), CLEARANCE) is first
+    other = machine.load("ur-ur10e")
+    thick = [[dataclasses.replace(rod, radius=4.0 * rod.radius) for rod in link] for link in rods]
+    narrow = dataclasses.replace(limits, upper=np.append(limits.upper[:2], [*limits.lower[2:3] + 1e-3, *limits.upper[3:]]))
+    for chain, among, links, clearance in [
+        (other.chain, limits, rods, CLEARANCE), (robot.chain, narrow, rods, CLEARANCE),
+        (robot.chain, limits, thick, CLEARANCE), (robot.chain, limits, rods, 8.0 * CLEARANCE),
+    ]:
+        found = OwnLinks.of(chain, among, links, clearance)
+        own._found.cache_clear()
+        fresh = OwnLinks.of(chain, among, links, clearance)
+        assert found is not first and (found.gap, found.pairs) == (fresh.gap, fresh.pairs)
+    assert fresh.pairs != first.pairs

@@ -8,8 +8,9 @@ limits allow, as the links of a wrist do to a clearance wider than the wrist. No
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from .rounds import NONE, Solid, about_link, of_cylinder
 
 POSITIONS, LEFT_OUT = 128, 0.5  # looked at to see which pairs are left out, and the share at which they are not yet
 EVERY = 4  # one position in so many is looked at first
+REMEMBERED = 8  # robots whose pairs are known: a job asks while planning, for its rapids, and when all is looked at again
 
 
 @dataclass(frozen=True)
@@ -40,17 +42,7 @@ class OwnLinks:
     def of(cls, chain: Chain, limits: Limits, cylinders: Sequence[Sequence[Cylinder]], clearance: float) -> OwnLinks:
         """The links of a robot of these cylinders, each (axes + 1) in the frame of the link, that are to be kept clearance
         mm apart; of the limits the first ones are its own."""
-        solids = tuple(tuple(of_cylinder(cylinder, 0.0) for cylinder in link) for link in cylinders)
-        last = len(solids) - 1
-        stopped = {(2, 0), (last, last - 2)}
-        every = [(one, other) for one in range(2, last + 1) for other in range(one - 1) if (one, other) not in stopped]
-        gap = clearance + 2.0 * ABOUT_FACES
-        found = cls(solids, tuple(about_link(link) for link in solids), gap, ())
-        links = chain.links(positions(limits, chain.axes))
-        # most pairs are seen by a few positions to be far below that share
-        often = [pair for pair in every if len(links) and found._touch(*pair, links[::EVERY]).mean() > 0.5 * LEFT_OUT]
-        usual = {pair for pair in often if found._touch(*pair, links).mean() > LEFT_OUT}
-        return cls(solids, found.balls, gap, tuple(pair for pair in every if pair not in usual))
+        return _found(_Asked(chain, limits, cylinders, clearance))
 
     def touches(self, links: Array) -> tuple[Index, Index]:
         """Of frames (k, links, 4, 4), the first of them the robot's own from the base on: the outer (k,) and the inner (k,)
@@ -75,6 +67,53 @@ class OwnLinks:
                     rows = np.flatnonzero(~touch[near])
                     touch[near[rows]] = nearer(one.of(rows), other.of(rows), self.gap)
         return touch
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What the links of a robot follow from; the same numbers are the same question."""
+
+    chain: Chain
+    limits: Limits
+    cylinders: Sequence[Sequence[Cylinder]]
+    clearance: float
+
+    @cached_property
+    def _numbers(self) -> Hashable:
+        return _numbers((self.chain, self.limits, self.cylinders, self.clearance))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Asked) and self._numbers == other._numbers
+
+    def __hash__(self) -> int:
+        return hash(self._numbers)
+
+
+@lru_cache(REMEMBERED)
+def _found(asked: _Asked) -> OwnLinks:
+    solids = tuple(tuple(of_cylinder(cylinder, 0.0) for cylinder in link) for link in asked.cylinders)
+    last = len(solids) - 1
+    stopped = {(2, 0), (last, last - 2)}
+    every = [(one, other) for one in range(2, last + 1) for other in range(one - 1) if (one, other) not in stopped]
+    gap = asked.clearance + 2.0 * ABOUT_FACES
+    found = OwnLinks(solids, tuple(about_link(link) for link in solids), gap, ())
+    links = asked.chain.links(positions(asked.limits, asked.chain.axes))
+    # most pairs are seen by a few positions to be far below that share
+    often = [pair for pair in every if len(links) and found._touch(*pair, links[::EVERY]).mean() > 0.5 * LEFT_OUT]
+    usual = {pair for pair in often if found._touch(*pair, links).mean() > LEFT_OUT}
+    return OwnLinks(solids, found.balls, gap, tuple(pair for pair in every if pair not in usual))
+
+
+def _numbers(value: object) -> Hashable:
+    """All numbers and names in a value, to be compared."""
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    if isinstance(value, (list, tuple)):
+        return tuple(_numbers(each) for each in value)
+    if is_dataclass(value):
+        return tuple(_numbers(getattr(value, each.name)) for each in fields(value))
+    assert isinstance(value, Hashable)
+    return value
 
 
 def positions(limits: Limits, axes: int) -> Array:
