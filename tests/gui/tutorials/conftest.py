@@ -286,6 +286,16 @@ class Lesson:
         self.hand.click_tree(label)
         self.hand.do("key", "Right")
 
+    def unfold_in(self, panel, title):
+        """The heading of a part of a panel that is folded away."""
+        heading = self.person.field(panel, f"Fold{title.replace(' ', '')}")
+        for _ in range(3):  # what a preview tells may move it away from under the pointer: a hand clicks again
+            self.hand.click(heading)
+            self.person.idle(0.5)
+            if heading.isChecked():
+                return
+        raise AssertionError(f"{title} does not unfold")
+
     def double_click(self, label):
         """A line of the tree, some time after the click that brings it in sight: three clicks in a row are another thing."""
         self.hand.click_tree(label)
