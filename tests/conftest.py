@@ -25,9 +25,39 @@ def pytest_addoption(parser):
     parser.addoption("--long", action="store_true", help="run what is marked as long too (docs/testing.md)")
 
 
+def covering(variants):
+    """Names of some variants, in which each value of each parameter is: first those of which every value is new."""
+    seen, chosen = set(), []
+    for ask in (all, any):
+        for item in variants:
+            values = {(name, id(value)) for name, value in item.callspec.params.items()}
+            if item.nodeid not in chosen and ask(value not in seen for value in values):
+                chosen.append(item.nodeid)
+                seen |= values
+    return chosen
+
+
+def rest_of_variants(items):
+    """Names of the variants of tests marked `always` that count as long: all but the named ones, or, without names, all but
+    as many as have each value of each parameter."""
+    variants, spared = {}, set()
+    for item in items:
+        if item.get_closest_marker("always"):
+            variants.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for test, of_one in variants.items():
+        names = of_one[0].get_closest_marker("always").args
+        stay = [item.nodeid for item in of_one if item.callspec.id in names] if names else covering(of_one)
+        if names and len(of_one) > 1 and len(stay) < len(names):
+            raise pytest.UsageError(f"{test} has not all of the variants {names}")
+        spared.update(item.nodeid for item in of_one if item.nodeid not in stay)
+    return spared
+
+
 def pytest_collection_modifyitems(config, items):
     named = tuple(word for word in config.args if "::" in word)  # one that is named runs in any case
-    long = [item for item in items if item.get_closest_marker("long") and not item.nodeid.startswith(named)]
+    spared = rest_of_variants(items)
+    long = [item for item in items if item.get_closest_marker("long") or item.nodeid in spared]
+    long = [item for item in long if not item.nodeid.startswith(named)]
     if long and not config.option.long:
         config.hook.pytest_deselected(items=long)
         items[:] = [item for item in items if item not in long]

@@ -99,21 +99,53 @@ def test_b():
 """
 
 
+VARIANTS = """\
+import pytest
+
+@pytest.mark.parametrize("a", [1, 2, 3])
+@pytest.mark.parametrize("b", "xy")
+@pytest.mark.always
+def test_c(a, b):
+    print("ran", a, b)
+
+@pytest.mark.parametrize("a", [1, 2, 3])
+@pytest.mark.always("2")
+def test_d(a):
+    print("ran", a)
+"""
+
+
+def pytest_of(folder, text, words):
+    """What pytest does with a file of tests beside our conftest.py."""
+    (folder / "conftest.py").write_text((Path(__file__).parent / "conftest.py").read_text(encoding="utf-8").replace(
+        "Path(__file__).resolve().parent.parent", f"Path({str(run.ROOT)!r})"), encoding="utf-8")
+    (folder / "pytest.ini").write_text("[pytest]\nmarkers =\n  long: longer\n  always: some\n", encoding="utf-8")
+    (folder / "test_it.py").write_text(text, encoding="utf-8")
+    return subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *words], cwd=folder, capture_output=True, text=True,
+        check=False, env={name: value for name, value in os.environ.items() if name != "TEST_TIMES"},
+    )
+
+
 @pytest.mark.parametrize(
     ("words", "ran"),
     [(["."], "1 passed, 1 deselected"), (["--long", "."], "2 passed"), (["test_it.py::test_a"], "1 passed")],
     ids=["always", "long", "named"],
 )
 def test_long_ones_run_where_they_are_asked_for(tmp_path, words, ran):
-    (tmp_path / "conftest.py").write_text((Path(__file__).parent / "conftest.py").read_text(encoding="utf-8").replace(
-        "Path(__file__).resolve().parent.parent", f"Path({str(run.ROOT)!r})"), encoding="utf-8")
-    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = long: longer\n", encoding="utf-8")
-    (tmp_path / "test_it.py").write_text(LONG, encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *words], cwd=tmp_path, capture_output=True, text=True,
-        check=False, env={name: value for name, value in os.environ.items() if name != "TEST_TIMES"},
-    )
+    done = pytest_of(tmp_path, LONG, words)
     assert done.returncode == 0 and ran in done.stdout.splitlines()[-1], done.stdout
+
+
+def test_of_the_variants_each_value_runs_always_and_the_rest_with_the_long_ones(tmp_path):
+    always = pytest_of(tmp_path, VARIANTS, ["-s", "."]).stdout
+    crossed = re.findall(r"ran (\d) (\w)", always)
+    assert len(crossed) == 3 and {a for a, _ in crossed} == {"1", "2", "3"} and {b for _, b in crossed} == {"x", "y"}
+    assert re.findall(r"ran (\d)$", always, re.MULTILINE) == ["2"]
+    assert "9 passed" in pytest_of(tmp_path, VARIANTS, ["--long", "."]).stdout
+    assert "1 passed" in pytest_of(tmp_path, VARIANTS, ["test_it.py::test_d[3]"]).stdout
+    wrong = pytest_of(tmp_path, VARIANTS.replace('"2"', '"4"'), ["."])
+    assert wrong.returncode and "has not all of the variants" in wrong.stdout + wrong.stderr
 
 
 @pytest.mark.parametrize(

@@ -67,6 +67,7 @@ def times_of_layers(rows, lines):
 
 
 @KINDS
+@pytest.mark.always("revolution", "curves")
 def test_no_layer_takes_less(workshop, part, branch):
     done, rows, lines = planned(workshop, part, branch, "")
     assert done.status == 0 and not any("WAIT " in line for line in lines), done.err

@@ -56,7 +56,8 @@ def distances(beads):
 
 @pytest.mark.parametrize(
     "tube, height, count, chord_error",
-    [(TUBE, 5.0, 16, 2e-5), pytest.param(TUBE, 1.0, 72, 5e-5, marks=pytest.mark.long), (WIDE, 5.0, None, 2e-5)],
+    [(TUBE, 5.0, 16, 2e-5), pytest.param(TUBE, 1.0, 72, 5e-5, marks=pytest.mark.long),
+     pytest.param(WIDE, 5.0, None, 2e-5, marks=pytest.mark.long)],
 )
 def test_corrected_layers(sliced, tube, height, count, chord_error):
     """Thousands of points around each layer, corners included."""

@@ -132,6 +132,7 @@ def groove(folder):
 @pytest.mark.parametrize(("kind", "lean", "sections", "code"), [
     ("revolution", 30, groove, "CLEARANCE"), ("surface", 42, lambda _: "joints: {min_condition: 0.15}\n", "SINGULAR"),
 ])
+@pytest.mark.always("revolution-30-groove-CLEARANCE")
 def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(workshop, kind, lean, sections, code):
     """Where the tool meets something, or leans through a singularity, with directions that follow the wall."""
     skin(workshop.folder, lean, squeezed=kind == "surface")

@@ -44,6 +44,7 @@ def columns(rows, *names):
     return np.array([[float(row[name]) for name in names] for row in rows])
 
 
+@pytest.mark.always("cartesian")
 def test_the_texts_bring_the_points_of_the_part_to_the_nozzle(made):
     motion, rows, texts = made
     read = staubli.read(texts)

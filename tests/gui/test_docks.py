@@ -73,6 +73,7 @@ def around(person):
 
 
 @pytest.mark.parametrize("order", ORDERS, ids=lambda order: "-".join(name[10:] for name in order))
+@pytest.mark.always("Path-Plots-SpinMap")
 def test_a_window_of_1280_by_800_holds_them_as_tabs_with_the_newest_in_front(person, path, order):
     simulation = opened(person, path, "RoboticAM_Simulate")
     docks = []
@@ -138,6 +139,7 @@ def test_where_the_user_has_put_them_they_are_again(person, path):
 
 
 @pytest.mark.parametrize("order", ORDERS, ids=lambda order: "-".join(name[10:] for name in order))
+@pytest.mark.always("Path-Plots-SpinMap")
 def test_the_height_they_take_is_given_back(person, path, order):
     """To those that stay, the last that is opened closed first, and the first closed first."""
     before = around(person)

@@ -71,6 +71,7 @@ def bar(thick, length=90.0):
 
 @pytest.mark.parametrize("pattern", ["contours", "connected", "spiral"])
 @pytest.mark.parametrize("thick", [7.0, 8.5, 12.5, 17.0, 22.0, 23.4])
+@pytest.mark.always
 def test_bars_of_any_thickness_are_filled_evenly(thick, pattern):
     loops = bar(thick)
     region, = regions(loops)

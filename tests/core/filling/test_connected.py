@@ -51,6 +51,7 @@ def crossings(points):
 
 
 @pytest.mark.parametrize("name", REGIONS)
+@pytest.mark.always
 def test_one_bead_through_all_contours(name):
     loops = REGIONS[name]
     region, = regions(loops)

@@ -66,6 +66,7 @@ def ground(name):
 
 @pytest.mark.parametrize("pattern,angle", WAYS, ids=IDS)
 @pytest.mark.parametrize("name", REGIONS)
+@pytest.mark.always
 def test_at_least_99_percent_is_covered_and_no_bead_is_outside(name, pattern, angle):
     region, = regions(REGIONS[name])
     curves = fill(region, BEADS, pattern, angle, DEFAULT.contour)
@@ -107,6 +108,7 @@ def test_a_gap_that_no_bead_closes_is_told():
 
 @pytest.mark.parametrize("apex", [math.inf, 150.0])
 @pytest.mark.parametrize("pattern,angle", [("contours", 0.0), ("lines", 0.0), ("spiral", 0.0), ("zigzag", 1.57)])
+@pytest.mark.always
 def test_a_strip_round_a_hub_is_covered(apex, pattern, angle):
     turn = 190.0
     period = Period(turn if math.isinf(apex) else turn / apex, apex)
@@ -142,6 +144,7 @@ def test_a_strip_round_a_hub_is_covered(apex, pattern, angle):
 
 @pytest.mark.parametrize("pattern,angle", WAYS, ids=IDS)
 @pytest.mark.parametrize("name", ["rectangle", "L", "ring", "star 2"])
+@pytest.mark.always
 def test_beads_wider_than_their_spacing_cover_as_much_and_stay_inside(name, pattern, angle):
     """As laid: 9.5 mm wide at 6.5 mm, measured by the width."""
     width, beads = 9.5, replace(BEADS, spacing=6.5, gap=1.3, width=9.5)

@@ -101,6 +101,7 @@ def test_periods_and_that_honeycombs_never_cross():
 
 @pytest.mark.parametrize("pattern", PATTERNS)
 @pytest.mark.parametrize("name", ["U", "wavy 2", "annulus"])
+@pytest.mark.always
 def test_walls_lie_at_the_spacing_and_nothing_is_outside(name, pattern):
     loops = shapes.SHAPES[name]
     region, = regions(loops)

@@ -44,6 +44,7 @@ def ground(name):
 
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.always
 def test_cover_gaps_and_nothing_outside(name, pattern):
     loops = SHAPES[name]
     gap = 1.0  # the gap allowed decides how much stays open
@@ -190,6 +191,7 @@ def test_short_beads_that_close_gaps_go_on_until_they_are_long_enough(pattern):
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.always
 def test_scale_changes_nothing_and_neither_does_doing_it_again(pattern):
     loops = SHAPES["blade"]
     one = filled("blade", pattern)

@@ -133,6 +133,7 @@ def test_in_the_simulation_the_rail_stands_still_and_the_carriage_goes_under_the
 
 
 @pytest.mark.parametrize("external", [text(D500, STANDS, "part"), BOTH], ids=["positioner", "with track"])
+@pytest.mark.always("with track")
 def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is_told_is_near(external):
     cell = cell_of(external)
     rods = link_rods.of_robot(cell.robot.chain)

@@ -83,6 +83,7 @@ def test_no_solution_is_lost_that_a_numeric_solver_finds(arm):
 
 
 @pytest.mark.parametrize("near", [0.0, 1e-9, 1e-6, 1e-3])
+@pytest.mark.always
 def test_solutions_stay_near_singularities(arm, near):
     """The stretched elbow, and where solutions of the wrist meet: the determinant of PyKDL's Jacobian is zero."""
     of, inverse, kdl = arm
@@ -119,6 +120,7 @@ def test_solutions_stay_near_singularities(arm, near):
 
 
 @pytest.mark.parametrize("away", [0.0, 1e-9, 1e-6, 1e-3, 0.03, 1.0])
+@pytest.mark.always
 def test_solutions_stay_where_the_wrist_is_on_axis_1(arm, away):
     """The point of axes 4 and 5 on axis 1, or so many mm beside it: the plane of the arm is not told by the point."""
     of, inverse, kdl = arm

@@ -36,6 +36,7 @@ def clouds(robot, rods, q):
 
 
 @pytest.mark.parametrize("name", ["ur-ur5e", "fanuc-arcmate120ic"])
+@pytest.mark.always("ur-ur5e")
 def test_what_is_told_is_near_and_what_is_near_is_told(name):
     from scipy.spatial import cKDTree
     robot, limits, rods, own = own_of(name)

@@ -19,6 +19,7 @@ def codes(found):
 
 @pytest.mark.parametrize("part", ["sphere", "laval nozzle", "intake funnel"])
 @pytest.mark.parametrize("half", [270.0, 200.0])
+@pytest.mark.always
 def test_a_limited_axis_6_is_solved(sliced, cell_of, with_axis_6, part, half):
     toolpath = sliced(part, 5.0)
     cell = with_axis_6(cell_of(toolpath), half)
@@ -63,6 +64,7 @@ def test_beads_are_split_only_where_the_stroke_is_less_than_a_turn(sliced, cell_
 
 @pytest.mark.parametrize("half", [2.0, 8.0, 20.0, 60.0])
 @pytest.mark.parametrize("kept", [2, 4, 8, 17])
+@pytest.mark.always
 def test_beads_of_few_points_are_cut_no_finer_than_that(sliced, cell_of, with_axis_6, kept, half):
     """An axis with hardly any stroke asks for more pieces of a coarse bead than it has segments."""
     whole = sliced("sphere", 15.0)

@@ -109,6 +109,7 @@ def test_the_valley_is_settled_where_the_margin_is_largest(sliced, cell_of):
 
 @pytest.mark.parametrize("objective", OBJECTIVES)
 @pytest.mark.parametrize("parameter", ["rotation", "rz"])
+@pytest.mark.always
 def test_gradients_against_differences(sliced, cell_of, objective, parameter):
     toolpath = sliced("sphere", 20.0)
     task = Task(cell_of(toolpath), FLIP, JointParameters(objective=objective, degree=2, parameter=parameter))

@@ -85,6 +85,7 @@ def test_a_polynomial_for_a_bead_that_is_left_out_falls_on_no_other():
 
 
 @pytest.mark.parametrize("layer_height", [3.0, 1.0, 0.5])
+@pytest.mark.always("1.0", "3.0")
 def test_of_a_single_bead_of_many_turns_points_alone_are_left_out(sliced, layer_height):
     spiral = sliced("sphere", layer_height, path="spiral")
     assert spiral.bead_count == 1

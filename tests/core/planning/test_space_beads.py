@@ -71,6 +71,7 @@ def optima(cell):
 
 @pytest.mark.parametrize("closed", [True, False], ids=["closed", "open"])
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.always("1-closed", "1-open")
 def test_a_higher_degree_is_never_worse(optima, seed, closed):
     found = [optima(seed, closed, degree) for degree in range(7)]
     assert all(path.feasible for path in found), [path.issues for path in found]

@@ -66,6 +66,7 @@ def nozzle_near(motion, cell, poses, sizes):
 
 
 @pytest.mark.parametrize("clearance", [None, CLEARANCE])
+@pytest.mark.always("None")
 def test_rapids_are_led_round_a_wall_that_no_retract_gets_over(dome, monkeypatch, clearance):
     job = on_sides(dome, -60.0, 60.0)
     cell = cell_with(job, WALL, "wall", SIZE, **CELL, arm_clearance=clearance)

@@ -120,6 +120,7 @@ GROUND = HalfSpace(np.zeros(3), np.array([0.0, 0.0, 1.0]))
         (Cone(20.0, 0.3), GROUND, (-40.0, 30.0), 30.0, 2.0, 0),
     ],
 )
+@pytest.mark.always
 def test_walls_on_substrates(wall, substrate, reach, end, height, corners):
     first = on_implicit(wall, substrate, reach, even_grid(wall, 360))
     layers = constant_distance.layers(wall, first, height, end)

@@ -39,6 +39,7 @@ def winding(loops, theta, z):
 
 
 @pytest.mark.parametrize("seed", range(40))
+@pytest.mark.always
 def test_a_convex_body_is_cut_where_it_is(seed):
     rng = np.random.default_rng(seed)
     base = Developable(rng.uniform(5.0, 60.0), math.inf if seed % 3 == 0 else rng.uniform(20.0, 300.0))

@@ -78,6 +78,7 @@ def test_at_the_end_of_the_wall_the_beads_are_open_and_finish_it(torus):
 
 
 @pytest.mark.parametrize("step", [1.0, 0.7])
+@pytest.mark.always("1.0")
 def test_a_front_splits_at_a_hole_and_merges_behind_it(step):
     wall, height = sheet(SILL, [(2.0, 20.0, 9.0)], step=step), 1.7
     layers = fronts.layers(wall, height).fronts

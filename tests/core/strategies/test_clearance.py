@@ -78,6 +78,7 @@ CASES = [
 
 @pytest.mark.parametrize(("meridian", "nozzle", "build"), CASES)
 @pytest.mark.parametrize("turn", [None, (0.3, 2.0)])
+@pytest.mark.always
 def test_the_nozzle_is_clear_of_wide_beads_and_would_not_be_with_less_tilt_back(meridian, nozzle, build, turn):
     free = planned(meridian, nozzle, turn=turn, clearance="none", max_tilt=np.pi, **build)
     toolpath = planned(meridian, nozzle, turn=turn, max_tilt=np.pi, **build)

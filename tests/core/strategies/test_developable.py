@@ -127,6 +127,7 @@ def test_beads_lie_on_their_surfaces_and_in_the_solid(surface, fill):
 
 @pytest.mark.parametrize("fill", ["contours", "lines", "spiral", "zigzag"])
 @pytest.mark.parametrize("surface", [CYLINDER, CONE], ids=["cylinder", "cone"])
+@pytest.mark.always
 def test_beads_cover_the_solid_and_nothing_else(surface, fill):
     """A raster over the surface, in the box or not by its planes, against beads as wide as their spacing."""
     path = planned(solids(surface, box()), fill=fill)

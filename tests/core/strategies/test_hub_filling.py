@@ -110,6 +110,7 @@ def test_places_are_told_in_the_part():
 
 @pytest.mark.parametrize(("fill", "instead"), [("spiral", "contours"), ("zigzag", "lines")])
 @pytest.mark.parametrize("hub", HUBS)
+@pytest.mark.always
 def test_patterns_that_end_are_others_round_the_hub_and_that_is_told(hub, fill, instead):
     """A collar, and a blade on the same hub: the blade gets the pattern asked for, the collar the one that is told."""
     ring = collar(20.0, 80.0, 70.0, 90.0)

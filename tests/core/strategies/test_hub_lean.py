@@ -68,6 +68,7 @@ def outer(path):
 @SURFACES
 @pytest.mark.parametrize("lean", [10.0, 20.0])
 @pytest.mark.parametrize("direction", ["clockwise", "counter-clockwise"])
+@pytest.mark.always
 def test_away_from_corners_the_torch_leans_as_asked(surface, lean, direction):
     path = planned(
         solids(surface, box()), deflection=math.radians(lean), process=ProcessParameters(direction=direction)
@@ -93,6 +94,7 @@ def test_away_from_corners_the_torch_leans_as_asked(surface, lean, direction):
     (CYLINDER, "contours", 2.0), (CONE, "contours", 6.0), (CYLINDER, "contours", 30.0), (CONE, "spiral", 2.0),
     (CYLINDER, "spiral", 6.0), (CONE, "lines", 6.0), (CYLINDER, "zigzag", 2.5), (CONE, "zigzag", 30.0),
 ])
+@pytest.mark.always
 def test_nowhere_does_the_torch_turn_faster(surface, fill, most):
     build = BuildDirectionParameters(lead=math.radians(5.0), tilt=math.radians(12.0), max_turn=math.radians(most))
     path = planned(solids(surface, box()), build=build, fill=fill, deflection=math.radians(8.0), layer_height=12.0)
@@ -106,6 +108,7 @@ def test_nowhere_does_the_torch_turn_faster(surface, fill, most):
 
 @SURFACES
 @pytest.mark.parametrize("most", ["inf", "auto"])
+@pytest.mark.always
 def test_the_lean_is_exact_at_points_and_kept_between_them(surface, most):
     """Whatever the torch does at corners it leans by 15 deg, to rounding at the points of a bead and to 0.1 deg between."""
     build = BuildDirectionParameters(tilt=math.radians(15.0), max_turn=most)

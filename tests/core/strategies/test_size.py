@@ -69,6 +69,7 @@ def on_faces(wall, **values):
     # layers around a bent pipe become three times as long
     lambda: on_faces(WALLS["a half shell"][0](), layers=3, layer_height=14.0, bead_spacing=15.0, chord_error=0.05),
 ])
+@pytest.mark.always
 def test_counts_are_about_right(make):
     told, made = make()
     assert 0.65 < told.layers / len(made.layers) < 1.35, (told, len(made.layers))

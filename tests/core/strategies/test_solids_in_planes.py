@@ -116,6 +116,7 @@ def test_outlines_are_those_where_it_is_cut(cut_at, share):
 
 
 @pytest.mark.parametrize("fill", ["contours", "lines", "zigzag", "spiral"])
+@pytest.mark.always("contours", "zigzag")
 def test_covers_what_beads_can_reach_and_nothing_else(fill):
     """Counted in pixels: what lies within half a spacing of a bead, against the section opened by a bead's half width."""
     bar = box((30, -15, 0), (75, 15, 8), "bar")
@@ -392,6 +393,7 @@ def test_faces_where_touching_solids_meet_lean_over_nothing():
 @pytest.mark.parametrize(
     "lean, most, told", [(30, 45, False), (50, 45, True), (50, 60, False), (80, 89, False), (88, 90, False)]
 )
+@pytest.mark.always("30-45-False", "50-45-True", "50-60-False", "80-89-False")
 def test_walls_that_lean_out_are_told(lean, most, told):
     """A frustum upside down; its area over each layer is that of the ring by which it is wider, less what may lean out."""
     height = 10.0 if told else 6.0  # three layers: wide ones take long
@@ -461,6 +463,7 @@ def test_random_hulls_are_filled():
 
 
 @pytest.mark.parametrize(("angle", "step"), [(0.0, 0.0), (90.0, 0.0), (30.0, 40.0), (-15.0, -120.0)])
+@pytest.mark.always
 def test_closed_beads_of_plane_layers_start_where_the_seam_says(angle, step):
     """On a ring that lies beside the origin: each layer's by the azimuth about its middle; where a box is farthest out that
     way. With a step no layer's start lies over that of the layer below."""

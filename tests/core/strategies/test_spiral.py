@@ -36,6 +36,7 @@ def exact(meridian, turned, pitch, end):
 @pytest.mark.parametrize("meridian", [FUNNEL, BENT, SPHERE])
 @pytest.mark.parametrize("pitch", [1.0, 2.7])
 @pytest.mark.parametrize("chord_error", [0.01, 0.1])
+@pytest.mark.always
 def test_one_open_bead_rises_by_a_layer_height_per_turn(meridian, pitch, chord_error):
     toolpath = spiral(meridian, layer_height=pitch, chord_error=chord_error)
     (layer,) = toolpath.layers

@@ -69,6 +69,7 @@ def test_layers_trimmed_at_the_end(frame):
 @pytest.mark.parametrize("end", ["trim", "whole"])
 @pytest.mark.parametrize("spacing", ["constant-distance", "smooth", "iso-parameter"])
 @pytest.mark.parametrize("turn", [90.0, 120.0, 150.0, 170.0, 179.0])
+@pytest.mark.always
 def test_bends_end_at_their_end_however_far_they_turn(turn, spacing, end):
     """Angles about the bend's axis from its start on, 0 to a whole turn; and the farthest places of the wall are covered."""
     last = np.radians(turn)

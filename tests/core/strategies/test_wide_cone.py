@@ -56,6 +56,7 @@ def test_what_is_left_of_a_ring_knows_how_far_round_it_is(at):
 
 @pytest.mark.parametrize(("fill", "contour"), [("contours", False), ("lines", False), ("lines", True)])
 @pytest.mark.parametrize("at", [0.0, 0.7])
+@pytest.mark.always
 def test_beads_on_both_sides_of_a_hole_stay_out_of_it(fill, contour, at):
     """No bead runs through the hole, and they come as near to it on one side as on the other."""
     strategy = DevelopableParameters(bead_spacing=SPACING, fill=fill, contour=contour, chord_error=0.2)

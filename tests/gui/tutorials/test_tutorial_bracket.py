@@ -2,10 +2,12 @@
 """Tutorial 4, step by step: a bracket in plane layers; what leans out of it, what is deposited of it; on a tilting table."""
 
 import FreeCAD as App
+import pytest
 
 PAGE = "bracket"
 
 
+@pytest.mark.long
 def test_the_bracket(person, hand, lesson, root):
     lesson.step("1. Open the bracket")
     lesson.open(root / "resources" / "examples" / "bracket.step")

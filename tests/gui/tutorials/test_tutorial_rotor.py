@@ -4,10 +4,12 @@
 import re
 
 import FreeCAD as App
+import pytest
 
 PAGE = "rotor"
 
 
+@pytest.mark.long
 def test_the_rotor(person, hand, lesson, root, tmp_path):
     examples = root / "resources" / "examples" / "rotor"
     lesson.step("1. Open the hub and its blades")

@@ -2,12 +2,14 @@
 """Tutorial 2, step by step: a bend on a pipe, stage by stage, with layers at an equal distance everywhere."""
 
 import FreeCAD as App
+import pytest
 
 from freecad_am.gui.plots import dock as plots
 
 PAGE = "tube-on-pipe"
 
 
+@pytest.mark.long
 def test_the_tube(person, hand, lesson, root, tmp_path):
     examples = root / "resources" / "examples"
     lesson.step("1. Open the tube and the pipe")

@@ -2,10 +2,12 @@
 """Tutorial 5, step by step: a Y in curved layers that need no support, held by a robot under a nozzle that stands still."""
 
 import FreeCAD as App
+import pytest
 
 PAGE = "wye"
 
 
+@pytest.mark.long
 def test_the_wye(person, hand, lesson, root):
     lesson.step("1. Open the Y")
     lesson.open(root / "resources" / "examples" / "wye.step")
