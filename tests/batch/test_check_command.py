@@ -92,6 +92,21 @@ def test_what_was_broken_is_told_with_its_place(workshop, sound, pattern, by, co
     assert report(workshop)["status"] == "infeasible"
 
 
+@pytest.mark.parametrize("controller", ["abb", "kuka", "linuxcnc", "siemens", "ur", "val3", "yaskawa"])
+def test_a_program_of_another_controller_is_refused_in_its_name(workshop, sound, root, controller):
+    """Whatever the cell's robot reads: golden programs of all other controllers."""
+    folder, _ = sound
+    for path in folder.iterdir():
+        path.unlink()
+    golden = root / "tests" / "golden" / controller
+    for path in golden.rglob("*"):
+        if path.is_file():
+            (folder / path.name).write_bytes(path.read_bytes())
+    done = run(workshop)
+    assert done.status == 2 and re.match(r"error\[(UNREADABLE_PROGRAM|NO_FILE)\]", done.err), done.err
+    assert "Traceback" not in done.err and not (workshop.folder / "out").exists()
+
+
 def test_programs_that_cannot_be_read_are_refused(workshop, sound):
     folder, _ = sound
     done = run(workshop, "--post", "siemens")

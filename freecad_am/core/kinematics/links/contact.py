@@ -9,7 +9,8 @@ against the base. A part that moves is all there from the beginning: cylinders a
 looked at as it is against bodies, without clearance: it deposits next to them. What holds the nozzle is looked at where
 `cell.nozzle.shape` shows it. The links of positioner and track (`beside`) move with their axes: those of the robot, nozzle
 and torch are looked at against them, the part against those of the positioner that it does not stand on, and they against
-obstacles. Links of the robot against each other: `own`. The floor and cables are not looked at at all.
+obstacles. Links of the robot against each other: `own`. The floor is looked at where it is an obstacle, cables and hoses
+where the file of the torch has them.
 """
 
 from __future__ import annotations
