@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from freecad_am.core.types import Array, Mask
 
 from ..core.geometry import frames
+from ..core.geometry.columns import lengths
 from ..core.kinematics.cell import Cell
 from .planned import Planned, pieces
 from .text_path import Joints, Path, tip_bounds
@@ -50,14 +51,42 @@ def _tips(cell: Cell, serial: Array) -> tuple[Array, Array]:
 
 
 def beads_between(cell: Cell, planned: Planned, shown: Array, path: Path, chord_error: float) -> tuple[float, Mask]:
-    """Largest distance of the tip from the planned segments while joints run straight, and the moves too far off."""
+    """Largest distance of the tip from the planned segments while joints run straight, and the moves too far off.
+
+    The tip is driven where it can be off, or farther than it is anywhere else: between points no farther from the planned
+    ones it leaves their segment by that and its bow at most.
+    """
+    serial, ends = cell.machine.from_controller(shown), planned.ends
     largest, off = 0.0, np.zeros(len(shown), dtype=bool)
-    for ends in pieces(planned.ends):
-        joints = shown[ends - 1, None] + BETWEEN[:, None] * (shown[ends] - shown[ends - 1])[:, None]
-        tips = cell.tip_at(cell.machine.from_controller(joints.reshape(-1, shown.shape[1])))
-        strayed, off[ends] = _off_segments(planned, ends, tips, path, chord_error)
+    most = _larger_at_ends(lengths(path.position - planned.position), ends) + _bow(cell, serial, ends)
+    most[~(most <= chord_error + _larger_at_ends(path.bound, ends))] = np.inf
+    falling = np.argsort(-most)
+    for some in pieces(falling):
+        if most[some[0]] <= largest:
+            break
+        rows = ends[some]
+        tips = cell.tip_at(_between(serial, rows))
+        strayed, off[rows] = _off_segments(planned, rows, tips, path, chord_error)
         largest = float(np.maximum(largest, strayed))
     return largest, off
+
+
+def _larger_at_ends(values: Array, ends: NDArray[np.intp]) -> Array:
+    """(len(ends),) the larger of what is told of the row `ends` and of the one before; NaN where one is."""
+    return np.maximum(values[ends - 1], values[ends])
+
+
+def _bow(cell: Cell, serial: Array, ends: NDArray[np.intp]) -> Array:
+    """(len(ends),) mm by how much the tip leaves its chord at most while joints run straight to the rows `ends`: an eighth
+    of its second derivative, in which each turn acts on each other one over a lever no longer than the whole chain, and
+    twice on what slides."""
+    chain, slides = cell.machine.chain, cell.machine.chain.sliding
+    links = [*chain.origins, chain.flange, cell.carried, cell.station]
+    lever = sum(np.linalg.norm(link[:3, 3]) for link in links) + np.abs(serial[:, slides]).max(axis=0).sum()
+    step = np.abs(serial[ends] - serial[ends - 1])
+    turned, slid = step[:, ~slides].sum(axis=1), step[:, slides].sum(axis=1)
+    bow: Array = turned * (0.125 * lever * turned + 0.25 * slid)
+    return bow
 
 
 def tools_between(
@@ -85,7 +114,7 @@ def _off_segments(
     away -= share[..., None] * step[:, None]
     apart = np.einsum("nki,nki->nk", away, away)
     distance = np.sqrt(np.maximum.reduce([apart[:, k] for k in range(len(BETWEEN))]))
-    return float(distance.max()), ~(distance <= chord_error + np.maximum(path.bound[ends - 1], path.bound[ends]))
+    return float(distance.max()), ~(distance <= chord_error + _larger_at_ends(path.bound, ends))
 
 
 def _straight(start: Array, end: Array) -> Array:

@@ -15,6 +15,7 @@ from ..kinematics import jacobian as jac
 from ..kinematics.cell import Cell
 from ..kinematics.inverse.serial_arm import SerialArm
 from ..kinematics.limits import Limits
+from ..kinematics.pose_frames import PoseFrames
 from ..parameters.joints import JointParameters
 from ..types import Array
 from .arm.kept import ArmKept
@@ -207,22 +208,27 @@ class Task:
         """The robot's Jacobians (k, 6, 6) at the deposition point of pieces of the points, phi (T,) and joints (T, axes),
         with which of them these are: together they would take much memory."""
         for some in in_pieces(len(points)):
-            if self.cell.torch_stands:  # and the point of deposit is known without the poses
-                yield some, jac.jacobian(self.cell.robot.chain, self._own(joints[some]), self.cell.station[:3, 3])
-            else:
-                yield some, self.jacobian_at(points.frames.of(some).at(phi[some]), joints[some])
+            yield some, self.jacobian_at(points.frames.of(some), phi[some], joints[some])
 
-    def jacobian_at(self, flange: Array, joints: Array) -> Array:
-        """(N, 6, 6) Jacobian of the robot at the deposition point for flange poses (N, 4, 4) and joints (N, axes)."""
-        arm = self.cell.robot.chain
-        result: Array = jac.jacobian(arm, self._own(joints), self.cell.deposition_point(flange))
+    def jacobian_at(self, poses: PoseFrames, phi: Array, joints: Array) -> Array:
+        """(N, 6, 6) Jacobian of the robot at the deposition point for poses at rotations phi (N,) and joints (N, axes)."""
+        return self._jacobian(self._tips_of(poses, phi), joints)
+
+    def _jacobian(self, flange: Array, joints: Array) -> Array:
+        result: Array = jac.jacobian(self.cell.robot.chain, self._own(joints), self.cell.deposition_point(flange))
         return result
+
+    def _tips_of(self, poses: PoseFrames, phi: Array) -> Array:
+        """(N, 4, 4) flange poses that tell where the deposition point is and what phi turns about: where the torch stands
+        that is known, and any will do."""
+        return np.broadcast_to(np.eye(4), (len(phi), 4, 4)) if self.cell.torch_stands else poses.at(phi)
 
     def condition(self, points: Points, phi: Array, joints: Array) -> Array:
         """(..., T) sigma_min / sigma_max of the scaled Jacobian at the deposition point, 0 where unreachable."""
         if phi.ndim == 1:
             return np.concatenate([
-                self.condition_at(points.frames.of(some).at(phi[some]), joints[some]) for some in in_pieces(len(points))
+                self.condition_at(self._tips_of(points.frames.of(some), phi[some]), joints[some])
+                for some in in_pieces(len(points))
             ])
         flange = points.frames.at(phi).reshape(-1, 4, 4)
         return self.condition_at(flange, joints.reshape(-1, joints.shape[-1])).reshape(joints.shape[:-1])
@@ -234,7 +240,7 @@ class Task:
         for piece in in_pieces(len(good)):
             some = good[piece]
             value[some] = jac.condition(
-                self.jacobian_at(flange[some], joints[some]), self.parameters.characteristic_length
+                self._jacobian(flange[some], joints[some]), self.parameters.characteristic_length
             )
         # the last bits depend on where in memory the arrays happen to lie: the same job gives the same bytes without them
         return np.round(value, 12)
@@ -248,10 +254,11 @@ class Task:
         at_zero = self.condition(points, phi, self.raw_joints(points, phi))
         return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
 
-    def rotation_rates(self, flange: Array, joints: Array) -> tuple[Array, Array]:
-        """d q / d phi (N, axes), none of external axes, and the robot's Jacobian (N, 6, 6) at N flange poses (N, 4, 4) that
-        are reached."""
-        matrix = self.jacobian_at(flange, joints)
+    def rotation_rates(self, poses: PoseFrames, phi: Array, joints: Array) -> tuple[Array, Array]:
+        """d q / d phi (N, axes), none of external axes, and the robot's Jacobian (N, 6, 6) for poses at rotations phi (N,)
+        that are reached."""
+        flange = self._tips_of(poses, phi)
+        matrix = self._jacobian(flange, joints)
         twist = np.zeros((len(joints), 6, 1))
         twist[:, 3:, 0] = self.cell.rotation_axis(flange)
         try:

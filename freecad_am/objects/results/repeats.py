@@ -22,9 +22,9 @@ Words = NDArray[np.uint64]
 
 SHORTEST = 64  # numbers in a stretch worth leaving out
 EVERY = 32  # numbers from one place that may be found again to the next: half of SHORTEST, so that none is missed
-MOST_BITS = 24  # of the table of marks; of each 32 of its places one is taken at the most, as far as this goes
+_DOUBLED = (1, 2, 4, 8, 16)  # steps that make the least of two numbers the least of EVERY
 MOST_TRIED = 300_000
-PIECE = 1 << 16  # places that are looked at together
+PIECE = 1 << 14  # places that are looked at together: as many as stay near the processor
 FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0xD6E8FEB86659FD93], dtype=np.uint64)
 
 
@@ -161,39 +161,43 @@ def _kept(size: int, copies: Index) -> NDArray[np.bool_]:
 
 
 def _candidates(words: Words) -> tuple[Index, Index]:
-    """Places (k,) in order where four words stand that stand before at a multiple of EVERY, and there the first of these."""
-    count = len(words) - len(FACTORS) + 1
-    if count < 2 * SHORTEST:
-        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    anchors = np.arange(0, count, EVERY)
-    # runs of one number, which are left out elsewhere
-    anchors = anchors[(words[anchors] != words[anchors + 1]) | (words[anchors + 1] != words[anchors + 2])]
-    known, first = np.unique(_marks([words[anchors + k] for k in range(len(FACTORS))]), return_index=True)
-    if not len(known):
-        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    bits = min(MOST_BITS, len(known).bit_length() + 5)
-    shift = np.uint64(64 - bits)
-    table = np.zeros(1 << bits, dtype=bool)
-    table[(known >> shift).astype(np.intp)] = True
-    packed, found = np.packbits(table, bitorder="little"), []  # small enough to stay near the processor
-    for start in range(0, count, PIECE):
-        stop = min(start + PIECE, count)
-        marks = _marks([words[start + k : stop + k] for k in range(len(FACTORS))])
-        entry = (marks >> shift).view(np.int64)
-        places = np.flatnonzero(packed[entry >> 3] >> (entry & 7).astype(np.uint8) & 1)
-        at, order = np.empty(len(places), dtype=np.int64), np.argsort(marks[places])  # in order they are found sooner
-        at[order] = np.minimum(np.searchsorted(known, marks[places[order]]), len(known) - 1)
-        source = anchors[first[at]]
-        good = (known[at] == marks[places]) & (source + SHORTEST <= places + start)
-        places, source = places[good] + start, source[good]
-        # at most EVERY of a stretch come before its candidate: as many, at least, come after
-        places, source = places[places + EVERY <= len(words)], source[places + EVERY <= len(words)]
-        for k in range(EVERY - 1, 0, -1):
-            good = words[places + k] == words[source + k]
-            places, source = places[good], source[good]
-        found.append(np.stack([places, source]))
-    places, source = np.concatenate(found, axis=1)
-    return places.astype(np.int64), source.astype(np.int64)
+    """Places (k,) in order where words stand that stand before, and the first place where they do."""
+    places = _landmarks(words)
+    marks = _marks([words[places + k] for k in range(len(FACTORS))])
+    order = np.argsort(marks, kind="stable")  # of the same marks the first place first
+    ranked = marks[order]
+    first = np.flatnonzero(np.append(True, ranked[1:] != ranked[:-1])) if len(ranked) else order
+    source = np.empty_like(places)
+    source[order] = np.repeat(places[order[first]], np.diff(np.append(first, len(ranked))))
+    # at most EVERY of a stretch come before its candidate: as many, at least, come after
+    good = (source + SHORTEST <= places) & (places + EVERY <= len(words))
+    places, source = places[good], source[good]
+    for k in range(EVERY):
+        good = words[places + k] == words[source + k]
+        places, source = places[good], source[good]
+    return places, source
+
+
+def _landmarks(words: Words) -> Index:
+    """Places (k,) in order that what stands there tells, wherever it stands: of each EVERY words that follow each other the
+    one that is least once it is scrambled. One in sixteen, without runs of one number, which are left out elsewhere."""
+    around, found = EVERY - 1, [np.zeros(0, dtype=np.int64)]
+    for start in range(0, len(words), PIECE):
+        low, high = start - around, start + PIECE + around
+        seen = words[max(low, 0) : high]
+        scrambled = np.full(high - low, np.iinfo(np.uint32).max, dtype=np.uint32)
+        scrambled[max(-low, 0) : max(-low, 0) + len(seen)] = (seen * FACTORS[0]) >> np.uint64(32)
+        least = scrambled
+        for k in _DOUBLED:
+            least = np.minimum(least[k:], least[:-k])
+        most = least
+        for k in _DOUBLED:
+            most = np.maximum(most[k:], most[:-k])
+        found.append(start + np.flatnonzero(scrambled[around:-around] == most))
+    places = np.concatenate(found)
+    places = places[places <= len(words) - len(FACTORS)]
+    chosen: Index = places[(words[places] != words[places + 1]) | (words[places + 1] != words[places + 2])]
+    return chosen
 
 
 def _marks(words: Sequence[Words]) -> Words:

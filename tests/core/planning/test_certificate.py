@@ -127,7 +127,7 @@ def test_objectives_of_points_one_by_one(planned, objective):
     good = np.isfinite(joints).all(axis=1)
     value, ratio = np.full(len(joints), np.inf), np.zeros(len(joints))
     rows = points.each(every[good])
-    value[good] = criteria.value(task, rows, joints[good], task.jacobian_at(flange[good], joints[good]))
+    value[good] = criteria.value(task, rows, joints[good], task.jacobian_at(rows.frames, turned[good], joints[good]))
     ratio[good] = task.condition_at(flange[good], joints[good])
     kept = (task.given_rows.margin(joints) >= 0.0) & (ratio >= path.threshold[every])
     least = np.where(kept, value, np.inf).reshape(len(points), -1).min(axis=1)

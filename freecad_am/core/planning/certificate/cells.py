@@ -97,7 +97,7 @@ def _condition(task: Task, points: Points, phi: Array, joints: Array, rows: Inde
     """The condition at chosen rows, 0 out of reach; where a bound tells that it is far above the threshold, that bound."""
     ratio = np.zeros(len(rows))
     good = np.flatnonzero(np.isfinite(joints[rows]).all(axis=1))
-    matrix = task.jacobian_at(points.frames.of(rows[good]).at(phi[rows[good]]), joints[rows[good]])
+    matrix = task.jacobian_at(points.frames.of(rows[good]), phi[rows[good]], joints[rows[good]])
     length = task.parameters.characteristic_length
     bound = jac.condition_bound(matrix, length)
     near = bound < 2.0 * threshold[good]

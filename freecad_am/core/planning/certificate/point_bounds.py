@@ -57,7 +57,7 @@ def _values(task: Task, points: Points, index: Index, phi: Array) -> Array:
         return np.asarray((offset**2).sum(axis=1) * (0.25 if name == "limits-fournier" else 1.0))
     worth = np.full(len(phi), np.nan)
     good = np.flatnonzero(np.isfinite(joints).all(axis=1))
-    matrix = task.jacobian_at(chosen.frames.of(good).at(phi[good]), joints[good])
+    matrix = task.jacobian_at(chosen.frames.of(good), phi[good], joints[good])
     measure = jac.manipulability if name == "manipulability" else jac.condition
     worth[good] = 1.0 / np.maximum(measure(matrix, task.parameters.characteristic_length), 1e-300)
     return worth

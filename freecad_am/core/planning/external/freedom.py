@@ -89,7 +89,7 @@ class Freedom:
         joints = task.joints(points, phi)
         if np.isnan(joints).any():
             return None
-        rate, matrix = task.rotation_rates(points.frames.at(phi), joints)
+        rate, matrix = task.rotation_rates(points.frames, phi, joints)
         rates = [rate * phi_rate[:, None], *(one * unit for one, unit in zip(
             external_rates(task.cell, points.position, joints), self.unit, strict=True))]
         slope = np.concatenate([criteria.rate(task, points, joints, one, matrix) @ self.shape for one in rates])

@@ -63,7 +63,7 @@ def _step(
         if not good.any():
             break
         part = at.each(np.flatnonzero(good))
-        rates, _ = task.rotation_rates(part.frames.at(phi[good]), joints[good])
+        rates, _ = task.rotation_rates(part.frames, phi[good], joints[good])
         away = joints[good] - before[good]
         curvature = (rates * rates) @ task.weights
         phi[good] -= np.clip(((away * rates) @ task.weights) / np.maximum(curvature, 1e-15), -0.2, 0.2)

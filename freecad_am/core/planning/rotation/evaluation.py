@@ -28,7 +28,7 @@ def judged(
     condition = task.condition(points, phi, joints)
     matrix = None
     if task.parameters.objective not in criteria.JOINT_ONLY and np.isfinite(joints).all():
-        matrix = task.jacobian_at(points.frames.at(phi), joints)
+        matrix = task.jacobian_at(points.frames, phi, joints)
     objective = (
         criteria.value(task, points, joints, matrix)
         if matrix is not None or task.parameters.objective in criteria.JOINT_ONLY

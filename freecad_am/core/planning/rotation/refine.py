@@ -205,7 +205,7 @@ def _at_all_points(
     joints = task.joints(points, phi)
     if np.isnan(joints).any():
         return None
-    rates, matrix = task.rotation_rates(points.frames.at(phi), joints)
+    rates, matrix = task.rotation_rates(points.frames, phi, joints)
     rates = rates * phi_rate[:, None]
     value = values_of(task, thresholds, phi, joints, jac.condition(matrix, task.parameters.characteristic_length))
     slope = slopes_of(task, phi, phi_rate, joints, rates, matrix)

@@ -39,7 +39,7 @@ def state_of(task: Task, points: Points, thresholds: Array, coefficients: Array,
     powers = points.powers(coefficients.shape[1] - 1)
     if not slopes and task.parameters.objective in criteria.JOINT_ONLY:
         return _state_in_pieces(task, points, thresholds, phi, phi_rate, joints, powers)
-    rates, matrix = task.rotation_rates(points.frames.at(phi), joints)
+    rates, matrix = task.rotation_rates(points.frames, phi, joints)
     rates = rates * phi_rate[:, None]
     objective = criteria.value(task, points, joints, matrix)
     gradient = _gradient(points, criteria.rate(task, points, joints, rates, matrix), powers)
@@ -63,7 +63,7 @@ def _state_in_pieces(
     length = task.parameters.characteristic_length
     rates, ratio = np.empty_like(joints), np.empty(len(points))
     for some in in_pieces(len(points)):
-        rates[some], matrix = task.rotation_rates(points.frames.of(some).at(phi[some]), joints[some])
+        rates[some], matrix = task.rotation_rates(points.frames.of(some), phi[some], joints[some])
         bound = jac.condition_bound(matrix, length)
         open_ = bound < thresholds[some] * (1.0 + CONDITION_RESERVE)
         bound[open_] = jac.condition(matrix[open_], length)

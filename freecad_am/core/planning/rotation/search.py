@@ -130,10 +130,9 @@ def _objective(task: Task, points: Points, phi: Array, joints: Array) -> Array:
         value = criteria.JOINT_ONLY[name](task, points, joints)
         return value if name == "displacement" else value + TIE * _turned(points, joints)
     flat = joints.reshape(-1, joints.shape[-1])
-    flange = points.frames.at(phi).reshape(-1, 4, 4)
-    good = np.isfinite(flat).all(axis=1)
+    good = np.flatnonzero(np.isfinite(flat).all(axis=1))
     worth = np.full(len(flat), np.nan)
-    matrix = task.jacobian_at(flange[good], flat[good])
+    matrix = task.jacobian_at(points.frames.of(good % len(points)), phi.ravel()[good], flat[good])
     length = task.parameters.characteristic_length
     measure = jac.manipulability if name == "manipulability" else jac.condition
     worth[good] = 1.0 / np.maximum(measure(matrix, length), 1e-300)
@@ -151,8 +150,7 @@ def _screened_condition_margin(
     task: Task, points: Points, phi: Array, joints: Array, index: NDArray[np.int64], thresholds: Array
 ) -> Array:
     """Condition margins of chosen poses: exact near the threshold, by the bound where that settles the sign."""
-    flange = points.frames.of(index).at(phi)
-    matrix = task.jacobian_at(flange, joints)
+    matrix = task.jacobian_at(points.frames.of(index), phi, joints)
     length = task.parameters.characteristic_length
     bound = jac.condition_bound(matrix, length)
     threshold = thresholds[index]
