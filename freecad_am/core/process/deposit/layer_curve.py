@@ -27,7 +27,7 @@ SMOOTH = 1e-3  # rad; where the tangents of a bead are known, a corner is a poin
 _ALL = 15_000  # pairs of points and segments that are looked at one by one: of more a tree finds the near ones sooner
 _CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
 _TIE = 1e-9  # mm; where two chords meet both are the nearest: rounding does not choose between them
-_FIRST_TRIED = 8  # segments that are tried first
+_FIRST_TRIED = 5  # segments that are tried first
 _BEYOND = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
 
 
