@@ -354,7 +354,9 @@ def test_a_defective_urdf_is_called_by_its_name_and_quaternions_are_seen_whole(p
 
 def test_a_positioner_out_of_the_urdf_of_a_whole_cell(person, hand, wizard, tmp_path):
     path = tmp_path / "cell.urdf"
-    path.write_text(urdf_cells.whole_cell(), encoding="utf-8")
+    box = '<collision><origin xyz="0 0 0.1"/><geometry><box size="0.4 0.5 0.2"/></geometry></collision>'
+    path.write_text(urdf_cells.whole_cell().replace(
+        '<link name="positioner_base_link"/>', f'<link name="positioner_base_link">{box}</link>'), encoding="utf-8")
     hand.enter(wizard, "file", str(path))
     mechanism = person.field(wizard, "mechanism")
     assert [mechanism.itemText(row) for row in range(mechanism.count())] == ["Robot", "Track", "Positioner"]
@@ -379,5 +381,8 @@ def test_a_positioner_out_of_the_urdf_of_a_whole_cell(person, hand, wizard, tmp_
     hand.enter(wizard, "poseSource", "pendant")
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
     made = external.load("table-7", user_machines.folders())
+    ((piece,), tilt, table) = made.bodies
+    np.testing.assert_allclose([piece.points.min(axis=0), piece.points.max(axis=0)], [[-200, -250, 0], [200, 250, 200]])
+    assert (tilt, table) == ((), ())
     q = np.random.default_rng(3).uniform(-2, 2, (30, 2))
     np.testing.assert_allclose(made.chain.forward(q), given.chain.forward(q), atol=1e-6)

@@ -18,6 +18,7 @@ from ...core.kinematics.inverse.opw import OpwArm
 from ...core.kinematics.machines import denavit_hartenberg, machine
 from ...core.kinematics.machines import draft as machine_draft
 from ...core.kinematics.machines.draft import Draft
+from ...core.kinematics.urdf import machine as urdf_machine
 from ...core.kinematics.urdf.cell import UrdfCell
 from ...core.kinematics.urdf.read import Urdf
 from ...core.kinematics.urdf.reference import reference
@@ -235,7 +236,10 @@ class SourcePage(Page):
         if not self.tip.count():
             said = tr("no link is carried by {}").format(self.base.currentText())
             raise InputError("BAD_URDF", os.path.basename(path), said)
-        described = self.robot.between(self.base.currentText(), self.tip.currentText())
+        ends = self.robot, self.base.currentText(), self.tip.currentText()
+        described = self.robot.between(*ends[1:])
+        if urdf_machine.is_mechanism(described.chain):
+            described = urdf_machine.beside(*ends)
         draft = machine_draft.of_description(described, f"URDF {os.path.basename(path)}, {self.base.currentText()} to "
                                              f"{self.tip.currentText()}")
         if not self._stands():

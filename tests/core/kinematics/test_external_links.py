@@ -13,11 +13,14 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.external import MECHANISMS
+from freecad_am.core.kinematics.external import MECHANISMS, load
 from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.kinematics.links.external_links import external_links
 from freecad_am.core.kinematics.links.rounds import NONE
+from freecad_am.core.kinematics.machines import draft as machine_draft
+from freecad_am.core.kinematics.urdf import machine as urdf_machine
+from freecad_am.core.kinematics.urdf import read as urdf
 from freecad_am.core.kinematics.urdf.cell import texts_of
 from freecad_am.core.kinematics.urdf.reference import Reference
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
@@ -270,6 +273,39 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
             expected = sides @ there[:3, :3].T + there[:3, 3]
         gap = np.linalg.norm(corners[None] - expected[:, None], axis=2).min(axis=1)
         assert gap.max() < 1e-5, one.name
+
+
+def test_a_machine_file_made_of_a_urdf_has_its_bodies(tmp_path):
+    """As the file is read again: box, cylinder and mesh of a table, where their numbers say; and no others."""
+    stl(tmp_path / "plate.stl")
+    text_ = urdf_cells.whole_cell()
+    for link in ("positioner_base_link", "positioner_link_2"):
+        text_ = text_.replace(f'<link name="{link}"/>', f'<link name="{link}">{URDF_BODIES}</link>')
+    text_ = text_.replace("</robot>", PLATE + urdf_cells.fixed("positioner_tool0", "plate", "0.01 0.02 0.03", "0 0 1")
+                          + "</robot>")
+    (tmp_path / "bay.urdf").write_text(text_, encoding="utf-8")
+    described = urdf_machine.beside(urdf.Urdf(tmp_path / "bay.urdf"), "positioner_base_link", "positioner_tool0")
+    q = np.radians([[0.0, 0.0], [20.0, -50.0], [-70.0, 130.0]])
+    draft = dataclasses.replace(machine_draft.of_description(described, "URDF bay.urdf"), id="mine", title="Mine",
+                                values=np.degrees(q), poses=described.chain.forward(q))
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    (folder / "mine.json").write_text(machine_draft.text(draft), encoding="utf-8")
+    told = json.loads((folder / "mine.json").read_text(encoding="utf-8"))["bodies"]
+    assert told["source"] == "URDF bay.urdf" and set(told) == {"source", "base", list(described.joints)[1]}
+    base, tilt, table = load("mine", (str(folder),)).bodies
+    assert (len(base), len(tilt), len(table)) == (2, 0, 3)
+    at = frames.from_rpy([100.0, 200.0, 300.0], [0.3, 0.0, 0.4])
+    sides = np.array([[x, y, z] for x in (-100, 100) for y in (-150, 150) for z in (-200, 200)]) @ at[:3, :3].T + at[:3, 3]
+    for brick, rod in (base, table[:2]):
+        assert np.linalg.norm(brick.points[None] - sides[:, None], axis=2).min(axis=1).max() < 1e-6
+        assert np.linalg.norm(brick.points[None] - sides[:, None], axis=2).min(axis=0).max() < 1e-6
+        radius = np.hypot(*rod.points[:, :2].T)
+        assert radius.max() < 60.5 and np.ptp(rod.points[:, 2]) == pytest.approx(100.0) and rod.points[:, 2].min() == -100.0
+        assert np.isclose(radius, 60.0 / np.cos(np.pi / 40)).any()  # the polygon holds the cylinder
+    zero = urdf_cells.placed(text_, dict.fromkeys(re.findall(r'joint name="([^"]+)" type="(?:rev|pris|con)', text_), 0.0))
+    seen = np.linalg.inv(zero["positioner_link_2"]) @ zero["plate"]
+    np.testing.assert_allclose(mesh_of(table[2])[0], CORNERS @ seen[:3, :3].T + seen[:3, 3], atol=1e-6)
 
 
 def mesh_of(shape):

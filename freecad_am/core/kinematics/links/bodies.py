@@ -3,15 +3,31 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from ...types import Array
 from ..machines.file import Node
 from . import solids
-from .shape import BASE, LinkShape
+from .shape import BASE, LinkShape, shape_of
 from .solids import BODY, BRIGHT, Solid
 
 Pieces = tuple[LinkShape | Solid, ...]
+
+
+@dataclass(frozen=True)
+class Primitive(Solid):
+    """A box or cylinder (`kind`) with its `size` as a machine file has them, mm, and where its middle is: pose (4, 4)."""
+
+    kind: str = ""
+    size: tuple[float, ...] = ()
+    pose: Array | None = None
+
+    def moved(self, pose: Array) -> Primitive:
+        """The piece moved by a pose (4, 4)."""
+        solid = super().moved(pose)
+        return replace(self, points=solid.points, normals=solid.normals, pose=pose if self.pose is None else pose @ self.pose)
 
 
 def link_bodies(top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | None, ...]) -> tuple[Pieces, ...]:
@@ -26,12 +42,14 @@ def link_bodies(top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | No
     text = top["bodies"].only("source", *links)
     text["source"].text()
     return tuple(
-        tuple(_solid(piece, last=name == links[-1]) for piece in text[name].items()) if text.has(name) else ()
+        tuple(_piece(piece, last=name == links[-1]) for piece in text[name].items()) if text.has(name) else ()
         for name in links
     )
 
 
-def _solid(node: Node, last: bool) -> Solid:
+def _piece(node: Node, last: bool) -> LinkShape | Solid:
+    if node.has("file"):
+        return shape_of(node)
     node.only("box", "cylinder", "origin", "rpy")
     kind, count = ("box", 3) if node.has("box") else ("cylinder", 2)
     size = node[kind].numbers(count)
@@ -42,14 +60,18 @@ def _solid(node: Node, last: bool) -> Solid:
     return (box if kind == "box" else cylinder)(size, tone).moved(pose)
 
 
-def box(size: Array, tone: str = BODY) -> Solid:
+def box(size: Array, tone: str = BODY) -> Primitive:
     """A box of `size` (3,) mm about the origin."""
     x, y, z = size.tolist()
-    return solids.box(np.zeros(3), np.eye(3)[0], np.eye(3)[1], (x, y, z), tone)
+    return _primitive(solids.box(np.zeros(3), np.eye(3)[0], np.eye(3)[1], (x, y, z), tone), "box", size)
 
 
-def cylinder(size: Array, tone: str = BODY) -> Solid:
+def cylinder(size: Array, tone: str = BODY) -> Primitive:
     """A cylinder of a diameter and a length, `size` (2,) mm, along Z about the origin, as a polygon that holds it."""
     radius, half = 0.5 * float(size[0]) / np.cos(np.pi / solids.SIDES), 0.5 * float(size[1])
     outline = [(0.0, 0.0), (radius, 0.0), (radius, 1.0), (0.0, 1.0)]
-    return solids.turned(outline, [0.0, 0.0, -half], [0.0, 0.0, half], tone)
+    return _primitive(solids.turned(outline, [0.0, 0.0, -half], [0.0, 0.0, half], tone), "cylinder", size)
+
+
+def _primitive(solid: Solid, kind: str, size: Array) -> Primitive:
+    return Primitive(solid.points, solid.normals, solid.triangles, solid.tone, kind, tuple(size.tolist()), np.eye(4))

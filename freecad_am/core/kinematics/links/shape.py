@@ -37,10 +37,11 @@ def link_shapes(top: Node, joints: tuple[str, ...]) -> tuple[LinkShape | None, .
     if not top.has("shapes"):
         return (None,) * len(links)
     entries = top["shapes"].only(*links)
-    return tuple(_shape(entries[name]) if entries.has(name) else None for name in links)
+    return tuple(shape_of(entries[name]) if entries.has(name) else None for name in links)
 
 
-def _shape(node: Node) -> LinkShape:
+def shape_of(node: Node) -> LinkShape:
+    """The shape that an entry of a machine file names. Raises InputError 'BAD_MACHINE' as `link_shapes` does."""
     node.only("file", "origin", "rpy", "scale", "colour")
     path = Path(node["file"].text())
     if path.suffix.lower() not in FORMATS:

@@ -19,6 +19,7 @@ from ...types import Array
 from ..chain import Chain
 from ..inverse.opw import OpwArm
 from ..inverse.serial_arm import SerialArm
+from ..links.bodies import Pieces, Primitive
 from ..links.shape import BASE, LinkShape
 from ..urdf import machine as urdf_machine
 from ..urdf.read import Description
@@ -41,7 +42,8 @@ class Draft:
     infinite where endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None
     without. `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm,
     with flange `poses` (n, 4, 4) in base_link. `notes`: what a user should know of the source; `remarks` go into the file.
-    `labels`: what the pendant calls the axes, None where it numbers them.
+    `labels`: what the pendant calls the axes, None where it numbers them. `bodies` (axes + 1): of what stands beside a robot,
+    what its links are made of.
     """
 
     id: str
@@ -66,6 +68,7 @@ class Draft:
     notes: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     labels: tuple[str, ...] | None = None
+    bodies: tuple[Pieces, ...] = ()
 
     @property
     def units(self) -> Array:
@@ -80,6 +83,7 @@ def of_description(described: Description, source: str) -> Draft:
     return replace(
         draft, lower=found.lower, upper=found.upper, max_speed=found.max_speed,
         base=np.eye(4) if found.base is None else found.base, shapes=found.shapes, notes=found.notes,
+        bodies=found.bodies,
     )
 
 
@@ -146,6 +150,10 @@ def text(draft: Draft) -> str:
     shapes = _shapes(draft)
     if shapes:
         content["shapes"] = shapes
+    if any(draft.bodies):
+        content["bodies"] = {"source": draft.sources[0], **{
+            name: [_piece(one) for one in pieces] for name, pieces in zip((BASE, *draft.joints), draft.bodies, strict=True)
+            if pieces}}
     content["check_poses"] = _check_poses(draft)
     written = _compact(json.dumps(content, indent=2, ensure_ascii=False)) + "\n"
     machines.parse(written, Path(f"{draft.id}.json"))
@@ -221,13 +229,23 @@ def _coupled_label(row: Array) -> str:
 
 
 def _shapes(draft: Draft) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for name, shape in zip((BASE, *draft.joints), draft.shapes, strict=True):
-        if shape is not None:
-            found[name] = {"file": str(shape.path), **_pose(shape.pose), "scale": shape.scale}
-            if shape.colour is not None:
-                found[name]["colour"] = [round(value, 4) for value in shape.colour]
+    named = zip((BASE, *draft.joints), draft.shapes, strict=True)
+    return {name: _shape(shape) for name, shape in named if shape is not None}
+
+
+def _shape(shape: LinkShape) -> dict[str, Any]:
+    found: dict[str, Any] = {"file": str(shape.path), **_pose(shape.pose), "scale": shape.scale}
+    if shape.colour is not None:
+        found["colour"] = [round(value, 4) for value in shape.colour]
     return found
+
+
+def _piece(piece: Any) -> dict[str, Any]:
+    """A part of a body, as `links.bodies` reads it."""
+    if isinstance(piece, LinkShape):
+        return _shape(piece)
+    assert isinstance(piece, Primitive) and piece.pose is not None
+    return {piece.kind: _figures(piece.size), **_pose(piece.pose)}
 
 
 def _check_poses(draft: Draft) -> list[dict[str, Any]]:
