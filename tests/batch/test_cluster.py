@@ -150,6 +150,7 @@ def test_same_bytes_as_without_and_a_lost_worker_loses_nothing(workshop, cluster
 
 
 @dask
+@pytest.mark.long
 def test_interrupted_and_resumed(workshop, cluster):
     write_rows(workshop)
     process = started(workshop, "--scheduler", cluster.address, "-o", "rows")

@@ -73,9 +73,10 @@ EXAMPLES = (
         "walls/tube-on-scanned-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), substrate_error=0.036,
         spacing_error=1e-3,
     ),
-    Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate, spacing_error=1e-3),
 )
-LONG = (Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 4.0, cone, spacing_error=1e-3),)
+LONG = (
+    Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate, spacing_error=1e-3),
+Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 4.0, cone, spacing_error=1e-3),)
 
 
 class Plans:

@@ -332,6 +332,7 @@ def test_two_documents_at_once(person, hemisphere, coarse):
 
 
 @pytest.mark.parametrize("whole", [True, False])
+@pytest.mark.always("False")
 def test_a_job_copied_into_another_document(person, hemisphere, coarse, whole):
     doc = hemisphere.Document
     api.make_all(doc, hemisphere)

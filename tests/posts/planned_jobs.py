@@ -179,6 +179,21 @@ WAYS = (
 )  # fmt: skip
 
 
+def _spanning():
+    """Names of ways in which each post is with each motion and feed it has, with its external axes, and each set-up is."""
+    seen, names = set(), []
+    for post, motion, feed, setup in reversed(WAYS):
+        kind = setup.removeprefix(f"{post} ")
+        new = {(post, motion, feed), kind} | ({(post, "external")} if "track" in kind or "positioner" in kind else set())
+        if not new <= seen:
+            names.append(" ".join((post, motion, feed, setup)))
+        seen |= new
+    return names
+
+
+SPANNING = _spanning()
+
+
 def _bead(hub, side, layer):
     """A short bead on one side: along the cone and a little around it."""
     skin, share = hub.offset(SKIN + HEIGHT * layer), np.linspace(0.0, 1.0, 9)

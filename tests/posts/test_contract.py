@@ -15,7 +15,7 @@ from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts import planned_jobs
 from tests.posts.driven import Drive, bead_body, depth_in_hub, depths_in_nozzle
-from tests.posts.planned_jobs import CHORD_ERROR, HEIGHT, SETUPS, WAYS, WIDTH, written
+from tests.posts.planned_jobs import CHORD_ERROR, HEIGHT, SETUPS, SPANNING, WAYS, WIDTH, written
 
 # mm: how deep the nozzle may touch: looks 0.5 mm apart, and digits; and how far digits and chords lead away
 DEEP, APART = 0.3, 0.15
@@ -74,6 +74,7 @@ def contacts(way, files, lift=planned_jobs.LIFT):
     return found, drive
 
 
+@pytest.mark.always(*SPANNING)
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 def test_the_text_drives_the_way_that_was_looked_at(way):
     cell, motion, _, files = written(way)

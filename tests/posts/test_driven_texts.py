@@ -10,7 +10,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.posts import catalogue
 from freecad_am.read_back import driven
 from tests.posts.driven import Drive
-from tests.posts.planned_jobs import WAYS, written
+from tests.posts.planned_jobs import SPANNING, WAYS, written
 
 # mm and rad by which the digits of texts lead away, and s that they are rounded by
 APART, TURNED, LATE = 0.03, np.radians(0.02), 0.1
@@ -22,6 +22,7 @@ def told(program):
 
 
 @pytest.mark.parametrize("way", WAYS, ids=[" ".join(way) for way in WAYS])
+@pytest.mark.always(*SPANNING)
 def test_the_plan_is_found_again_in_the_text(way):
     cell, planned, program, files = written(way)
     read = catalogue.load(way[0]).read(files)

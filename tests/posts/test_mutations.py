@@ -14,7 +14,7 @@ from freecad_am.core.issues import ERROR, InputError
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts.mutations import KINDS, SMALLEST, mutated, stepped
-from tests.posts.planned_jobs import CHORD_ERROR, WAYS, written
+from tests.posts.planned_jobs import CHORD_ERROR, SPANNING, WAYS, written
 
 DRAWS = 2
 PARTS = 40  # points: the same job in parts
@@ -47,6 +47,7 @@ def test_what_is_written_passes(way, most):
     assert (parts > (4 if way[0] == "staubli" else 1)) == (most == PARTS)
 
 
+@pytest.mark.always(*(f"0-{way}" for way in SPANNING))
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 @pytest.mark.parametrize("first", [0, pytest.param(1, marks=pytest.mark.long)])
 def test_what_is_damaged_is_refused(way, first):
@@ -68,6 +69,7 @@ def test_what_is_damaged_is_refused(way, first):
     assert len(tried) >= 20
 
 
+@pytest.mark.always(*SPANNING)
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 def test_the_least_change_of_a_number_that_is_more_than_its_digits_explain_is_refused(way):
     passed, tried = [], 0
