@@ -27,7 +27,8 @@ class Primitive(Solid):
     def moved(self, pose: Array) -> Primitive:
         """The piece moved by a pose (4, 4)."""
         solid = super().moved(pose)
-        return replace(self, points=solid.points, normals=solid.normals, pose=pose if self.pose is None else pose @ self.pose)
+        at = pose if self.pose is None else pose @ self.pose
+        return replace(self, points=solid.points, normals=solid.normals, pose=at)
 
 
 def link_bodies(top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | None, ...]) -> tuple[Pieces, ...]:

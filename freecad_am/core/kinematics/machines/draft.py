@@ -42,8 +42,8 @@ class Draft:
     infinite where endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None
     without. `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm,
     with flange `poses` (n, 4, 4) in base_link. `notes`: what a user should know of the source; `remarks` go into the file.
-    `labels`: what the pendant calls the axes, None where it numbers them. `bodies` (axes + 1): of what stands beside a robot,
-    what its links are made of.
+    `labels`: what the pendant calls the axes, None where it numbers them. `bodies` (axes + 1): what the links of
+    a mechanism beside a robot are made of.
     """
 
     id: str
