@@ -76,7 +76,8 @@ EXAMPLES = (
 )
 LONG = (
     Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate, spacing_error=1e-3),
-Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 4.0, cone, spacing_error=1e-3),)
+    Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 4.0, cone, spacing_error=1e-3),
+)
 
 
 class Plans:

@@ -123,6 +123,7 @@ def test_faces_turned_into_b_splines_give_the_same_wall(name):
 
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.always
 def test_placements_move_the_frame_and_nothing_else(name, seed):
     random = np.random.default_rng([seed, len(name)])
     axis = random.normal(size=3)

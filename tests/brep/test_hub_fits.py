@@ -54,6 +54,7 @@ def test_bores_of_splines_are_bores():
 @pytest.mark.parametrize("degrees", [20.0, 90.0, 180.0, 200.0, 350.0, 360.0])
 @pytest.mark.parametrize("start", [0.0, 77.0, 300.0])
 @pytest.mark.parametrize("made", ["cylinder", "cone", "spline"])
+@pytest.mark.always
 def test_a_face_tells_from_where_to_where_it_goes_round(degrees, start, made):
     axis = FreeCAD.Vector(0, 0, 1)
     solid = Part.makeCone(60.0, 36.0, 80.0, FreeCAD.Vector(), axis, degrees) if made == "cone" else Part.makeCylinder(

@@ -50,6 +50,7 @@ def test_what_no_deflection_mends_is_told_with_both_volumes(monkeypatch):
     TORUS, Part.makeSphere(30.0), Part.makeCone(1.0, 20.0, 300.0), Part.makeBox(0.1, 50.0, 50.0),
 ])
 @pytest.mark.parametrize("chord", [0.5, 0.01])
+@pytest.mark.always
 def test_sound_solids_are_meshed_once(monkeypatch, shape, chord):
     made, asked = cut_short(lambda chord: False)
     monkeypatch.setattr(whole_mesh, "in_kernel_process", made)

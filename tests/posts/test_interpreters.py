@@ -90,6 +90,7 @@ def test_linuxcnc_refuses_what_is_wrong(tmp_path, damage):
 @sinumerik_is_here
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
+@pytest.mark.always
 def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
     continuous = seed % 2 == 1
     of = random_program(seed, motion, continuous, wire=seed % 2 == 0, deposit_output=4)

@@ -127,6 +127,7 @@ def test_the_gauge_is_the_papers():
 
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize(("motion", "setup"), VARIANTS)
+@pytest.mark.always
 def test_random_programs_are_applications(random_application, assert_applications, seed, motion, setup):
     assert_applications(staubli.write(random_application(seed, motion, setup, max_points=60)))
 

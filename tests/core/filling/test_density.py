@@ -46,6 +46,7 @@ def share(curves, low, high):
 
 @pytest.mark.parametrize("density", [0.12, 0.3, 0.55])
 @pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.always
 def test_length_times_spacing_is_the_share_asked_for(pattern, density):
     wide, tall = (120.0, 100.0) if pattern == "gyroid" and density > 0.2 else (240.0, 200.0)
     region, = regions(shapes.polygon((0, 0), (wide, 0), (wide, tall), (0, tall)))
@@ -171,6 +172,7 @@ def test_tops_and_bottoms_are_filled_and_the_rest_is_not(pattern):
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.always("0", "1")
 def test_any_region_many_holes_slits_and_tiny_ones(seed):
     """At random: nothing outside, nothing too short, twice the same."""
     rng = np.random.default_rng(seed)

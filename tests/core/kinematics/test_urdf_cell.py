@@ -29,6 +29,7 @@ def written(tmp_path, text):
 @pytest.mark.parametrize("track", [False, True])
 @pytest.mark.parametrize("positioner", [False, True])
 @pytest.mark.parametrize("more", ["", FINGERS])
+@pytest.mark.always
 def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positioner, more):
     text = whole_cell(track, positioner, more)
     machine, beside = texts_of(Reference(str(written(tmp_path, text))))

@@ -88,6 +88,7 @@ def on_table(request):
 
 @pytest.mark.parametrize("kind", ["joint", "cartesian"])
 @pytest.mark.parametrize("post", ["siemens", "linuxcnc"])
+@pytest.mark.always
 def test_tables_lay_it(on_table, post, kind):
     cell, planned, motion = on_table
     assert not [issue for issue in planned.issues if issue.level != "note"], planned.issues

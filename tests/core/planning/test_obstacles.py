@@ -203,6 +203,7 @@ def row_of_beads(dome):
 
 @pytest.mark.parametrize("aside", [0.0, 45.0])
 @pytest.mark.parametrize("clearance", [None, CLEARANCE])
+@pytest.mark.always
 def test_a_nozzle_that_runs_into_an_obstacle_within_a_bead_is_refused(dome, aside, clearance):
     """Between two points of a bead, its ends far away: seen whether links are kept clear or not."""
     job = row_of_beads(dome)

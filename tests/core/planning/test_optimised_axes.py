@@ -110,6 +110,7 @@ def test_a_track_and_a_positioner_together(sliced):
 
 @pytest.mark.parametrize("external", [None, BESIDE])
 @pytest.mark.parametrize("objective", ["displacement", "condition"])
+@pytest.mark.always
 def test_derivatives(hemisphere, external, objective):
     """By all numbers of the rotation and of every external axis, against central differences."""
     cell = cell_for(hemisphere, **({} if external is None else {"external": external}))

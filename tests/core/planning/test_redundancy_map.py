@@ -112,6 +112,7 @@ def test_a_wrist_turned_over_is_as_near_to_a_singularity(dome):
 
 @pytest.mark.parametrize("part", ["dome", "funnel"])
 @pytest.mark.parametrize("rz", [-2.0, -0.4, 0.9, 2.6])
+@pytest.mark.always
 def test_a_constant_rz_lies_in_good_cells_just_when_the_planner_finds_it_feasible(request, part, rz):
     """But for axes that run out of turns along a bead, which no cell can know."""
     toolpath = request.getfixturevalue(part)

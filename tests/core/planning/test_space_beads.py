@@ -108,6 +108,7 @@ def test_limits_and_condition_hold_on_a_finer_grid(cell, optima, seed, closed):
 
 @pytest.mark.parametrize("closed", [True, False], ids=["closed", "open"])
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.always
 def test_a_second_solver_is_not_better_by_more_than_two_percent(cell, optima, seed, closed):
     """Without our gradients and our search: scipy's SLSQP by differences, from random polynomials that join up."""
     degree = 3

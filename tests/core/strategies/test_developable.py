@@ -105,6 +105,7 @@ def to_lines(points, lines):
 
 @pytest.mark.parametrize("fill", ["contours", "lines", "spiral", "zigzag"])
 @pytest.mark.parametrize("surface", [CYLINDER, CONE], ids=["cylinder", "cone"])
+@pytest.mark.always
 def test_beads_lie_on_their_surfaces_and_in_the_solid(surface, fill):
     """Points on the cone to the last digits, chords within the chord error, layers the layer height apart."""
     path = planned(solids(surface, box()), fill=fill)

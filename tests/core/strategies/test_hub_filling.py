@@ -47,6 +47,7 @@ def planned(hub, turns, thick=24.0, width=8.0, fill_width="auto", **values):
 
 @pytest.mark.parametrize("hub", HUBS)
 @pytest.mark.parametrize("fill", ["contours", "lines"])
+@pytest.mark.always
 def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeypatch):
     turns = (0.1, 0.1 + 2.0 * math.pi / 3.0, 4.0)
     calls = []
@@ -145,6 +146,7 @@ def test_beads_wider_apart_than_they_are_wide_are_refused():
 
 @pytest.mark.parametrize("hub", HUBS)
 @pytest.mark.parametrize(("fill", "contour"), [("contours", True), ("spiral", True), ("lines", False), ("zigzag", True)])
+@pytest.mark.always
 def test_no_bead_of_its_width_stands_out(hub, fill, contour):
     """The box's sides are planes: a bead 9.5 mm wide and straight keeps half of it from them along the hub."""
     path = planned(hub, (0.0,), thick=40.0, width=9.5, bead_spacing=6.5, fill=fill, contour=contour)

@@ -136,6 +136,7 @@ def test_covers_what_beads_can_reach_and_nothing_else(fill):
 
 @pytest.mark.parametrize("fill", ["contours", "zigzag"])
 @pytest.mark.parametrize("way", ["0 0 1", "1 2 -3"])
+@pytest.mark.always
 def test_plane_layers_are_as_far_apart_as_their_planes(fill, way):
     """However far beads are from the ones below; a layer left out, as between two plates, is a distance too."""
     made = planned(box((0, 0, 0), (40, 30, 12)), fill=fill, direction=way, layer_height=2.0)
