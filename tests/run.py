@@ -91,6 +91,10 @@ HEADLESS_OF_VERSION = (
         "phases", "matrix", "plain_reading", "plain_texts", "fanuc_refusals",
     )),
 )
+# beads and figures of each kind of feature, which are core's: with the long tests, or by name
+LONG_IN_VERSION = tuple(f"--ignore=tests/objects/test_{name}.py" for name in (
+    "developable_feature", "inspection_documents", "scan", "solid_feature",
+))
 WINDOW_OF_VERSION = (
     *(f"tests/gui/test_{name}.py" for name in ("fields", "long_work", "picking", "reopen", "robust_events", "samples")),
     "tests/gui/test_clicks.py::test_from_a_selected_shape_to_a_program_by_clicks",
@@ -99,6 +103,7 @@ WINDOW_OF_VERSION = (
     *(f"tests/gui/test_robust.py::test_a_document_closed_while_a_panel_is_open[{name}]" for name in (
         "NewJob", "WallOnPart", "Program",
     )),
+    "--deselect=tests/gui/test_robust_events.py::test_a_parameter_follows_a_spreadsheet_until_that_goes",
     "--deselect=tests/gui/test_long_work.py::test_cancel_ends_the_work_and_leaves_the_document_as_it_was[joints]",
 )
 # foreign interpreters read the texts of programs, which the golden files hold equal in all versions
@@ -308,9 +313,10 @@ def all_parts(arguments: list[str]) -> list[Part]:
         version, arguments = arguments[1], arguments[2:]
         provide_version(version)
         options = [word for word in arguments if word == LONG]
+        without = (*HEADLESS_OF_VERSION, *(() if options else LONG_IN_VERSION))
         in_version = [
             Part(f"{version} {name}", partial(run_in_version, version, [*options, *places]), load)
-            for name, places, load in (("headless", HEADLESS_OF_VERSION, 1.0), ("window", WINDOW_OF_VERSION, WAITING))
+            for name, places, load in (("headless", without, 1.0), ("window", WINDOW_OF_VERSION, WAITING))
         ]
     headless, window = apart(arguments)
     windows = [] if window is None else window_parts(window)

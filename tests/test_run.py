@@ -334,7 +334,7 @@ def test_parts_run_side_by_side_as_far_as_the_cores_go(monkeypatch):
 
 
 def test_what_runs_in_another_version_exists():
-    for word in (*run.HEADLESS_OF_VERSION, *run.WINDOW_OF_VERSION):
+    for word in (*run.HEADLESS_OF_VERSION, *run.LONG_IN_VERSION, *run.WINDOW_OF_VERSION):
         file, _, name = re.sub("^--[a-z]+=", "", word).partition("::")
         assert (run.ROOT / file).exists(), word
         name = name.partition("[")[0]

@@ -23,7 +23,9 @@ ON_SUBSTRATES = [
 ]
 
 
-@pytest.fixture(params=[("hemisphere", 71), ("laval-nozzle", 137), ("intake-funnel", 71)], ids=lambda p: p[0])
+@pytest.fixture(params=[
+    ("hemisphere", 71), pytest.param(("laval-nozzle", 137), marks=pytest.mark.long), ("intake-funnel", 71),
+], ids=lambda p: p[0])
 def example(request, workshop, root):
     """Report, rows and number of layers of an example, run in a folder of its own."""
     name, layers = request.param

@@ -194,6 +194,7 @@ def test_a_document_closed_while_a_panel_is_open(person, job, command):
     assert api.stages_of(App.getDocument("Other")) == []
 
 
+@pytest.mark.long
 def test_closed_panels_leave_nothing_behind(person, job, coarse):
     """Fields are gone with their panel, not when Python collects cycles, or never: they would be taken for later ones."""
 
