@@ -239,7 +239,7 @@ class SourcePage(Page):
         ends = self.robot, self.base.currentText(), self.tip.currentText()
         described = self.robot.between(*ends[1:])
         if urdf_machine.is_mechanism(described.chain):
-            described = urdf_machine.beside(*ends)
+            described = urdf_machine.external_chain(*ends)
         draft = machine_draft.of_description(described, f"URDF {os.path.basename(path)}, {self.base.currentText()} to "
                                              f"{self.tip.currentText()}")
         if not self._stands():

@@ -284,7 +284,7 @@ def test_a_machine_file_made_of_a_urdf_has_its_bodies(tmp_path):
     text_ = text_.replace("</robot>", PLATE + urdf_cells.fixed("positioner_tool0", "plate", "0.01 0.02 0.03", "0 0 1")
                           + "</robot>")
     (tmp_path / "bay.urdf").write_text(text_, encoding="utf-8")
-    described = urdf_machine.beside(urdf.Urdf(tmp_path / "bay.urdf"), "positioner_base_link", "positioner_tool0")
+    described = urdf_machine.external_chain(urdf.Urdf(tmp_path / "bay.urdf"), "positioner_base_link", "positioner_tool0")
     q = np.radians([[0.0, 0.0], [20.0, -50.0], [-70.0, 130.0]])
     draft = dataclasses.replace(machine_draft.of_description(described, "URDF bay.urdf"), id="mine", title="Mine",
                                 values=np.degrees(q), poses=described.chain.forward(q))

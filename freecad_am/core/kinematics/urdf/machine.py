@@ -45,10 +45,10 @@ def described(meant: Reference) -> tuple[Description, SerialArm | None]:
 
 def chain_of(meant: Reference) -> Description:
     """The chain of a mechanism beside a robot. Raises InputError UNKNOWN_MACHINE without the file, BAD_URDF."""
-    return beside(*_ends(meant, WHERE))
+    return external_chain(*_ends(meant, WHERE))
 
 
-def beside(robot: Urdf, base: str, tip: str) -> Description:
+def external_chain(robot: Urdf, base: str, tip: str) -> Description:
     """The chain from a link to another, with what its links are made of. Raises InputError BAD_URDF."""
     found = robot.between(base, tip)
     notes: list[str] = []
