@@ -33,7 +33,9 @@ JUDGED = (
 )
 OF_SSIK = {"fanuc-crx10ia": "fanuc_crx10ia", "motoman-hc10": "hc10"}
 # machines, and us a pose
-OTHER_WRISTS = {"ur-ur10e": 2.0, "fanuc-crx10ia": 60.0, "motoman-hc10": 60.0, "abb-crb15000-5-95": 60.0}
+OTHER_WRISTS = {
+    "ur-ur10e": 2.0, "fanuc-crx10ia": 60.0, "motoman-hc10": 60.0, "abb-crb15000-5-95": 60.0, "fanuc-m710ic-50e": 60.0,
+}
 
 
 def run() -> list[Row]:

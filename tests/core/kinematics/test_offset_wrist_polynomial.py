@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Zeros of the polynomial of arms such as CRX and HC10 are those of the search along loops, which shares none of it."""
+"""Zeros of the polynomial of arms with an offset wrist are those of the search along loops, which shares none of it."""
 
 import numpy as np
 import pytest
@@ -7,12 +7,29 @@ import pytest
 from freecad_am.core.kinematics.inverse import offset_wrist_polynomial as polynomial
 from freecad_am.core.kinematics.inverse import offset_wrist_search as search
 from freecad_am.core.kinematics.inverse import recognition
-from tests.core.kinematics.arms import CROOKED_CRX, CRX_10IA, GOFA_5, GOFA_10, HC10, apart, chain, second_opinion
+from freecad_am.core.kinematics.inverse import trigonometric_zeros as trigonometric
+from tests.core.kinematics.arms import (
+    CROOKED_CRX,
+    CRX_10IA,
+    GOFA_5,
+    GOFA_10,
+    HC10,
+    M710IC_50E,
+    apart,
+    chain,
+    second_opinion,
+)
 
 pytest.importorskip("PyKDL")
 
 
-@pytest.fixture(params=[CRX_10IA, HC10], ids=["CRX-10iA", "HC10"], scope="module")
+ARMS = {
+    "CRX-10iA": CRX_10IA, "HC10": HC10, "GoFa 5": GOFA_5, "GoFa 10": GOFA_10, "M-710iC/50E": M710IC_50E,
+    "crooked": CROOKED_CRX,
+}
+
+
+@pytest.fixture(params=ARMS.values(), ids=ARMS.keys(), scope="module")
 def arm(request):
     of = chain(request.param)
     return of, recognition.arm_of(of)
@@ -28,10 +45,12 @@ def _rows(zeros):
     return rows[np.lexsort(rows.T[3::-1])]
 
 
-def test_only_arms_of_its_kind_are_taken():
-    for figures, wanted in ((CRX_10IA, True), (HC10, True), (GOFA_5, False), (GOFA_10, False), (CROOKED_CRX, False)):
+def test_only_arms_of_its_kind_have_the_same_zeros_on_both_sides():
+    for figures, wanted in (
+        (CRX_10IA, True), (HC10, True), (GOFA_5, False), (GOFA_10, False), (M710IC_50E, False), (CROOKED_CRX, False),
+    ):
         of = chain(figures)
-        assert polynomial.applies(recognition.arm_of(of)._curves(of.forward(np.zeros((1, 6))))) == wanted
+        assert polynomial.is_even(recognition.arm_of(of)._curves(of.forward(np.zeros((1, 6))))) == wanted
 
 
 def test_zeros_are_those_of_the_search(arm, monkeypatch):
@@ -43,7 +62,7 @@ def test_zeros_are_those_of_the_search(arm, monkeypatch):
     found = _rows(polynomial.zeros(curves))
     assert found.shape == expected.shape and np.array_equal(found[:, [0, 1, 2, 5]], expected[:, [0, 1, 2, 5]])
     assert np.abs(found[:, 3:5] - expected[:, 3:5]).max() < 1e-9
-    assert sum(asked) < 10
+    assert sum(asked) < 80
 
 
 def test_zeros_that_meet_are_found(arm):
@@ -76,25 +95,40 @@ def test_zeros_that_meet_are_found(arm):
             assert np.nanmin(apart(arm[1].inverse(of.forward(q)), q), axis=0).max() < 1e-5
 
 
-def test_the_polynomial_is_the_condition_on_axis_5_of_both_sides(arm):
-    """At angles of axis 6 within reach: zero of one elbow in front and of the other at the back; its degree is 4."""
+def test_the_polynomial_is_the_condition_on_axis_5_of_both_elbows(arm):
+    """At angles of axis 6 within reach: the product of both elbows' conditions; in halves of degree 4 and 3, whose product
+    for both sides is of degree 8."""
     rng = np.random.default_rng(13)
     curves = _curves(arm, rng.uniform(-np.pi, np.pi, (300, 6)))
     length = 1.0 / (curves.upper + curves.fore)
+    of = polynomial._Lengths(curves.upper * length, curves.fore * length, curves.ahead * length, *curves.lean, curves.square)
+    parts = np.stack([curves.point * length, curves.five])
     each, one = np.arange(300), np.ones(300)
     angles = 2.0 * np.pi / 64 * np.arange(64)
-    value = np.stack([polynomial._terms_at(curves, length, each, angle * one).value for angle in angles])
-    assert np.abs(np.fft.rfft(value, axis=0)[5:]).max() < 1e-12 * np.abs(value).max()
+    terms = {side: [polynomial._terms(of, parts, angle * one, side * one) for angle in angles] for side in (1.0, -1.0)}
+    front, back = (np.stack([at.value for at in terms[side]]) for side in (1.0, -1.0))
+    radius = np.stack([at.radius for at in terms[1.0]])
+    for value, degree in ((front + back, 4), ((front - back) / radius, 3), (front * back, 8)):
+        assert np.abs(np.fft.rfft(value, axis=0)[degree + 1:]).max() < 1e-11 * np.abs(front).max()
+    even = polynomial.is_even(curves)
+    product = polynomial._coefficients(of, parts, even)
+    rows = trigonometric.harmonics(len(product) // 2, angles).T
+    np.testing.assert_allclose(rows @ product, front if even else front * back, atol=1e-13)
     seen = 0
-    for angle, row in zip(angles, value):
-        at = polynomial._terms_at(curves, length, each, angle * one)
-        inside = at.squared - at.common**2 > 1e-3
-        for side in (one, -one):
-            product = np.prod([search.values(curves, each, angle * one, side, elbow * one) for elbow in (1.0, -1.0)], axis=0)
-            np.testing.assert_allclose((product * (at.radius**2 * at.squared))[inside], row[inside], atol=1e-12)
-        assert (row[at.squared < at.common**2] > 0.0).all()
-        seen += inside.sum()
-    assert seen > 5000
+    for index, angle in enumerate(angles):
+        for side in (1.0, -1.0):
+            at = terms[side][index]
+            inside = at.squared - at.common**2 > 1e-3
+            both = np.prod([search.values(curves, each, angle * one, side * one, elbow * one) for elbow in (1.0, -1.0)],
+                           axis=0)
+            np.testing.assert_allclose((both * (at.radius**2 * at.squared))[inside], at.value[inside], atol=1e-12)
+            assert (at.value[at.squared < at.common**2] > 0.0).all()
+            step = 1e-5
+            ahead, behind = (polynomial._terms(of, parts, (angle + way) * one, side * one).value for way in (step, -step))
+            smooth = np.abs(at.radius) > 0.05
+            np.testing.assert_allclose(((ahead - behind) / (2.0 * step))[smooth], at.slope[smooth], atol=1e-7)
+            seen += inside.sum()
+    assert seen > 10000
 
 
 def test_a_pair_that_the_search_passes_over_is_found():

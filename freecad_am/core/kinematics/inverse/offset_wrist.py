@@ -3,8 +3,8 @@
 
 Axes 4 and 5 meet in a point that axis 6 turns about itself. For each angle of axis 6 the triangle of shoulder, elbow and
 that point gives axis 4, for either side of axis 1 and either elbow; what is left is the angle between axes 4 and 5, one
-function of axis 6 whose zeros are all solutions, at most 16 of them. `offset_wrist_polynomial` finds them where axis 4 runs
-along the forearm and square to axis 5, `offset_wrist_search` those of all others.
+function of axis 6 whose zeros are all solutions, at most 16 of them. `offset_wrist_polynomial` finds them;
+`offset_wrist_search` those that are too near to each other for it, `offset_wrist_on_axis` those next to axis 1.
 """
 
 from __future__ import annotations
@@ -152,8 +152,7 @@ class OffsetWristArm:
     def _solve_piece(self, poses: Array, out: Array, named: NDArray[np.intp]) -> None:
         """Write the solutions `out` (16, m, 6) of poses (m, 4, 4), and their words (16, m)."""
         curves = self._curves(poses)
-        zeros = polynomial.zeros(curves) if polynomial.applies(curves) else search.zeros(curves)
-        zeros, plane = on_axis.exact(curves, zeros)
+        zeros, plane = on_axis.exact(curves, polynomial.zeros(curves))
         if not len(zeros.pose):
             return
         q = self._angles(poses, curves, zeros, plane)

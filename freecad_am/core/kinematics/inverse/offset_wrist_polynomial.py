@@ -1,26 +1,30 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""All solutions of arms whose axis 4 runs along the forearm and square to axis 5, such as CRX and HC10, from a polynomial.
+"""All solutions of arms with an offset wrist, from a trigonometric polynomial of the angle of axis 6.
 
-Seen from where axis 2 meets axis 1, with p the point of axes 4 and 5 and d the direction of axis 5, both functions of the
-angle of axis 6: D = p p, P = p d, H = x dx + y dy, r^2 = x^2 + y^2, N = z H - r^2 dz. The forearm is (C p + T p') / D, where
-p' is p turned by 90 deg in the arm's plane, C = (D + fore^2 - upper^2) / (2 fore) and T^2 = D - C^2. That axis 5 is square
-to it reads C P r + T N = 0 in front of axis 1, C P r - T N = 0 at the back. The product of both, by D, is
+Seen from axis 1 at the shoulder's height, with p the point of axes 4 and 5 and d the direction of axis 5, both functions of
+the angle of axis 6: H = x dx + y dy, and R, R^2 = x^2 + y^2, is positive in front of axis 1 and negative at the back. Axis 2
+is `a` ahead of axis 1. In the arm's plane axis 2 sees p at (R - a, z), at a squared distance D; d is (H / R, dz) there. The
+forearm is (C p + T p') / D, where p' is p turned by 90 deg, C = (D + fore^2 - upper^2) / (2 fore) and T^2 = D - C^2. Axis 4
+is the forearm turned by the lean, cosine c and sine s, and has the cosine q with axis 5. With
 
-    g = C^2 M - N^2,  M = H^2 + r^2 dz^2,
+    S = R (H + z dz) - a H,  N = z H - R^2 dz + a R dz,  X = c S + s N,  Y = c N - s S,  M = H^2 + R^2 dz^2
 
-a trigonometric polynomial of degree 4: p and d turn together, so D and P are of degree 1, N = z P - D dz and
-M = P^2 - 2 P z dz + D dz^2, whose highest terms cancel, of degree 2. Its eight zeros are the 16 solutions of six joints:
-outside of reach D - C^2 < 0 and g > 0, so each zero is a solution in front and one at the back, and T = -C P r / N follows
-without a root, as exact near the stretched arm as elsewhere.
+that reads C X + T Y - q D R = 0. The product for both elbows, by D, is
 
-Zeros are parted by bounds: in a step of h, |g| is at least its least at the ends less h^2 / 8 of the most of |g''|, so the
-step has no zero where that is positive, and one at most where the same of g' and g''' is. What neither tells is cut into
-pieces; where two zeros are still too near to each other `offset_wrist_search` looks for those of the pose too.
+    g = C^2 M - Y^2 - 2 q R C X + q^2 D R^2.
+
+Outside of reach T^2 < 0, where the product is that of a number and its conjugate and positive. So each zero of g is one
+solution, and its T = (q D R - C X) / Y follows without a root, as exact near the stretched arm as elsewhere.
+
+D and C are of degree 1 in R and in cosine and sine, R^2 and H are of degree 2; so g = A + R B, where A is a trigonometric
+polynomial of degree 4 and B one of degree 3. A^2 - R^2 B^2, of degree 8, has the zeros in front and at the back, the 16
+solutions of six joints. Where a, s and q are 0, as of CRX and HC10, B is 0, and each zero of A is a solution in front and
+one at the back. `trigonometric_zeros` parts them. Where two are too near to each other for that, `offset_wrist_search` looks
+for those of the pose too.
 """
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -28,69 +32,66 @@ import numpy as np
 from ...geometry.angles import TURN
 from ...types import Array, Index, Mask
 from . import offset_wrist_search as search
+from . import trigonometric_zeros as trigonometric
 from .offset_wrist_plane import TINY, Curves
 from .offset_wrist_search import Zeros
 
-DEGREE = 4
-NODES, BOUNDS, STEPS = 10, 32, 80  # angles of axis 6: that give the polynomial, that bound its derivatives, that part zeros
-PIECES, LEVELS = 12, 5  # into which undecided steps are cut, and how often
 NEWTON, NEWTON_RAD = 12, 1e-7
 SAME_RAD = 1e-6  # nearer zeros that the search finds are those found here
+NEAR_AXIS = 3e-4  # of the length of the stretched arm: nearer to axis 1 the search has more digits
 SQUARE = 1e-13  # sine of the angles that must be square or straight
 
 
-def _angles(count: int) -> Array:
-    return np.arange(count) * (2.0 * math.pi / count)
+class _Lengths(NamedTuple):
+    """Upper arm, forearm and `ahead` in the length of the stretched arm; cosine and sine of the lean; `square`."""
 
-
-def _harmonics(angle: Array, derivative: int) -> Array:
-    """Rows (9, m) of 1, cosines and sines of 1 to 4 times angles (m,), or of a derivative of these."""
-    order = np.arange(DEGREE + 1)[:, None]
-    # a derivative turns by a quarter and multiplies
-    turned = order * angle + 0.5 * math.pi * derivative
-    rows: Array = np.concatenate([np.cos(turned), np.sin(turned)[1:]]) * np.concatenate([order, order[1:]]) ** derivative
-    return rows
-
-
-FIRST = np.stack([np.ones(NODES), np.cos(_angles(NODES)), np.sin(_angles(NODES))])
-TO_COEFFICIENTS = _harmonics(_angles(NODES), 0).T * np.where(np.arange(2 * DEGREE + 1) == 0, 1.0, 2.0) / NODES
-GRID, GRID_SLOPE = (_harmonics(np.append(_angles(STEPS), 2.0 * math.pi), k) for k in (0, 1))
-BENDS = [_harmonics(_angles(BOUNDS), k) / math.cos(DEGREE * math.pi / BOUNDS) for k in (2, 3)]
+    upper: float
+    fore: float
+    ahead: float
+    cos: float
+    sin: float
+    square: float
 
 
 class _Terms(NamedTuple):
-    """What the polynomial is made of, in the length of the stretched arm; see the head of this file."""
+    """See the head of this file: R, D, C, X, Y, g and the slope of g."""
 
-    x: Array
-    y: Array
-    z: Array
-    radius: Array  # r
-    squared: Array  # D
-    along: Array  # P
-    common: Array  # C
-    across: Array  # N
-    value: Array  # g
+    radius: Array
+    squared: Array
+    common: Array
+    level: Array
+    across: Array
+    value: Array
+    slope: Array
 
 
-def applies(curves: Curves) -> bool:
-    """Whether the arm is of the kind that this file is about."""
+def is_even(curves: Curves) -> bool:
+    """Whether the arm's solutions in front and at the back are at the same angles of axis 6."""
     return not curves.ahead and abs(curves.lean[1]) < SQUARE and abs(curves.square) < SQUARE
 
 
 def zeros(curves: Curves) -> Zeros:
     """All zeros, in no order, as of `offset_wrist_search.zeros`."""
     length = 1.0 / (curves.upper + curves.fore)
-    node = _terms(curves, length, *(parts.transpose(1, 2, 0) @ FIRST for parts in (curves.point * length, curves.five)))
-    coefficients = node.value @ TO_COEFFICIENTS
-    pose, low, high, close = _parted(coefficients)
-    angle, slope, converged = _roots(curves, length, coefficients, pose, low, high)
-    close[pose[~converged]] = True
-    found = _both_sides(curves, length, pose[converged], angle[converged], slope[converged])
+    arm = _Lengths(curves.upper * length, curves.fore * length, curves.ahead * length, *curves.lean, curves.square)
+    parts = np.stack([curves.point * length, curves.five])
+    even = is_even(curves)
+    number, low, high, near, close = trigonometric.parted(_coefficients(arm, parts, even))
+    of_zero = np.take(parts, number, axis=3)
+    side = np.ones(len(number)) if even else _side(arm, of_zero, low, high)
+    angle, sure, away = _roots(arm, of_zero, side, low, high, near)
+    close[number[~sure | (away < NEAR_AXIS)]] = True
+    if not sure.all():
+        kept = np.flatnonzero(sure)
+        number, angle, side, of_zero = number[kept], angle[kept], side[kept], of_zero[..., kept]
+    found = _solutions(arm, of_zero, number, angle, side)
+    if even:
+        found = _both_sides(found)
     left = np.flatnonzero(close)
     if not len(left):
         return found
     others = search.zeros(Curves(curves.point[:, :, left], curves.five[:, :, left], curves.upper, curves.fore, curves.lean,
-                                 curves.square))
+                                 curves.square, curves.ahead))
     return _together(found, others._replace(pose=left[others.pose]), close)
 
 
@@ -107,115 +108,145 @@ def _together(found: Zeros, others: Zeros, close: Mask) -> Zeros:
     return Zeros(*(np.concatenate([own[..., kept], other], axis=-1) for own, other in zip(found, others)))
 
 
-def _terms(curves: Curves, length: float, point: Array, five: Array) -> _Terms:
-    """Of points and axes 5 by their components (3, ...)."""
-    x, y, z = point
-    upper, fore = curves.upper * length, curves.fore * length
+def _coefficients(arm: _Lengths, parts: Array, even: bool) -> Array:
+    """Of the polynomial (9 or 17, n), for constant, cosine and sine parts of point and axis 5 (2, 3, 3, n)."""
+    degree = 4 if even else 8
+    nodes = 2 * degree + 2
+    at = trigonometric.angles(nodes)
+    first = np.stack([np.ones(nodes), np.cos(at), np.sin(at)], axis=1)
+    point, five = ([first @ np.ascontiguousarray(part[:, k]) for k in range(3)] for part in parts)
+    whole, by_radius, flat = _halves(arm, point, five)
+    value: Array = whole if even else whole * whole - flat * by_radius * by_radius
+    weights = np.where(np.arange(2 * degree + 1) == 0, 1.0, 2.0) / nodes
+    result: Array = (trigonometric.harmonics(degree, at) * weights[:, None]) @ value
+    return result
+
+
+def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array, Array, Array]:
+    """A, B and R^2, for points and axes 5 by their components."""
+    (x, y, z), (along, beside, up) = point, five
     flat = x * x + y * y
-    squared = flat + z * z
-    within = x * five[0] + y * five[1]
-    common = (squared + (fore * fore - upper * upper)) * (0.5 / fore)
-    across = z * within - flat * five[2]
-    value = common * common * (within * within + flat * five[2] * five[2]) - across * across
-    return _Terms(x, y, z, np.sqrt(flat), squared, within + z * five[2], common, across, value)
+    within = x * along + y * beside
+    rise = z * within - flat * up
+    level = within + z * up
+    # C, X and Y by constant and factor of R
+    common = (flat + z * z + (arm.ahead**2 + arm.fore**2 - arm.upper**2)) * (0.5 / arm.fore)
+    factor = -arm.ahead / arm.fore
+    squared = common * common + (factor * factor) * flat
+    across, by_across = arm.cos * rise + (arm.sin * arm.ahead) * within, (arm.cos * arm.ahead) * up - arm.sin * level
+    sizes = within * within + flat * up * up
+    whole = squared * sizes - across * across - flat * by_across * by_across
+    by_radius = 2.0 * (factor * common * sizes - across * by_across)
+    if arm.square:
+        # what is multiplied by q, then what by its square
+        out, by_out = arm.sin * rise - (arm.cos * arm.ahead) * within, (arm.sin * arm.ahead) * up + arm.cos * level
+        whole -= (2.0 * arm.square) * flat * (common * by_out + factor * out)
+        by_radius -= (2.0 * arm.square) * (common * out + factor * by_out * flat)
+        whole += arm.square**2 * flat * (flat + z * z + arm.ahead**2)
+        by_radius -= (2.0 * arm.square**2 * arm.ahead) * flat
+    return whole, by_radius, flat
 
 
-def _terms_at(curves: Curves, length: float, pose: Index, angle: Array) -> _Terms:
+def _side(arm: _Lengths, parts: Array, low: Array, high: Array) -> Array:
+    """1 where the zero of a step is one in front of axis 1, -1 where it is one at the back, 0 where this cannot be told."""
+    ends = []
+    for angle in (low, high):
+        point, five = _turned(parts, np.cos(angle), np.sin(angle))
+        whole, by_radius, flat = _halves(arm, list(point), list(five))
+        by_radius *= np.sqrt(flat)
+        ends.append((whole + by_radius >= 0.0, whole - by_radius >= 0.0))
+    front, back = (one != other for one, other in zip(*ends))
+    result: Array = front.astype(float) - back
+    return result
+
+
+def _turned(parts: Array, cos: Array, sin: Array) -> Array:
+    """Point and axis 5 (2, 3, k)."""
+    result: Array = parts[:, 1] * cos
+    result += parts[:, 2] * sin
+    result += parts[:, 0]
+    return result
+
+
+def _terms(arm: _Lengths, parts: Array, angle: Array, side: Array) -> _Terms:
+    """Of points and axes 5 (2, 3, 3, k) at angles (k,), on a side of axis 1."""
     cos, sin = np.cos(angle), np.sin(angle)
-    point, five = (parts[0][:, pose] + cos * parts[1][:, pose] + sin * parts[2][:, pose]
-                   for parts in (curves.point, curves.five))
-    return _terms(curves, length, point * length, five)
-
-
-def _parted(coefficients: Array) -> tuple[Index, Array, Array, Mask]:
-    """The pose (k,) and ends (k,), (k,) of steps with one zero, and the poses (n,) some of whose zeros are too near to each
-    other to tell."""
-    bend, third = (np.abs(coefficients @ rows).max(axis=1) for rows in BENDS)
-    width = 2.0 * math.pi / STEPS
-    values, slopes = coefficients @ GRID, coefficients @ GRID_SLOPE
-    values[:, -1], slopes[:, -1] = values[:, 0], slopes[:, 0]
-    row, at, open_row, open_at = _decided(values, slopes, bend, third, width)
-    found = [(row, at * width, (at + 1) * width)]
-    pose, begin, ends = open_row, open_at * width, values[open_row[:, None], open_at[:, None] + np.array([0, 1])]
-    for _ in range(1, LEVELS):
-        width /= PIECES
-        share = np.arange(PIECES + 1) * width
-        values, slopes = _polynomial(coefficients[pose].T[..., None], begin[:, None] + share)
-        values[:, 0], values[:, -1] = ends.T  # to the last digit as in the steps beside
-        row, at, open_row, open_at = _decided(values, slopes, bend[pose], third[pose], width)
-        found.append((pose[row], begin[row] + share[at], begin[row] + share[at + 1]))
-        ends = values[open_row[:, None], open_at[:, None] + np.array([0, 1])]
-        pose, begin = pose[open_row], begin[open_row] + share[open_at]
-    close = np.zeros(len(coefficients), dtype=bool)
-    close[pose] = True
-    pose, low, high = (np.concatenate(columns) for columns in zip(*found))
-    return pose, low, high, close
-
-
-def _decided(values: Array, slopes: Array, bend: Array, third: Array, width: float) -> tuple[Index, Index, Index, Index]:
-    """Row and number of the steps that hold one zero, then of those that cannot be told, from values and slopes (m, s) at
-    their ends and the most of the second and third derivative (m,)."""
-    sagging = 0.125 * width * width
-    near = np.abs(values) <= (sagging * bend)[:, None]
-    steep = np.abs(slopes) > (sagging * third)[:, None]
-    above, rising = values >= 0.0, slopes >= 0.0
-    change = above[:, 1:] != above[:, :-1]
-    unclear = near[:, 1:] | near[:, :-1] | change
-    single = steep[:, 1:] & steep[:, :-1] & (rising[:, 1:] == rising[:, :-1])
-    unclear &= ~single
-    change &= single
-    return *np.nonzero(change), *np.nonzero(unclear)  # type: ignore[return-value]
-
-
-def _polynomial(coefficients: Array, angle: Array) -> tuple[Array, Array]:
-    """The polynomial and its slope at angles; coefficients (9, ...)."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    c, s = cos, sin
-    value = coefficients[0] + coefficients[1] * c + coefficients[DEGREE + 1] * s
-    slope = coefficients[DEGREE + 1] * c - coefficients[1] * s
-    for order in range(2, DEGREE + 1):
-        c, s = c * cos - s * sin, s * cos + c * sin
-        value += coefficients[order] * c + coefficients[DEGREE + order] * s
-        slope += order * (coefficients[DEGREE + order] * c - coefficients[order] * s)
-    return value, slope
+    (x, y, z), (along, beside, up) = _turned(parts, cos, sin)
+    moved = parts[:, 2] * cos
+    moved -= parts[:, 1] * sin
+    (x_, y_, z_), (along_, beside_, up_) = moved
+    flat = x * x + y * y
+    radius = side * (np.sqrt(flat) + TINY)
+    half_flat_ = x * x_ + y * y_
+    radius_ = half_flat_ / radius
+    within, within_ = x * along + y * beside, x_ * along + x * along_ + y_ * beside + y * beside_
+    squared = flat + z * z - (2.0 * arm.ahead) * radius + arm.ahead**2
+    common = (squared + (arm.fore**2 - arm.upper**2)) * (0.5 / arm.fore)
+    common_ = (half_flat_ + z * z_ - arm.ahead * radius_) * (1.0 / arm.fore)
+    level, rise = within + z * up, z * within - flat * up
+    level_, rise_ = within_ + z_ * up + z * up_, z_ * within + z * within_ - 2.0 * half_flat_ * up - flat * up_
+    # S and N
+    out, out_ = radius * level, radius_ * level + radius * level_
+    if arm.ahead:
+        out, out_ = out - arm.ahead * within, out_ - arm.ahead * within_
+        rise, rise_ = rise + arm.ahead * radius * up, rise_ + arm.ahead * (radius_ * up + radius * up_)
+    ahead, across = arm.cos * out + arm.sin * rise, arm.cos * rise - arm.sin * out
+    across_ = arm.cos * rise_ - arm.sin * out_
+    sizes = within * within + flat * up * up
+    half_sizes_ = within * within_ + up * (half_flat_ * up + flat * up_)
+    value = common * common * sizes - across * across
+    slope = 2.0 * (common * (common_ * sizes + common * half_sizes_) - across * across_)
+    if arm.square:
+        ahead_ = arm.cos * out_ + arm.sin * rise_
+        product, product_ = radius * common, radius_ * common + radius * common_
+        value -= arm.square * (2.0 * product * ahead - arm.square * squared * flat)
+        slope -= (2.0 * arm.square) * (
+            product_ * ahead + product * ahead_ - arm.square * (arm.fore * common_ * flat + squared * half_flat_))
+    return _Terms(radius, squared, common, ahead, across, value, slope)
 
 
 def _roots(
-    curves: Curves, length: float, coefficients: Array, pose: Index, low: Array, high: Array
-) -> tuple[Array, Array, Mask]:
-    """The zero (k,) in each step, the slope there, and whether it was found: Newton's method, kept in the step. The last
-    step takes the value from the arm itself, which has more digits than the polynomial where its parts are small."""
-    of_pose = np.ascontiguousarray(coefficients[pose].T)
-    angle, slope, step = 0.5 * (low + high), np.zeros(len(pose)), np.full(len(pose), np.inf)
-    active = np.arange(len(pose))
+    arm: _Lengths, parts: Array, side: Array, low: Array, high: Array, near: Array
+) -> tuple[Array, Mask, Array]:
+    """The zero (k,) in each step, whether it was found, and how far from axis 1: Newton's method, kept in the step."""
+    angle, step, away = near.copy(), np.full(len(near), np.inf), np.zeros(len(near))
+    active, some, its_side = np.arange(len(near)), parts, side
+    if not side.all():
+        active = np.flatnonzero(side)
+        some, its_side = parts[..., active], side[active]
     for _ in range(NEWTON):
-        value, slope[active] = _polynomial(of_pose[:, active], angle[active])
-        step[active] = value / np.where(slope[active] == 0.0, TINY, slope[active])
-        angle[active] = np.clip(angle[active] - step[active], low[active], high[active])
-        active = active[np.abs(step[active]) > NEWTON_RAD]
-        if not len(active):
+        at = _terms(arm, some, angle[active], its_side)
+        moved = at.value / np.where(at.slope == 0.0, TINY, at.slope)
+        step[active], away[active] = moved, np.abs(at.radius)
+        angle[active] = np.clip(angle[active] - moved, low[active], high[active])
+        going = np.flatnonzero(np.abs(moved) > NEWTON_RAD)
+        if not len(going):
             break
-    value = _terms_at(curves, length, pose, angle).value
-    last = value / np.where(slope == 0.0, TINY, slope)
-    converged = (np.abs(step) <= NEWTON_RAD) & (np.abs(last) < NEWTON_RAD)
-    return angle - np.where(converged, last, 0.0), slope, converged
+        if 2 * len(going) < len(active):
+            # most are there: go on with the others alone
+            active, some, its_side = active[going], some[..., going], its_side[going]
+    return angle, np.abs(step) <= NEWTON_RAD, away
 
 
-def _both_sides(curves: Curves, length: float, pose: Index, angle: Array, slope: Array) -> Zeros:
-    """The solutions in front and at the back that belong to zeros of the polynomial, with the polynomial's slope there."""
-    at = _terms_at(curves, length, pose, angle)
-    upper, fore = curves.upper * length, curves.fore * length
-    level = at.common * at.along * at.radius
-    turn = -level / np.where(at.across == 0.0, TINY, at.across)
+def _solutions(arm: _Lengths, parts: Array, pose: Index, angle: Array, side: Array) -> Zeros:
+    """The solutions at zeros of the polynomial."""
+    at = _terms(arm, parts, angle, side)
+    wanted = arm.square * at.squared * at.radius
+    level = at.common * at.level
+    turn = (wanted - level) / np.where(at.across == 0.0, TINY, at.across)
     # far from the stretched arm its height in the triangle has the more digits of the two
     height = np.sqrt(np.maximum(at.squared - at.common * at.common, 0.0))
-    turn = np.where(at.radius * height > np.abs(at.across), np.copysign(height, turn), turn)
-    sine, cosine = turn / upper, (at.common - fore) / upper
-    by_angle = 0.5 * curves.lean[0] * slope / np.where(level == 0.0, TINY, level * at.radius)
-    one = np.ones(len(pose))
-    elbow = np.where(turn >= 0.0, 1.0, -1.0)
-    return Zeros(
-        np.concatenate([pose, pose]), np.concatenate([angle, angle]), np.concatenate([one, -one]),
-        np.concatenate([elbow, -elbow]), np.stack([np.concatenate([sine, -sine]), np.concatenate([cosine, cosine])]),
-        np.concatenate([by_angle, by_angle]),
-    )
+    turn = np.where(np.abs(at.radius) * height > np.abs(at.across), np.copysign(height, turn), turn)
+    bent = np.stack([turn, at.common - arm.fore]) * (1.0 / arm.upper)
+    by_angle = 0.5 * at.slope / np.where(level == wanted, TINY, (level - wanted) * at.radius)
+    return Zeros(pose, angle, side, np.where(turn >= 0.0, 1.0, -1.0), bent, by_angle)
+
+
+def _both_sides(found: Zeros) -> Zeros:
+    """Solutions in front of axis 1, and those at the back at the same angles."""
+    pose, angle, side, elbow, bent, slope = (np.concatenate([column, column], axis=-1) for column in found)
+    count = len(found.pose)
+    side[count:] *= -1.0
+    elbow[count:] *= -1.0
+    bent[0, count:] *= -1.0
+    return Zeros(pose, angle, side, elbow, bent, slope)

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The zeros of many trigonometric polynomials of one degree at once, each parted from all others.
+
+In a step of h the cubic with a polynomial's values and slopes at both ends is off by h^4 / 384 of the most of the fourth
+derivative at most, its slope by sqrt(3) h^3 / 216 of that, and cubic and slope lie between the least and the most of their
+Bernstein coefficients. So a step has no zero where all coefficients are of one sign and larger than the bound, and one at
+most where the same is true of those of the slope. What neither tells is cut into pieces.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.angles import TURN
+from ...types import Array, Index, Mask
+
+STEPS = {4: 32, 8: 48}  # of a turn, by degree
+PIECES, LEVELS = 4, 10  # into which undecided steps are cut, and how often
+SURE = 7  # levels: zeros parted by later ones are so near to each other that they have few digits
+VALUE_SHARE, SLOPE_SHARE = 1.0 / 384.0, math.sqrt(3.0) / 216.0
+# of the sum of all coefficients: how far off a value is, and how far an extreme that is a double zero may be from zero by
+# the rounding of the pose
+ROUNDING, TOUCHING = 4e-15, 1e-13
+DROWNED = 8.0  # times that a step's values and slopes are, at most, that rounding leaves nothing of
+
+
+class Parted(NamedTuple):
+    """Steps (k,) with one zero: the polynomial's number, its ends and about where between them the zero is; and which
+    polynomials (n,) have zeros too near to each other to tell."""
+
+    number: Index
+    low: Array
+    high: Array
+    near: Array
+    close: Mask
+
+
+class _Steps(NamedTuple):
+    """Steps (k,): number of the polynomial and begin; values and slopes (2, k) at both ends, slopes by a third of a step."""
+
+    number: Index
+    begin: Array
+    value: Array
+    slope: Array
+
+
+def angles(count: int) -> Array:
+    """`count` angles, evenly over a turn from 0 on."""
+    return np.arange(count) * (TURN / count)
+
+
+def harmonics(degree: int, angle: Array, derivative: int = 0) -> Array:
+    """Rows (2 degree + 1, m) of 1, cosines and sines of 1 to `degree` times angles (m,), or of a derivative of these."""
+    order = np.arange(degree + 1)[:, None]
+    # a derivative turns by a quarter and multiplies
+    turned = order * angle + 0.5 * math.pi * derivative
+    rows: Array = np.concatenate([np.cos(turned), np.sin(turned)[1:]]) * np.concatenate([order, order[1:]]) ** derivative
+    return rows
+
+
+@cache
+def _grid(degree: int) -> Array:
+    """What gives the values, then the slopes by a third of a step, at the ends of all steps of a turn."""
+    at = np.append(angles(STEPS[degree]), 0.0)
+    slopes = harmonics(degree, at, 1) * (TURN / STEPS[degree] / 3.0)
+    result: Array = np.concatenate([harmonics(degree, at), slopes], axis=1).T.copy()
+    return result
+
+
+def parted(coefficients: Array) -> Parted:
+    """Of polynomials given by their coefficients (2 degree + 1, n), in the order of `harmonics`."""
+    degree = len(coefficients) // 2
+    amplitudes = np.hypot(coefficients[1 : degree + 1], coefficients[degree + 1 :])
+    size = np.abs(coefficients[0]) + amplitudes.sum(axis=0)
+    rounding, touching = ROUNDING * size, TOUCHING * size
+    fourth = np.arange(1.0, degree + 1.0) ** 4 @ amplitudes
+    waves: Array | None = None
+    width, found, close = TURN / STEPS[degree], [], np.zeros(coefficients.shape[1], dtype=bool)
+    steps = _first(coefficients, width, fourth, touching)
+    for level in range(LEVELS):
+        single, open_ = _told(steps, fourth, rounding, width)
+        found.append((single, width))
+        lost = _drowned(open_, rounding)
+        close[open_.number if level >= SURE - 1 else open_.number[lost]] = True
+        open_ = _some(open_, np.flatnonzero(~lost))
+        if level == LEVELS - 1 or not len(open_.number):
+            break
+        if waves is None:
+            waves = np.concatenate([coefficients[:1], coefficients[1 : degree + 1] - 1j * coefficients[degree + 1 :]])
+        width /= PIECES
+        steps = _without_empty(_cut(waves, open_, width), fourth, touching, width)
+    number, low, high, near = (np.concatenate(columns) for columns in zip(*(_places(*one) for one in found)))
+    return Parted(number, low, high, near, close)
+
+
+def _first(coefficients: Array, width: float, fourth: Array, touching: Array) -> _Steps:
+    """The steps of a whole turn that may have a zero."""
+    degree = len(coefficients) // 2
+    values, slopes = (_grid(degree) @ coefficients).reshape(2, STEPS[degree] + 1, -1)
+    kept = np.flatnonzero(_may_be_zero(values[:-1], values[1:], slopes[:-1], slopes[1:], _off(fourth, touching, width)))
+    row, number = np.divmod(kept, coefficients.shape[1])
+    values, slopes, after = values.ravel(), slopes.ravel(), kept + coefficients.shape[1]
+    return _Steps(number, row * width, np.stack([values[kept], values[after]]), np.stack([slopes[kept], slopes[after]]))
+
+
+def _off(fourth: Array, touching: Array, width: float) -> Array:
+    result: Array = VALUE_SHARE * width**4 * fourth + touching
+    return result
+
+
+def _may_be_zero(one: Array, other: Array, rise: Array, last: Array, off: Array) -> Mask:
+    """Whether the coefficients of the cubic are not all of one sign and farther from zero than `off`; values and slopes."""
+    second, third = one + rise, other - last
+    least = np.minimum(np.minimum(one, other), np.minimum(second, third))
+    most = np.maximum(np.maximum(one, other), np.maximum(second, third))
+    return np.asarray((least <= off) & (most >= -off))
+
+
+def _without_empty(steps: _Steps, fourth: Array, touching: Array, width: float) -> _Steps:
+    off = _off(fourth[steps.number], touching[steps.number], width)
+    (one, other), (rise, last) = steps.value, steps.slope
+    return _some(steps, np.flatnonzero(_may_be_zero(one, other, rise, last, off)))
+
+
+def _some(steps: _Steps, kept: Index | Mask) -> _Steps:
+    return _Steps(steps.number[kept], steps.begin[kept], steps.value[:, kept], steps.slope[:, kept])
+
+
+def _told(steps: _Steps, fourth: Array, rounding: Array, width: float) -> tuple[_Steps, _Steps]:
+    """Of steps that may have a zero those that have one alone, and those of which it cannot be told."""
+    number, _, (one, other), (rise, last) = steps
+    off = SLOPE_SHARE / 3.0 * width**4 * fourth[number] + 3.0 * rounding[number]
+    middle = other - one - rise - last
+    single = np.minimum(np.minimum(rise, last), middle) > off
+    single |= np.maximum(np.maximum(rise, last), middle) < -off
+    return _some(steps, single & ((one >= 0.0) != (other >= 0.0))), _some(steps, ~single)
+
+
+def _drowned(steps: _Steps, rounding: Array) -> Mask:
+    """Steps throughout which the cubic is of the size of rounding: pieces would tell no more."""
+    one, other = np.abs(steps.value)
+    rise, last = np.abs(steps.slope)
+    return np.asarray(np.maximum(one, other) + np.maximum(rise, last) < DROWNED * rounding[steps.number])
+
+
+def _cut(waves: Array, steps: _Steps, width: float) -> _Steps:
+    """The pieces, of `width` each, of steps; polynomials as real parts of sums (degree + 1, n) of powers of e^i angle."""
+    inner = np.arange(1, PIECES) * width
+    turn = np.exp(1j * (steps.begin + inner[:, None]))
+    of_step = waves[:, steps.number]
+    value = np.broadcast_to(of_step[-1], turn.shape).copy()
+    slope = np.zeros_like(value)
+    for wave in of_step[-2::-1]:
+        slope *= turn
+        slope += value
+        value *= turn
+        value += wave
+    slope *= turn
+    values, slopes = np.empty((2, PIECES + 1, len(steps.number)))
+    # at the ends to the last digit as in the steps beside
+    values[0], values[-1] = steps.value
+    slopes[0], slopes[-1] = steps.slope / PIECES
+    values[1:-1], slopes[1:-1] = value.real, slope.imag * (-width / 3.0)
+    begin = steps.begin + np.arange(PIECES)[:, None] * width
+    return _Steps(
+        np.tile(steps.number, PIECES), begin.ravel(), np.stack([values[:-1].ravel(), values[1:].ravel()]),
+        np.stack([slopes[:-1].ravel(), slopes[1:].ravel()]),
+    )
+
+
+def _places(steps: _Steps, width: float) -> tuple[Index, Array, Array, Array]:
+    """Number, ends and about the zero (k,) of steps with one: the cubic of the angle over the value, kept in the step."""
+    one, other = steps.value
+    change = other - one
+    share = -one / change
+    rest = 1.0 - share
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        first, last = change / (3.0 * steps.slope)
+        along = share * (share * (3.0 - 2.0 * share) + rest * (rest * first - share * last))
+    # a slope near zero at an end is no slope of the angle: as between straight lines there
+    along = np.where((first < 4.0) & (last < 4.0), np.clip(along, 0.0, 1.0), share)
+    return steps.number, steps.begin, steps.begin + width, steps.begin + along * width
