@@ -210,3 +210,19 @@ def test_a_predicted_deposit_is_shown_by_a_click_and_grows_as_high(person, hand,
     assert float(beads[0].height.mean()) == pytest.approx(float(np.maximum(low[:, 4], 1e-3).mean()), rel=0.02)
     path.BeadWidth = 5  # another deposit, of which nothing is known
     assert run_of(joints).deposit is None
+
+
+def test_what_is_asked_about_a_scan_is_shown_with_a_scan_alone(person, part, points):
+    document = part.Document
+    scan = api.inspect(document, part, points)
+    api.make_cell(document)
+    person.select(document.Feature)
+    person.click("RoboticAM_Toolpath")
+    panel = person.panel("RoboticAM_Toolpath")
+    choice, fold = person.field(panel, "InputScan"), person.field(panel, "FoldScan:advanced")
+    assert choice.currentText() == "none" and not fold.isVisible()
+    choice.setCurrentIndex(choice.findData(scan.Name))
+    person.until(fold.isVisible, "what is asked about a scan", 5)
+    choice.setCurrentIndex(choice.findData(""))
+    person.until(lambda: not fold.isVisible(), "it to go", 5)
+    person.press("Cancel")

@@ -84,7 +84,9 @@ class Noted:
     def leave_out(self, places: Collection[str], also_entered: bool = False) -> None:
         """Show all fields but some that mean nothing now; those that hold something all the same only where it is said."""
         for place, (field, _, fold) in self.places.items():
-            holds = not also_entered and self._entry(place) != repr(field.row.outer(field.row.default))
+            default = field.row.outer(field.row.default)  # which some fields hold as a text, of nothing too
+            empty = {repr(default), repr("" if default is None else str(default))}
+            holds = not also_entered and self._entry(place) not in empty
             fold.show(field.widget, place not in places or holds)
 
     def _unfolded(self, place: str) -> Any:

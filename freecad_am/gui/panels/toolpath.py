@@ -23,6 +23,7 @@ from .stage import StagePanel
 
 MODEL, WIDTH = "process_bead_model", "process_bead_width"
 NONE = "none"
+SCAN = "substrate_"  # before the names of what is asked about a scan
 
 
 class ToolpathPanel(StagePanel):
@@ -57,6 +58,13 @@ class ToolpathPanel(StagePanel):
         width = self.places[WIDTH][0].widget.findChild(QtGui.QLineEdit)
         connect(width, "textChanged(QString)", lambda *_: self._soon(False))
         self._show_fit()
+        scan = next(one for one in others if one.widget.objectName() == "InputScan")
+        scan.widget.currentIndexChanged.connect(lambda *_: self._fit_to(scan))
+        self._fit_to(scan)
+
+    def _fit_to(self, scan: Any) -> None:
+        """Leave out what is asked about a scan where there is none."""
+        self.leave_out(() if scan.value() is not None else {place for place in self.places if place.startswith(SCAN)})
 
     def _choose(self, *_: Any) -> None:
         """Ask for the file of a calibration table."""
