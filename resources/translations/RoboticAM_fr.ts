@@ -4622,6 +4622,11 @@
         <translation>Enregistrer les chiffres…</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/redundancy_map/saving.py"/>
+        <source>Save the map</source>
+        <translation>Enregistrer la carte</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>Save the plot</source>
         <translation>Enregistrer le graphique</translation>

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The map of the free rotation by mouse: it shows what core computes, its curve is dragged, and becomes the plan."""
 
+import csv
+
 import FreeCAD as App
 import numpy as np
 import pytest
@@ -370,7 +372,7 @@ def test_a_table_has_no_map(person, hemisphere):
     assert docks._open == [] and "rotary axes" in person.window.statusBar().currentMessage()
 
 
-def test_external_axes_go_along_or_stand_across(person, hand, hemisphere):
+def test_external_axes_go_along_or_stand_across(person, hand, hemisphere, monkeypatch, tmp_path):
     """Along the path they are as planned; across is one of them at the point that was clicked, where the plan is marked."""
     doc = hemisphere.Document
     feature = api.make_feature(doc, hemisphere, layer_height=12, max_from_vertical=10)
@@ -414,7 +416,15 @@ def test_external_axes_go_along_or_stand_across(person, hand, hemisphere):
     assert one.board.title.startswith("e2 at layer ")
     hand.do("mousemove", *on_screen(one.canvas, here, float(board.values(np.full(len(board.columns), phi))[column])))
     person.until(lambda: "   e2 " in one.form.readout.text(), "the axes under the mouse")
+    _saved(person, panel, one, monkeypatch, tmp_path / "e2")
     _two_against_each_other(person, hand, one, panel, point)
+    _saved(person, panel, one, monkeypatch, tmp_path / "both")
+    box = person.field(panel, "axis")
+    person.choose(panel, "axis", "RZ")
+    box.activated.emit(box.currentIndex())
+    person.until(lambda: one.board.up is None and one.canvas.painted is not None, "RZ upwards", LONG)
+    assert one.canvas.heights is None and one.canvas.curves
+    box = person.field(panel, "across")
     person.choose(panel, "across", "the path")
     box.activated.emit(box.currentIndex())
     person.until(lambda: one.board.across is None, "the path across", LONG)
@@ -466,7 +476,40 @@ def _two_against_each_other(person, hand, one, panel, point):
 
     person.until(lambda: told() or "out of reach" in one.form.readout.text(), "the axes under the mouse")
     person.screenshot("map_e2_against_e1")
-    person.choose(panel, "axis", "RZ")
-    box.activated.emit(box.currentIndex())
-    person.until(lambda: one.board.up is None and one.canvas.painted is not None, "RZ upwards", LONG)
-    assert one.canvas.heights is None and one.canvas.curves
+
+
+def _saved(person, panel, one, monkeypatch, name):
+    """The map in files: a row for each cell, whose margin is that of joints worked out anew; the drawing has its words."""
+    for ending in ("png", "svg", "csv"):
+        path = name.with_suffix(f".{ending}")
+        monkeypatch.setattr(person.widgets.QFileDialog, "getSaveFileName",
+                            staticmethod(lambda *_, path=path: (str(path), "")))
+        person.field(panel, "save").click()
+        person.until(path.exists, f"the {ending}", LONG)
+        person.idle(0.1)
+    assert name.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
+    assert one.board.title in name.with_suffix(".svg").read_text(encoding="utf-8")
+    with open(name.with_suffix(".csv"), encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    board, limits = one.board, one.source.cell.limits
+    count = len(board.map.values) if board.pair is None else len(board.pair.values)
+    assert len(rows) == count * len(board.offsets) and {row["point"] for row in rows} == {str(board.place(0)[2])}
+    picture = board.pictures[one.draft.branch]
+    for index in np.random.default_rng(5).integers(0, len(rows), 40):
+        row, column = rows[index], index // count
+        height = 2.0 * np.pi * (index % count) / (count - 1) - np.pi if board.pair is not None else float(
+            board.map.values[index % count])
+        cell = board.cell(one.draft.branch, int(column), height)
+        assert (row["joint_margin_percent"] == "") == bool(np.isnan(cell.joints).any())
+        assert float(row["e2_deg"]) == pytest.approx(np.degrees(board.offsets[column]), abs=1e-6)
+        if board.pair is not None:
+            assert float(row["e1_deg"]) == pytest.approx(np.degrees(board.pair.values[index % count]), abs=1e-6)
+        if not np.isnan(cell.joints).any():
+            assert float(row["e2_deg"]) == pytest.approx(np.degrees(cell.joints[7]) % 360.0, abs=1e-6) or float(
+                row["e2_deg"]) == pytest.approx(np.degrees(cell.joints[7]), abs=1e-6)
+            share = float(np.nanmin(np.r_[margins(cell.joints[None], limits.lower, limits.upper)[0], margins(
+                cell.joints[None] @ limits.coefficients.T, limits.coupled_lower, limits.coupled_upper)[0]]))
+            assert float(row["joint_margin_percent"]) == pytest.approx(100.0 * share, abs=1e-6)
+    states = np.array([row["state"] for row in rows]).reshape(len(board.offsets), count).T
+    assert (states == "unreachable").sum() == (~picture.reachable).sum()
+    assert (states == "").sum() == (picture.feasible & ~picture.hatched).sum()

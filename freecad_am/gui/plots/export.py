@@ -18,14 +18,16 @@ CSV = "csv"
 ENDINGS = (*KINDS, CSV)
 
 
-def write(picture: Picture, path: str, size: tuple[int, int], across: Ranges, up: Ranges) -> None:
-    """Write the file that the ending of its path asks for, one of ENDINGS: an image on white of the part that is looked at
-    (`draw.Window`), or all values of the picture. It appears whole or not at all. OSError where it cannot be written."""
-    ending = path.rpartition(".")[2].lower()
+def content(picture: Picture, ending: str, size: tuple[int, int], across: Ranges, up: Ranges) -> bytes:
+    """The file for an ending, one of ENDINGS: an image on white of the part that is looked at (`draw.Window`), or all values
+    of the picture."""
     if ending == CSV:
-        content = "".join(values(picture)).encode()
-    else:
-        content = image(figure(picture.charts, replace(LIGHT, words=of_frames()), *size, Window(across, up))[0], ending)
+        return "".join(values(picture)).encode()
+    return image(figure(picture.charts, replace(LIGHT, words=of_frames()), *size, Window(across, up))[0], ending)
+
+
+def write(content: bytes, path: str) -> None:
+    """Write a file, which appears whole or not at all. OSError where it cannot be written."""
     unfinished = f"{path}.unfinished"
     try:
         with open(unfinished, "wb") as stream:

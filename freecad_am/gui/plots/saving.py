@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
@@ -21,22 +22,32 @@ _writing: list[Background] = []  # Python must keep them as long as they write
 
 def save(picture: Picture, obj: Any, canvas: Canvas) -> None:
     """Ask for a file, and write to it the picture of an object as the canvas shows it, or its values."""
-    first = os.path.join(os.path.dirname(obj.Document.FileName), f"{obj.Label}-{picture.name}.png")
-    kinds = ";;".join((tr("Image (*.png)"), tr("Drawing (*.svg)"), tr("Document (*.pdf)"), tr("Values (*.csv)")))
-    path, kind = QtGui.QFileDialog.getSaveFileName(Gui.getMainWindow(), tr("Save the plot"), first, kinds)
-    if path:
-        _write(picture, path, kind, canvas)
-
-
-def _write(picture: Picture, path: str, kind: str, canvas: Canvas) -> None:
     size, across, up = (canvas.width(), canvas.height()), dict(canvas.across), dict(canvas.up)
 
+    def content(ending: str) -> bytes:
+        from . import export  # with matplotlib, whose import takes some time
+
+        return export.content(picture, ending, size, across, up)
+
+    ask(tr("Save the plot"), obj, picture.name, content)
+
+
+def ask(title: str, obj: Any, name: str, content: Callable[[str], bytes]) -> None:
+    """Ask for a file, and write to it, beside the window, what `content` gives for its ending, png, svg, pdf or csv."""
+    first = os.path.join(os.path.dirname(obj.Document.FileName), f"{obj.Label}-{name}.png")
+    kinds = ";;".join((tr("Image (*.png)"), tr("Drawing (*.svg)"), tr("Document (*.pdf)"), tr("Values (*.csv)")))
+    path, kind = QtGui.QFileDialog.getSaveFileName(Gui.getMainWindow(), title, first, kinds)
+    if path:
+        _write(content, path, kind)
+
+
+def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
     def write() -> str:
         from . import export  # with matplotlib, whose import takes some time
 
         ending = next((ending for ending in export.ENDINGS if f"*.{ending}" in kind), export.ENDINGS[0])
         whole = path if path.rpartition(".")[2].lower() in export.ENDINGS else f"{path}.{ending}"
-        export.write(picture, whole, size, across, up)
+        export.write(content(whole.rpartition(".")[2].lower()), whole)
         return whole
 
     def written(worker: Worker) -> None:

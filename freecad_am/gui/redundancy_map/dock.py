@@ -32,6 +32,7 @@ from .form import Form
 from .jump import jump
 from .picture import KINDS
 from .readout import readout
+from .saving import save
 from .source import Source, source_of, status_of
 
 NAME = "RoboticAM_SpinMap"
@@ -68,6 +69,7 @@ class RedundancyMapDock:
         self.controls = Controls(self._chosen, self._curve_chosen, self._entered)
         self.figures = Figures(self._show_curves)
         self.form = Form(self.canvas, self.controls, self.figures)
+        self.form.buttons["save"].clicked.connect(lambda *_: save(self.board, self.draft.branch, self.canvas, self.obj))
         for name, act in (("use", self._use), ("free", self._free), ("again", self._again), ("compare", self._compare)):
             self.form.buttons[name].clicked.connect(lambda *_, act=act: act())
         before = self.holder.currentWidget()
@@ -273,8 +275,7 @@ class RedundancyMapDock:
             background.cancel()
         self.renewing.timer.stop()
         self.dock.empty()
-        if self in _open:
-            _open.remove(self)
+        _open[:] = [one for one in _open if one is not self]
 
     def end(self, why: str) -> None:
         """End it by itself, and say why."""
@@ -295,6 +296,5 @@ def show(obj: Any) -> RedundancyMapDock:
     source_of(obj)
     while _open:
         _open[0].close()
-    opened = RedundancyMapDock(obj)
-    _open.append(opened)
-    return opened
+    _open.append(RedundancyMapDock(obj))
+    return _open[0]

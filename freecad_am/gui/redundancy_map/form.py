@@ -46,6 +46,7 @@ class Form(QtGui.QWidget):
             ("again", tr("Back"), tr("Start again from what was planned")),
             ("compare", tr("Compare methods"),
              tr("Plan constant, point-by-point and layer-by-layer on this branch, to look at")),
+            ("save", tr("Save…"), tr("Save as an image (PNG, SVG, PDF), or the values (CSV)")),
         )}
         for number, button in enumerate(self.buttons.values()):
             grid.addWidget(button, number // 2, number % 2)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The map as an image, or its cells as comma separated values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from freecad_am.core.geometry.angles import TURN
+from freecad_am.core.types import Array
+
+from ...core.planning.redundancy.map import RZ, Picture
+from ..colours import ramp
+from ..plots.saving import ask
+from ..texts.translation import tr
+from .board import Board
+
+STEPS = 64  # of the ramp
+TICKS = np.arange(-180, 181, 60)  # deg
+
+
+def save(board: Board, branch: int, canvas: Any, obj: Any) -> None:
+    """Ask for a file, and write to it the map of a joint path as the canvas shows it, or its cells."""
+    if canvas.painted is None:
+        return
+    picture, painted, curves = board.pictures[branch], canvas.painted, list(canvas.curves)
+    size = canvas.width(), canvas.height()
+
+    def content(ending: str) -> bytes:
+        from ...plots import cells, files  # with matplotlib, whose import takes some time
+
+        if ending == "csv":
+            return "".join(values(board, picture)).encode()
+        return files.image(cells.figure(_cells(board, painted, curves, cells.Cells), *size), ending)
+
+    ask(tr("Save the map"), obj, "map", content)
+
+
+def values(board: Board, picture: Picture) -> Iterator[str]:
+    """A header and a row for each cell, column by column, in the units of machine files; '' where a cell is out of reach.
+
+    `state`: what stands against a cell, '' where nothing does.
+    """
+    names, across = _across(board)
+    up_name, up = _up(board)
+    yield ",".join([*names, up_name, "phi_deg", "joint_margin_percent", "condition", "state"]) + "\n"
+    arm = np.zeros_like(picture.outside) if picture.arm is None else picture.arm
+    state = np.select(
+        [~picture.reachable, picture.beyond, picture.singular, arm, picture.forbidden],
+        ["unreachable", "beyond a limit", "near a singularity", "a link touches", "not allowed"], "")
+    phi = np.degrees(_phi(board, picture))
+    for column, place in enumerate(across):
+        for row, value in enumerate(up):
+            figures = 100.0 * picture.margin[row, column], picture.condition[row, column]
+            found = [f"{one:.10g}" if picture.reachable[row, column] else "" for one in figures]
+            yield ",".join([*place, f"{value:.10g}", f"{phi[row, column]:.10g}", *found, state[row, column]]) + "\n"
+
+
+def _across(board: Board) -> tuple[list[str], list[list[str]]]:
+    """Names and texts (C,) of what goes across."""
+    places = [[str(number) for number in board.place(column)] for column in range(len(board.columns))]
+    if board.offsets is None or board.across is None:
+        return ["layer", "bead", "point"], places
+    name, shown = _axis(board, board.across, board.offsets)
+    return ["layer", "bead", "point", name], [[*place, f"{value:.10g}"] for place, value in zip(places, shown, strict=True)]
+
+
+def _up(board: Board) -> tuple[str, Array]:
+    """Name and values (R,) of what goes upwards."""
+    if board.pair is not None:
+        return _axis(board, board.pair.up, board.pair.values)
+    assert board.map is not None
+    return "rz_deg" if board.axis == RZ else "rotation_deg", np.degrees(board.map.values)
+
+
+def _axis(board: Board, number: int, inside: Array) -> tuple[str, Array]:
+    """An axis beside the robot: name and values as a machine file has them."""
+    machine, index = board.source.cell.machine, board.source.cell.robot.chain.axes + number
+    unit = "mm" if machine.chain.sliding[index] else "deg"
+    return f"{machine.axes[index]}_{unit}", inside / machine.unit_values[index]
+
+
+def _phi(board: Board, picture: Picture) -> Array:
+    """(R, C) the rotation about the tool axis of each cell."""
+    if board.pair is not None:
+        return np.full(picture.margin.shape, board.pair.phi)
+    assert board.map is not None
+    return board.map.phi
+
+
+def _cells(board: Board, painted: Any, curves: list[Any], made: Any) -> Any:
+    """The map for a figure."""
+    count = len(painted.hatched)
+
+    def row(value: Any) -> Any:
+        return (np.asarray(value) + np.pi) / TURN * (count - 1)
+
+    lines = []
+    for curve in curves:
+        rows = row((np.asarray(curve.values) + np.pi) % TURN - np.pi)
+        jumps = np.abs(np.diff(rows, prepend=rows[:1])) > 0.5 * count
+        lines.append((np.where(jumps, np.nan, rows), tuple(part / 255.0 for part in curve.colour)))
+    if board.pair is not None:
+        up, rows_ = board.pair.name, [(float(row(height)), text) for height, text in board.pair.labels]
+        across = [float(row(board.pair.planned))]
+    else:
+        up, across = (tr("RZ") if board.axis == RZ else tr("rotation")), []
+        rows_ = [(float(row(np.radians(tick))), f"{tick}°") for tick in TICKS]
+    scale = painted.scale
+    return made(
+        title=board.title, up=up, colours=painted.colours, hatched=painted.hatched, columns=board.labels, rows=rows_,
+        lines=([mark - 0.5 for mark in board.marks[1:]], across), curves=lines,
+        ramp=ramp(np.linspace(0.0, 1.0, STEPS)), low=scale.low, high=max(scale.high, scale.low + 1e-9),
+        scale=f"{tr(scale.title)} {scale.unit}".strip(), classes=[(tr(text), colour) for text, colour in painted.classes],
+        hatching=tr("not allowed, or touching"),
+    )
