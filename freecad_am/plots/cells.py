@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from freecad_am.core.types import Array
 
 INCH = 100.0  # pixels
+LEAST = 700, 450  # pixels that words beside the map have room in
+FONT_SIZE = 8.0  # points
 
 
 @dataclass(frozen=True)
@@ -39,8 +41,9 @@ class Cells:
 
 
 def figure(cells: Cells, width: int, height: int) -> Figure:
-    """The map as a figure of so many pixels."""
-    made = Figure(figsize=(width / INCH, height / INCH), dpi=INCH, layout="constrained")
+    """The map as a figure of so many pixels, LEAST at least."""
+    size = max(width, LEAST[0]) / INCH, max(height, LEAST[1]) / INCH
+    made = Figure(figsize=size, dpi=INCH, layout="constrained")
     axes = made.add_subplot()
     axes.imshow(cells.colours, origin="lower", aspect="auto", interpolation="nearest")
     if cells.hatched.any():
@@ -56,6 +59,7 @@ def figure(cells: Cells, width: int, height: int) -> Figure:
     axes.set_ylim(-0.5, count - 0.5)
     axes.set_xticks([place for place, _ in cells.columns], [text for _, text in cells.columns])
     axes.set_yticks([place for place, _ in cells.rows], [text for _, text in cells.rows])
+    axes.tick_params(labelsize=FONT_SIZE)
     axes.set_xlabel(cells.title)
     axes.set_ylabel(cells.up)
     made.colorbar(ScalarMappable(Normalize(cells.low, cells.high), ListedColormap(cells.ramp)), ax=axes, label=cells.scale)
@@ -63,5 +67,6 @@ def figure(cells: Cells, width: int, height: int) -> Figure:
     if cells.hatched.any():
         swatches.append(axes.bar([0.0], [0.0], color="none", hatch="////", label=cells.hatching))
     if swatches:
-        axes.legend(handles=swatches, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(swatches), frameon=False)
+        above = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
+        axes.legend(handles=swatches, ncols=2, frameon=False, fontsize=FONT_SIZE, **above)
     return made

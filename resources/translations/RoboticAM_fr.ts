@@ -4427,7 +4427,7 @@
         <translation>RY</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/plots/map_file.py"/>
         <source>RZ</source>
         <translation>RZ</translation>
     </message>
@@ -4622,7 +4622,7 @@
         <translation>Enregistrer les chiffres…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/saving.py"/>
+        <location filename="../../freecad_am/gui/plots/map_file.py"/>
         <source>Save the map</source>
         <translation>Enregistrer la carte</translation>
     </message>
@@ -9742,7 +9742,7 @@
         <translation>normales à une courbe guide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/painting.py"/>
+        <location filename="../../freecad_am/gui/plots/map_file.py"/>
         <source>not allowed, or touching</source>
         <translation>non permis, ou contact</translation>
     </message>
@@ -10362,7 +10362,7 @@
         <translation>plateau rotatif</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/plots/map_file.py"/>
         <source>rotation</source>
         <translation>rotation</translation>
     </message>

@@ -17,6 +17,7 @@ from .. import recorded
 from ..background.later import Later
 from ..docks import places
 from ..docks.lookout import Lookout
+from ..plots.map_file import save
 from ..preferences import watch
 from ..texts.translation import tr, translated, translated_error
 from .board import Board
@@ -32,7 +33,6 @@ from .form import Form
 from .jump import jump
 from .picture import KINDS
 from .readout import readout
-from .saving import save
 from .source import Source, source_of, status_of
 
 NAME = "RoboticAM_SpinMap"

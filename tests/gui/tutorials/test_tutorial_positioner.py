@@ -76,6 +76,8 @@ def test_the_dome_on_a_positioner(person, hand, lesson, root):
 
     lesson.step("7. Look at what else the table could do")
     _map(person, hand, lesson)
+    lesson.picture("positioner-map", path=True)
+    lesson.close("RoboticAM_SpinMap")
 
     lesson.step("8. Write the program")
     lesson.tool("Program")
@@ -111,8 +113,6 @@ def _map(person, hand, lesson):
     planned = one.source.planned.beads[bead].joints[point, 6:]
     assert abs(one.board.offsets[one.board.marks[1]] - planned[1]) < 2.0 * math.pi / 100.0
     assert one.board.pair.values[0] <= planned[0] <= one.board.pair.values[-1]
-    lesson.picture("positioner-map", path=True)
-    lesson.close("RoboticAM_SpinMap")
 
 
 def _upright(text):

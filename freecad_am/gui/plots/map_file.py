@@ -13,16 +13,16 @@ from freecad_am.core.types import Array
 
 from ...core.planning.redundancy.map import RZ, Picture
 from ..colours import ramp
-from ..plots.saving import ask
 from ..texts.translation import tr
-from .board import Board
+from .saving import ask
 
 STEPS = 64  # of the ramp
 TICKS = np.arange(-180, 181, 60)  # deg
 
 
-def save(board: Board, branch: int, canvas: Any, obj: Any) -> None:
-    """Ask for a file, and write to it the map of a joint path as the canvas shows it, or its cells."""
+def save(board: Any, branch: int, canvas: Any, obj: Any) -> None:
+    """Ask for a file, and write to it the map of a joint path as the canvas shows it, or its cells; board: its
+    `redundancy_map.board.Board`."""
     if canvas.painted is None:
         return
     picture, painted, curves = board.pictures[branch], canvas.painted, list(canvas.curves)
@@ -38,7 +38,7 @@ def save(board: Board, branch: int, canvas: Any, obj: Any) -> None:
     ask(tr("Save the map"), obj, "map", content)
 
 
-def values(board: Board, picture: Picture) -> Iterator[str]:
+def values(board: Any, picture: Picture) -> Iterator[str]:
     """A header and a row for each cell, column by column, in the units of machine files; '' where a cell is out of reach.
 
     `state`: what stands against a cell, '' where nothing does.
@@ -58,7 +58,7 @@ def values(board: Board, picture: Picture) -> Iterator[str]:
             yield ",".join([*place, f"{value:.10g}", f"{phi[row, column]:.10g}", *found, state[row, column]]) + "\n"
 
 
-def _across(board: Board) -> tuple[list[str], list[list[str]]]:
+def _across(board: Any) -> tuple[list[str], list[list[str]]]:
     """Names and texts (C,) of what goes across."""
     places = [[str(number) for number in board.place(column)] for column in range(len(board.columns))]
     if board.offsets is None or board.across is None:
@@ -67,7 +67,7 @@ def _across(board: Board) -> tuple[list[str], list[list[str]]]:
     return ["layer", "bead", "point", name], [[*place, f"{value:.10g}"] for place, value in zip(places, shown, strict=True)]
 
 
-def _up(board: Board) -> tuple[str, Array]:
+def _up(board: Any) -> tuple[str, Array]:
     """Name and values (R,) of what goes upwards."""
     if board.pair is not None:
         return _axis(board, board.pair.up, board.pair.values)
@@ -75,14 +75,14 @@ def _up(board: Board) -> tuple[str, Array]:
     return "rz_deg" if board.axis == RZ else "rotation_deg", np.degrees(board.map.values)
 
 
-def _axis(board: Board, number: int, inside: Array) -> tuple[str, Array]:
+def _axis(board: Any, number: int, inside: Array) -> tuple[str, Array]:
     """An axis beside the robot: name and values as a machine file has them."""
     machine, index = board.source.cell.machine, board.source.cell.robot.chain.axes + number
     unit = "mm" if machine.chain.sliding[index] else "deg"
     return f"{machine.axes[index]}_{unit}", inside / machine.unit_values[index]
 
 
-def _phi(board: Board, picture: Picture) -> Array:
+def _phi(board: Any, picture: Picture) -> Array:
     """(R, C) the rotation about the tool axis of each cell."""
     if board.pair is not None:
         return np.full(picture.margin.shape, board.pair.phi)
@@ -90,7 +90,7 @@ def _phi(board: Board, picture: Picture) -> Array:
     return board.map.phi
 
 
-def _cells(board: Board, painted: Any, curves: list[Any], made: Any) -> Any:
+def _cells(board: Any, painted: Any, curves: list[Any], made: Any) -> Any:
     """The map for a figure."""
     count = len(painted.hatched)
 
