@@ -35,6 +35,12 @@ def arm(request):
     return of, recognition.arm_of(of)
 
 
+@pytest.fixture
+def most(request, arm):
+    """Of 1,000 poses that the search is asked about: solutions of an arm that is out of square are nearer to each other."""
+    return 100 if request.node.callspec.params["arm"] is CROOKED_CRX else 20
+
+
 def _curves(arm, q):
     return arm[1]._curves(arm[0].forward(q))
 
@@ -53,7 +59,7 @@ def test_only_arms_of_its_kind_have_the_same_zeros_on_both_sides():
         assert polynomial.is_even(recognition.arm_of(of)._curves(of.forward(np.zeros((1, 6))))) == wanted
 
 
-def test_zeros_are_those_of_the_search(arm, monkeypatch):
+def test_zeros_are_those_of_the_search(arm, most, monkeypatch):
     curves = _curves(arm, np.random.default_rng(11).uniform(-np.pi, np.pi, (1000, 6)))
     expected = _rows(search.zeros(curves))
     asked = []
@@ -62,7 +68,7 @@ def test_zeros_are_those_of_the_search(arm, monkeypatch):
     found = _rows(polynomial.zeros(curves))
     assert found.shape == expected.shape and np.array_equal(found[:, [0, 1, 2, 5]], expected[:, [0, 1, 2, 5]])
     assert np.abs(found[:, 3:5] - expected[:, 3:5]).max() < 1e-9
-    assert sum(asked) < 80
+    assert sum(asked) < most
 
 
 def test_zeros_that_meet_are_found(arm):

@@ -36,7 +36,7 @@ from . import trigonometric_zeros as trigonometric
 from .offset_wrist_plane import TINY, Curves
 from .offset_wrist_search import Zeros
 
-NEWTON, NEWTON_RAD = 12, 1e-7
+NEWTON, NEWTON_RAD = 12, 5e-10  # turns of the flange that follow are off by as much
 SAME_RAD = 1e-6  # nearer zeros that the search finds are those found here
 NEAR_AXIS = 3e-4  # of the length of the stretched arm: nearer to axis 1 the search has more digits
 SQUARE = 1e-13  # sine of the angles that must be square or straight
@@ -124,9 +124,9 @@ def _coefficients(arm: _Lengths, parts: Array, even: bool) -> Array:
 
 def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array, Array, Array]:
     """A, B and R^2, for points and axes 5 by their components."""
-    (x, y, z), (along, beside, up) = point, five
+    (x, y, z), (five_x, five_y, up) = point, five
     flat = x * x + y * y
-    within = x * along + y * beside
+    within = x * five_x + y * five_y
     rise = z * within - flat * up
     level = within + z * up
     # C, X and Y by constant and factor of R
@@ -171,15 +171,15 @@ def _turned(parts: Array, cos: Array, sin: Array) -> Array:
 def _terms(arm: _Lengths, parts: Array, angle: Array, side: Array) -> _Terms:
     """Of points and axes 5 (2, 3, 3, k) at angles (k,), on a side of axis 1."""
     cos, sin = np.cos(angle), np.sin(angle)
-    (x, y, z), (along, beside, up) = _turned(parts, cos, sin)
+    (x, y, z), (five_x, five_y, up) = _turned(parts, cos, sin)
     moved = parts[:, 2] * cos
     moved -= parts[:, 1] * sin
-    (x_, y_, z_), (along_, beside_, up_) = moved
+    (x_, y_, z_), (five_x_, five_y_, up_) = moved
     flat = x * x + y * y
     radius = side * (np.sqrt(flat) + TINY)
     half_flat_ = x * x_ + y * y_
     radius_ = half_flat_ / radius
-    within, within_ = x * along + y * beside, x_ * along + x * along_ + y_ * beside + y * beside_
+    within, within_ = x * five_x + y * five_y, x_ * five_x + x * five_x_ + y_ * five_y + y * five_y_
     squared = flat + z * z - (2.0 * arm.ahead) * radius + arm.ahead**2
     common = (squared + (arm.fore**2 - arm.upper**2)) * (0.5 / arm.fore)
     common_ = (half_flat_ + z * z_ - arm.ahead * radius_) * (1.0 / arm.fore)

@@ -82,7 +82,7 @@ def parted(coefficients: Array) -> Parted:
     width, found, close = TURN / STEPS[degree], [], np.zeros(coefficients.shape[1], dtype=bool)
     steps = _first(coefficients, width, fourth, touching)
     for level in range(LEVELS):
-        single, open_ = _told(steps, fourth, rounding, width)
+        single, open_ = _single_or_open(steps, fourth, rounding, width)
         found.append((single, width))
         lost = _drowned(open_, rounding)
         close[open_.number if level >= SURE - 1 else open_.number[lost]] = True
@@ -130,7 +130,7 @@ def _some(steps: _Steps, kept: Index | Mask) -> _Steps:
     return _Steps(steps.number[kept], steps.begin[kept], steps.value[:, kept], steps.slope[:, kept])
 
 
-def _told(steps: _Steps, fourth: Array, rounding: Array, width: float) -> tuple[_Steps, _Steps]:
+def _single_or_open(steps: _Steps, fourth: Array, rounding: Array, width: float) -> tuple[_Steps, _Steps]:
     """Of steps that may have a zero those that have one alone, and those of which it cannot be told."""
     number, _, (one, other), (rise, last) = steps
     off = SLOPE_SHARE / 3.0 * width**4 * fourth[number] + 3.0 * rounding[number]
