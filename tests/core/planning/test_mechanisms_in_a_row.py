@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One table alone, and one that stands on another: driven in the world by PyKDL chains that are built here of the numbers."""
+"""One table alone, and one that stands on another: driven in the world by PyKDL chains built here of the numbers."""
 
 import dataclasses
 import json
 import math
 
 import numpy as np
-import PyKDL
 import pytest
 
 from freecad_am.core.kinematics import cell as cells
@@ -21,10 +20,10 @@ from tests.core.planning.test_external_axes import PLATFORM, ROBOT, TORCH, UP, b
 STANDS = {"turn": (1250.0, 80.0, 200.0, 0.0, 0.0, 20.0), "tilt": (1300.0, 40.0, 150.0, 0.0, 0.0, -15.0)}
 ON_TILT = (1310.0, 30.0, 420.0, 2.0, 0.0, 50.0)  # of the turning one in the world, with the tilting one at zero
 TABLES = {
-    "turn": {"origin": [5, 0, 60], "rpy": [0, 2, 0], "axis": [0, 0, 1], "flange": {"origin": [0, 0, 40], "rpy": [0, 0, 10]},
-             "limits": [-400, 400]},
-    "tilt": {"origin": [0, 10, 180], "rpy": [0, 0, 4], "axis": [0, 1, 0], "flange": {"origin": [20, 0, 60], "rpy": [0, 0, 0]},
-             "limits": [-110, 110]},
+    "turn": {"origin": [5, 0, 60], "rpy": [0, 2, 0], "axis": [0, 0, 1], "limits": [-400, 400],
+             "flange": {"origin": [0, 0, 40], "rpy": [0, 0, 10]}},
+    "tilt": {"origin": [0, 10, 180], "rpy": [0, 0, 4], "axis": [0, 1, 0], "limits": [-110, 110],
+             "flange": {"origin": [20, 0, 60], "rpy": [0, 0, 0]}},
 }
 
 
