@@ -22,9 +22,9 @@ STEPS = {4: 32, 8: 48}  # of a turn, by degree
 PIECES, LEVELS = 4, 10  # into which undecided steps are cut, and how often
 SURE = 7  # levels: zeros parted by later ones are so near to each other that they have few digits
 VALUE_SHARE, SLOPE_SHARE = 1.0 / 384.0, math.sqrt(3.0) / 216.0
-# of the sum of all coefficients: how far off a value is, and how far an extreme that is a double zero may be from zero by
-# the rounding of the pose
-ROUNDING, TOUCHING = 4e-15, 1e-13
+# of the sum of all coefficients, by degree: how far off a value is, and how far an extreme that is a double zero may be
+# from zero by the rounding of the pose; the higher one is a difference of products of two
+ROUNDING, TOUCHING = {4: 5e-17, 8: 4e-15}, {4: 1e-13, 8: 1e-13}
 DROWNED = 8.0  # times that a step's values and slopes are, at most, that rounding leaves nothing of
 
 
@@ -76,7 +76,7 @@ def parted(coefficients: Array) -> Parted:
     degree = len(coefficients) // 2
     amplitudes = np.hypot(coefficients[1 : degree + 1], coefficients[degree + 1 :])
     size = np.abs(coefficients[0]) + amplitudes.sum(axis=0)
-    rounding, touching = ROUNDING * size, TOUCHING * size
+    rounding, touching = ROUNDING[degree] * size, TOUCHING[degree] * size
     fourth = np.arange(1.0, degree + 1.0) ** 4 @ amplitudes
     waves: Array | None = None
     width, found, close = TURN / STEPS[degree], [], np.zeros(coefficients.shape[1], dtype=bool)
