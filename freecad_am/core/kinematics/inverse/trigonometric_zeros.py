@@ -19,7 +19,7 @@ from ...geometry.angles import TURN
 from ...types import Array, Index, Mask
 
 STEPS = {4: 32, 8: 48}  # of a turn, by degree
-PIECES, LEVELS = 4, 10  # into which undecided steps are cut, and how often
+PIECES, LEVELS = 4, {4: 10, 8: 7}  # into which undecided steps are cut, and how often: of the higher degree while it tells
 SURE = 7  # levels: zeros parted by later ones are so near to each other that they have few digits
 VALUE_SHARE, SLOPE_SHARE = 1.0 / 384.0, math.sqrt(3.0) / 216.0
 # of the sum of all coefficients, by degree: how far off a value is, and how far an extreme that is a double zero may be
@@ -81,13 +81,13 @@ def parted(coefficients: Array) -> Parted:
     waves: Array | None = None
     width, found, close = TURN / STEPS[degree], [], np.zeros(coefficients.shape[1], dtype=bool)
     steps = _first(coefficients, width, fourth, touching)
-    for level in range(LEVELS):
+    for level in range(LEVELS[degree]):
         single, open_ = _single_or_open(steps, fourth, rounding, width)
         found.append((single, width))
         lost = _drowned(open_, rounding)
         close[open_.number if level >= SURE - 1 else open_.number[lost]] = True
         open_ = _some(open_, np.flatnonzero(~lost))
-        if level == LEVELS - 1 or not len(open_.number):
+        if level == LEVELS[degree] - 1 or not len(open_.number):
             break
         if waves is None:
             waves = np.concatenate([coefficients[:1], coefficients[1 : degree + 1] - 1j * coefficients[degree + 1 :]])
