@@ -36,4 +36,4 @@ def test_no_file_asks_which_kind_of_cell_it_is():
 def test_the_question_is_recognised():
     for text in ('cell.setup == wanted', 'setup in ("rotary-table",)', 'if settings.setup != "x": pass'):
         assert list(_of_kind(ast.parse(text))), text
-    assert not list(_of_kind(ast.parse("cell.arrangement.redundant and f(setup=cell.setup)")))
+    assert not list(_of_kind(ast.parse("cell.arrangement.free and f(setup=cell.setup)")))

@@ -104,7 +104,7 @@ def test_posts_and_machines_are_told():
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     plain = readme.lower().replace("ä", "a").replace("ü", "u")
     assert all(f"**{post}**" in plain for post in catalogue.NAMES)
-    robots = [name for name, _ in machine.known() if machine.load(name).redundant]
+    robots = [name for name, _ in machine.known() if machine.load(name).free]
     assert f"{len(robots)} robots" in readme
 
 

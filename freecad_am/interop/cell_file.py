@@ -27,7 +27,7 @@ def text(cell: CellParameters, folder: str) -> str:
     usual = CellParameters()
     for field in dataclasses.fields(cell):
         value = getattr(cell, field.name)
-        kept = field.name in PROPOSED and of_setup(cell.setup).redundant
+        kept = field.name in PROPOSED and of_setup(cell.setup).free > 0
         if field.name in SHOWN_APART or (value == getattr(usual, field.name) and not kept):
             continue
         lines.append(f"{field.name}: {_shown(value, f.spec_of(field).kind)}")

@@ -116,7 +116,7 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     post = catalogue.load(parameters.post)
     controllers.check(cell, parameters)
     post.refuse_setup(
-        parameters.motion, cell.setup, programs.external_kinds(cell), programs.on_table(cell, parameters)
+        parameters.motion, cell.setup, programs.external_kinds(cell), programs.carried(cell, parameters)
     )
     if process.wire.feed_mode != "constant" and post.NO_WIRE and not parameters.dry_run:
         raise refusals.wire_refused(post.NO_WIRE)

@@ -43,17 +43,16 @@ class Joints:
 def given_by_position(cell: Cell, joints: Array) -> Mask:
     """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: a robot's own
     ones, and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
-    slides = cell.machine.chain.sliding & (not cell.arrangement.redundant)
     own = np.arange(joints.shape[1]) < cell.robot.chain.axes  # a position says nothing of the axes beside the robot
-    return np.asarray(slides | np.isnan(joints[:, own]).all(axis=1, keepdims=True) & own, dtype=np.bool_)
+    untold = np.isnan(joints[:, own]).all(axis=1, keepdims=True)
+    return np.asarray((cell.machine.chain.sliding | untold) & own, dtype=np.bool_)
 
 
 def shorter_way(cell: Cell, program: Program, read: ReadMoves) -> Mask:
     """(axes,) the axes that the controller takes the shorter way: those of robots that turn without end. Rotary axes of
     machine tools count their turns, unless the text says otherwise."""
-    if cell.arrangement.redundant:
-        return np.array(program.continuous)
-    return np.array(program.continuous) & (False if read.shorter_way is None else read.shorter_way)
+    shorter = not cell.arrangement.named_axes if read.shorter_way is None else read.shorter_way
+    return np.array(program.continuous) & shorter
 
 
 def digits(cell: Cell, read: ReadMoves) -> Array:

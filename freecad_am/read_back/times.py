@@ -39,7 +39,7 @@ def time_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
     taken, coarse = read.duration, allowed > TENTH
     if read.duration_digits is not None:
         allowed, coarse = read.duration_digits + 1e-9 * wanted + 1e-12, np.ones(len(timed), dtype=bool)
-    if not cell.arrangement.redundant:  # rapids at the machine's own speed: the text says no more
+    if cell.arrangement.named_axes:  # rapids at the machine's own speed: the text says no more
         timed &= planned.deposit | np.isfinite(taken)
     # written as 1 ms, the shortest there is
     short = timed & ~planned.deposit & (wanted < MILLISECOND) & (taken <= MILLISECOND + 1e-9)

@@ -281,7 +281,7 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
     hand.enter(wizard, "poseSource", "controller")
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
     made = machine.load("trunnion", user_machines.folders())
-    assert not made.redundant and made.opw is None and np.isinf(made.limits("maker").upper[4])
+    assert not made.free and made.opw is None and np.isinf(made.limits("maker").upper[4])
     np.testing.assert_allclose(made.max_acceleration, [np.inf, np.inf, 900, np.radians(400), np.inf])
     np.testing.assert_allclose(made.max_jerk, [np.inf, np.inf, 8000, np.radians(5000), np.inf])
     np.testing.assert_allclose(made.chain.forward(values), tool.chain.forward(values), atol=1e-6)

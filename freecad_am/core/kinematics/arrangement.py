@@ -14,7 +14,7 @@ class Arrangement:
 
     setup: the value of `cell.setup`.
     carries_part: the flange carries the part, under a nozzle that stands; else the nozzle.
-    redundant: a rotation about the tool and a configuration of the arm are left to choose; else poses leave nothing free.
+    free: how many coordinates point and tool axis leave free on the machine alone: on a robot the rotation about the tool.
     holds_part: the part turns in the hand of a robot, so that what runs straight in the world is not a line on the part.
     links_known: files tell what the links look like, so that what they touch can be found; else they are drawn to fit.
     named_axes: the controller writes axes by names of their own (X, A), not by number.
@@ -23,7 +23,7 @@ class Arrangement:
 
     setup: str
     carries_part: bool
-    redundant: bool
+    free: int
     holds_part: bool
     links_known: bool
     named_axes: bool
@@ -31,18 +31,18 @@ class Arrangement:
 
 
 _HOLDING_PART = Arrangement(
-    "part-on-robot", carries_part=True, redundant=True, holds_part=True, links_known=True, named_axes=False,
+    "part-on-robot", carries_part=True, free=1, holds_part=True, links_known=True, named_axes=False,
 )
 _HOLDING_TOOL = Arrangement(
-    "tool-on-robot", carries_part=False, redundant=True, holds_part=False, links_known=True, named_axes=False,
+    "tool-on-robot", carries_part=False, free=1, holds_part=False, links_known=True, named_axes=False,
 )
 _WITH_POSITIONER = Arrangement(
-    "tool-on-robot+positioner", carries_part=False, redundant=True, holds_part=False, links_known=True, named_axes=False,
+    "tool-on-robot+positioner", carries_part=False, free=1, holds_part=False, links_known=True, named_axes=False,
     planned=False,
 )
 # its chain is seen from the torch, so that the part hangs on its flange wherever its axes are
 _FIVE_AXIS = Arrangement(
-    "rotary-table", carries_part=True, redundant=False, holds_part=False, links_known=False, named_axes=True,
+    "rotary-table", carries_part=True, free=0, holds_part=False, links_known=False, named_axes=True,
 )
 OF_ROBOTS = (_HOLDING_PART, _HOLDING_TOOL, _WITH_POSITIONER)  # the usual one first
 OF_FIVE_AXES = (_FIVE_AXIS,)

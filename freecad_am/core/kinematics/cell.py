@@ -118,6 +118,11 @@ class Cell:
         return of_setup(self.setup)
 
     @property
+    def free(self) -> int:
+        """How many coordinates point and tool axis leave free: 0 of five axes, 1 of a robot, more with axes beside it."""
+        return self.machine.free
+
+    @property
     def part_moves(self) -> bool:
         """Whether the part moves in the world."""
         return self.arrangement.carries_part or (self.external is not None and bool(self.external.turning))
@@ -263,7 +268,7 @@ def resolve(
     platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
     limits, external = machine.limits(parameters.limits), None
     # the torch of a machine that leaves nothing free is where its chain begins
-    station = frames.bryant(parameters.deposition_point) if arrangement.redundant else np.eye(4)
+    station = frames.bryant(parameters.deposition_point) if arrangement.free else np.eye(4)
     mount, offset = mounted(parameters, feature_frame, family), of_cell(parameters, arrangement)
     station = station if offset is None else offset.pose @ mount
     if mechanisms:
@@ -290,10 +295,10 @@ def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: 
     """InputError WRONG_SETUP for what the machine, or axes beside it, do not do, NO_CLOSED_FORM for an arm whose inverse is
     not known."""
     if arrangement not in machine.arrangements:
-        kind = "is a robot" if machine.redundant else "has sliding axes"
+        kind = "is a robot" if machine.free else "has sliding axes"
         wanted = " or ".join(one.setup for one in machine.arrangements if one.planned)
         raise InputError("WRONG_SETUP", "cell.setup", f"{machine.title} {kind}; use {wanted}, or choose another machine")
-    if machine.arm is None and machine.redundant:
+    if machine.no_arm:
         raise InputError("NO_CLOSED_FORM", "cell.machine", f"{machine.title}: {machine.no_arm}")
     if has_external and arrangement.carries_part:
         raise InputError("WRONG_SETUP", "cell.external", f"{arrangement.setup}: axes beside the robot need "

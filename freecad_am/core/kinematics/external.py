@@ -102,8 +102,6 @@ def coupled(
     found = [(one, load(one.machine, folders)) for one in named]
     _check_names(robot, found)
     _check(found)
-    if not robot.redundant:
-        raise InputError("WRONG_SETUP", WHERE, f"{robot.title} is not a robot and takes no external axes; leave them out")
     axes, ends = robot.chain.axes, np.cumsum([0, *(machine.chain.axes for _, machine in found)])
     values, count = [np.arange(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)], int(ends[-1])
     carriers = [k for k, (one, _) in enumerate(found) if one.carries == PART]

@@ -51,7 +51,7 @@ def cell_of(
     of the tip on its flange, where it is known. InputError for an unknown one."""
     chosen = CellParameters(machine=machine or CellParameters().machine)
     usual = machines.load(chosen.machine, tuple(folders)).arrangements[0]
-    if not usual.redundant:
+    if not usual.free:
         return replace(chosen, setup=usual.setup)
     nozzle = chosen.nozzle if tool is None else replace(chosen.nozzle, tool=tool)
     return proposed(replace(chosen, setup=setup, nozzle=nozzle), folders)
@@ -69,7 +69,7 @@ def searched(parameters: CellParameters, folders: Sequence[str] = (), own_branch
     """What is `proposed`, looked for."""
     machine = machines.load(parameters.machine, tuple(folders))
     arrangement = of_setup(parameters.setup)
-    if externals(parameters.external) or machine.arm is None or not (arrangement.redundant and arrangement.planned):
+    if externals(parameters.external) or machine.arm is None or not (arrangement.free and arrangement.planned):
         return parameters
     cell = resolve(parameters, np.eye(4), folders=folders)
     branches = range(len(opw.BRANCHES)) if cell.branch is None or not own_branch else [cell.branch]

@@ -46,7 +46,7 @@ def of_cell(parameters: CellParameters, arrangement: Arrangement) -> WorkOffset 
     if not points:
         return None
     carried = any(one.carries == PART for one in externals(parameters.external))
-    if arrangement.carries_part or not arrangement.redundant or carried:
+    if arrangement.carries_part or carried:
         raise InputError(CODE, WHERE, "points are touched of a part that stands still under a tool on the robot; leave them "
                          "out, and measure cell.platform or the pose of what carries the part")
     return work_offset(points, parameters.touched_tolerance)

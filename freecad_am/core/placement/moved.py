@@ -19,7 +19,7 @@ def movable(settings: CellParameters) -> tuple[str, ...]:
     arrangement = of_setup(settings.setup)
     if arrangement.holds_part:
         return (POINT, PLATFORM)
-    if not arrangement.redundant:
+    if arrangement.carries_part:
         return (PLATFORM,)
     if any(one.carries == PART for one in externals(settings.external)):
         return (POSITIONER, PLATFORM)

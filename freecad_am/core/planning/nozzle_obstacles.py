@@ -47,7 +47,7 @@ def met(cell: Cell, start: Array, end: Array) -> NDArray[np.bool_]:
     """(k, n) which of what is `in_the_way` a nozzle meets on n moves straight in the joints (n, axes); none where these are
     NaN."""
     found = np.zeros((len(in_the_way(cell)), len(start)), dtype=bool)
-    if cell.torch_stands or not cell.arrangement.redundant or not len(found):
+    if cell.torch_stands or not len(found):
         return found
     known = np.flatnonzero(np.isfinite(start + end).all(axis=1))
     for first in range(0, len(known), PIECE):

@@ -65,7 +65,7 @@ def plan_joints(
     robot, which are kept clear where `cell.arm_clearance` asks for it. Raises InputError
     NOT_FOR_SETUP for what only rotary axes can do.
     """
-    if not cell.arrangement.redundant:
+    if not cell.free:
         return _on_table(toolpath, cell, parameters, progress)
     beads, tilted = levelled(cell, toolpath) if cell.external else (
         [bead for _, _, bead in toolpath], standing(cell, toolpath))

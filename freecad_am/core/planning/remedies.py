@@ -151,23 +151,23 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
     codes, arrangement = {issue.code for issue in issues if issue.level == ERROR}, of_setup(job.settings.setup)
     usual = CellParameters()
     left_out = job.settings.deposition_point == usual.deposition_point and job.settings.machine != usual.machine
-    if left_out and arrangement.redundant:
+    if left_out and arrangement.free:
         yield from _points(job)
     if "SPEED" in codes and job.process.bead_model == "none":
         yield from _slower(job, path)
     if all(code.startswith("RAPID") for code in codes):
         yield from _retracts(job)
-    if arrangement.redundant and codes != {external_remedies.NOT_LEVEL}:  # which no turn about the tool mends
+    if arrangement.free and codes != {external_remedies.NOT_LEVEL}:  # which no turn about the tool mends
         yield from _branches(job)
         yield from _rotations(job)
     if job.fixed is not None:
         fixed = dataclasses.replace(job, toolpath=job.fixed.make, remedy=job.fixed.remedy)
         yield fixed
-        if arrangement.redundant and job.settings.branch != "auto":
+        if arrangement.free and job.settings.branch != "auto":
             yield _with_cell(fixed, f"{fixed.remedy} and `cell.branch: auto`", branch="auto")
-    if not left_out and arrangement.redundant:
+    if not left_out and arrangement.free:
         yield from _points(job)
-    if arrangement.redundant:
+    if arrangement.free:
         yield from _external_axes(job, codes)
 
 

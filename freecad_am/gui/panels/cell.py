@@ -108,7 +108,7 @@ class CellPanel(PreviewPanel):
     def _fit(self, machine: Machine) -> None:
         """Leave out what has no meaning for the machine, or with what the robot carries: beside it a part stands on its
         deposition point, or on the platform of a positioner."""
-        if not machine.redundant:
+        if not machine.free:
             without: tuple[str, ...] = _OF_ROBOTS
         elif of_setup(self._widget(SETUP).currentData()).carries_part:
             without = _OF_TOOLS
@@ -144,7 +144,7 @@ class CellPanel(PreviewPanel):
         for place in self.noted:
             self.tell(place, "")
         self.noted.clear()
-        if not machine.redundant or not (of_setup(setup).redundant and of_setup(setup).planned):
+        if not machine.free or not (of_setup(setup).free and of_setup(setup).planned):
             return
         folders, known, wanted, tool = user_machines.folders(), dict(self.of_machine), self.before, self._tool()
 

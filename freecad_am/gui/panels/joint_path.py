@@ -74,7 +74,7 @@ class JointPathPanel(PreviewPanel):
             cell = self._cell().value()
             if cell is None:
                 return
-            if not machines.load(cell.Machine, user_machines.folders()).redundant:
+            if not machines.load(cell.Machine, user_machines.folders()).free:
                 self.leave_out({_place(name) for name in OF_ROBOTS} | _ENDS)
                 return
             method = self.places[METHOD][0].value

@@ -61,7 +61,7 @@ def check_external(cell: Cell, post: str) -> None:
 
 def check_wrist(machine: Machine, motion: str, post: str) -> None:
     """InputError NOT_FOR_WRIST: Cartesian programs of robots without a spherical wrist by posts that name configurations."""
-    if motion == "cartesian" and machine.redundant and machine.opw is None and controller(post).configurations:
+    if motion == "cartesian" and machine.arm is not None and machine.opw is None and controller(post).configurations:
         raise InputError(
             "NOT_FOR_WRIST", "program.motion", f"{machine.title} has no spherical wrist, and what its controller calls the "
             "configurations of cartesian positions is not known; use joint",

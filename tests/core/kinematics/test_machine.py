@@ -23,7 +23,7 @@ def test_all_built_in_machines_load():
     for name, title in known:
         arm = machine.load(name)
         assert (arm.id, arm.title) == (name, title)
-        assert (arm.arm is not None) == arm.redundant and arm.sources and arm.controller_remark
+        assert (arm.arm is not None) == (arm.free > 0) and arm.sources and arm.controller_remark
         assert np.isfinite(arm.max_speed).all() and (arm.max_speed > 0).all()
         assert "maker" in arm.limit_sets
         assert all((limits.upper > limits.lower).all() for limits in arm.limit_sets.values())

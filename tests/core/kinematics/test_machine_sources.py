@@ -317,7 +317,7 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
         np.testing.assert_allclose(found.chain.forward(Q6), KdlArm(given).forward(Q6), atol=1e-9)
         np.testing.assert_allclose(found.base, given.base, atol=1e-9)
         np.testing.assert_allclose(found.limits("maker").lower, given.limits("maker").lower[:6], rtol=1e-14)
-        assert found.axes == given.axes and found.posts == () and found.redundant
+        assert found.axes == given.axes and found.posts == () and found.free
         assert "does not tell what the controller shows" in found.controller_remark
     for name, words in (
         (f"{path} tip=hand", "arm.urdf has no link 'hand'; it has base_link, "), (f"{path} base=tool0", "moves anything"),

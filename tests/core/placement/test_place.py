@@ -64,7 +64,7 @@ def dome():
 def job_of(toolpath):
     return Job(
         toolpath, lambda settings: cells.resolve(settings, toolpath.frame, toolpath.family),
-        lambda cell: tuple(map(tuple, link_rods.of_robot(cell.robot.chain))) if cell.machine.redundant else (),
+        lambda cell: tuple(map(tuple, link_rods.of_robot(cell.robot.chain))) if cell.machine.free else (),
         PROCESS, JointParameters(),
     )
 

@@ -13,13 +13,13 @@ from freecad_am.core.simulation import table_links
 from tests.core.kinematics.arms import EXAMPLES
 
 NAMES = EXAMPLES
-ROBOTS = [name for name in NAMES if machine.load(name).redundant]
+ROBOTS = [name for name in NAMES if machine.load(name).free]
 TABLES = [name for name in NAMES if name not in ROBOTS]
 
 
 def links_of(name):
     loaded = machine.load(name)
-    made = (robot_links if loaded.redundant else table_links).solids(loaded.chain)
+    made = (robot_links if loaded.free else table_links).solids(loaded.chain)
     return loaded, made
 
 

@@ -97,9 +97,9 @@ class Machine:
         return OF_FIVE_AXES if is_five_axis(self.chain.sliding[: len(self.axes) - self.external]) else OF_ROBOTS
 
     @property
-    def redundant(self) -> bool:
-        """Whether a rotation about the tool is left to choose, as robots leave it."""
-        return self.arrangements[0].redundant
+    def free(self) -> int:
+        """How many coordinates point and tool axis leave free: a robot's rotation about the tool, and axes beside it."""
+        return self.arrangements[0].free + self.external
 
     @property
     def columns(self) -> tuple[str, ...]:

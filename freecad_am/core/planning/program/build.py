@@ -128,11 +128,9 @@ def _letter(axis: str) -> str:
     return (axis[1:] if len(axis) == 2 and axis[0] == "m" else axis).upper()
 
 
-def on_table(cell: Cell, parameters: ProgramParameters) -> Six | None:
-    """Where the program's origin is on the table as a program tells it; None where it is known only with the toolpath."""
-    if cell.arrangement.redundant or not isinstance(parameters.origin, str):
-        return None
-    return six_of(frames_of(cell, parameters)[1])
+def carried(cell: Cell, parameters: ProgramParameters) -> Six | None:
+    """What the flange carries as a program tells it; None where the origin on it is known only with the toolpath."""
+    return six_of(frames_of(cell, parameters)[1]) if isinstance(parameters.origin, str) else None
 
 
 def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:

@@ -237,13 +237,15 @@ class Retracts:
         with np.errstate(invalid="ignore"):
             fits: Mask = (self.cell.limits.margin(joints) >= kept - ROUNDING_RAD).all(axis=(1, 2))
         some = np.flatnonzero(fits)
-        if self.branch is not None and len(some):
+        if len(some):
             fits[some] = (self.condition(joints[some].reshape(-1, joints.shape[2])) >= self.floor).reshape(
                 len(some), joints.shape[1]).all(axis=1)
         return fits
 
     def condition(self, joints: Array) -> Array:
-        """(n,) the robot's condition at joints (n, axes), as of deposit rows."""
+        """(n,) the robot's condition at joints (n, axes), as of deposit rows; infinite where nothing is free to lose."""
+        if not self.cell.free:
+            return np.full(len(joints), np.inf)
         chain = self.cell.robot.chain
         joints = joints[:, : chain.axes]
         point = self.cell.deposition_point(chain.forward(joints))
@@ -272,7 +274,7 @@ class Retracts:
             margin = limits.margin(row) - kept
             worst = int(margin.argmin())
             if margin[worst] >= 0.0:
-                value = float(self.condition(row[None])[0]) if self.branch is not None else 1.0
+                value = float(self.condition(row[None])[0])
                 # the way there may be what is wrong, not its end
                 found.append(Failure(SINGULAR, 0, value, self.floor) if value < self.floor else Failure(UNREACHABLE))
                 continue

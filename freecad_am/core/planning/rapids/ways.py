@@ -128,7 +128,7 @@ class RapidWays:
         ways = [
             [start + (end - start) * (k / count) for k in range(1, count)] for count in range(moves, moves + MORE_MOVES + 1)
         ]
-        if moves == 1 or not self.cell.arrangement.redundant or not np.isfinite(ways[0]).all():
+        if moves == 1 or not np.isfinite(ways[0]).all():
             return ways[0], None
         least = [float(self.retracts.condition(np.array(rows)).min()) for rows in ways]
         for rows, condition in zip(ways, least):
