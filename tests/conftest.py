@@ -2,6 +2,7 @@
 """Makes FreeCAD importable in whatever Python runs the tests, and skips GUI tests where there is no window."""
 
 import contextlib
+import gc
 import os
 import sys
 import time
@@ -12,11 +13,15 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from freecad_am.batch import host  # noqa: E402
+from freecad_am.batch import allocation, host  # noqa: E402
 
 host.find_freecad()
 
 import FreeCAD  # noqa: E402
+
+if not FreeCAD.GuiUp:  # as commands have it (freecad_am/batch/boot.py): a tenth of the time of what is computed here
+    gc.set_threshold(300_000, 50, 50)
+    allocation.keep_freed()
 
 WHY, LONGEST = 6, 220  # lines of why a test failed, and characters of each
 
