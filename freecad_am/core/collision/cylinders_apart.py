@@ -72,6 +72,15 @@ def nearer(one: PlacedCylinders, other: PlacedCylinders, gap: float) -> Mask:
     return found
 
 
+def nearest(one: PlacedCylinders, other: PlacedCylinders) -> tuple[Array, Array]:
+    """The places (k, 3) where the second cylinders are nearest to the first ones, and the ways (k, 3) from there to these;
+    none where the two meet."""
+    adjacent = _Pairs(PlacedCylinders(other.start - one.start, other.axis, other.length, other.radius))
+    middle = adjacent.cylinders.start + 0.5 * other.length * other.axis
+    there, way = separation.ways(one.solid, one.axis, adjacent, middle)
+    return one.start + there, way
+
+
 def _between_axes(one: PlacedCylinders, other: PlacedCylinders) -> Array:
     """(k,) mm between the axes of cylinders, from end to end."""
     off = one.start - other.start

@@ -17,6 +17,7 @@ from .tolerances import CONVERGED
 QUERIES = 16384  # worked on at once
 SLABS = 40  # pieces for each of as many queries as make it worth to find boxes that lie as these do
 ALWAYS, NEVER = -1, np.iinfo(np.intp).max
+NONE = -1  # no obstacle
 
 
 class _Level(NamedTuple):
@@ -205,15 +206,22 @@ class Obstacles:
     ) -> Array:
         """(k,) mm from solids to the nearest obstacle there before the moment (k,), 0 where they meet, at most `reach`; no
         more than the true distance, and less by no more than what tolerances.CONVERGED says."""
-        found = np.full(len(tip), reach)
+        return self.nearest(solid, tip, axis, moment, reach)[0]
+
+    def nearest(
+        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, reach: float = np.inf
+    ) -> tuple[Array, Index]:
+        """(k,) the same, and (k,) which obstacle that is, of those in their own order; NONE where none is within reach."""
+        found, which = np.full(len(tip), reach), np.full(len(tip), NONE, dtype=np.intp)
         for first in range(0, len(tip) if len(self.corners) else 0, QUERIES // 8):
             rows = np.arange(first, min(first + QUERIES // 8, len(tip)))
             when = np.zeros(len(rows), dtype=np.intp) if moment is None else moment[rows]
-            found[rows] = self._distance(solid.rows(rows), tip[rows], axis[rows], when, reach)
-        return found
+            found[rows], which[rows] = self._nearest(solid.rows(rows), tip[rows], axis[rows], when, reach)
+        return found, which
 
-    def _distance(self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float) -> Array:
-        low, best = np.full(len(tip), reach), np.full(len(tip), reach)  # bounds of the least distance yet
+    def _nearest(self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float) -> tuple[Array, Index]:
+        low, best = np.full((2, len(tip)), reach)  # bounds of the least distance yet
+        which = np.full(len(tip), NONE, dtype=np.intp)
         top = len(self._levels[-1].since)
         query, node = _each_with_each(len(tip), top)
         for depth in range(len(self._levels) - 1, -1, -1):
@@ -233,7 +241,7 @@ class Obstacles:
                 known = self.since[sample] < moment[q]
                 a, b = q[known], sample[known]
                 most = solid.rows(a).gap(self.corners[b, 0] - tip[a], axis[a])
-                np.minimum.at(best, a, most if self.radius is None else np.maximum(most - self.radius[b], 0.0))
+                _lower(best, which, a, b, most if self.radius is None else np.maximum(most - self.radius[b], 0.0))
                 kept.append((q, n, least))
             query, node = (np.concatenate([some[i] for some in kept]) for i in range(2))
             away = np.concatenate([some[2] for some in kept])
@@ -246,15 +254,14 @@ class Obstacles:
         query, node, away = query[order], node[order], away[order]
         share = 1
         while len(query):
-            rank = np.arange(len(query)) - np.searchsorted(query, query)
-            now = rank < share
-            self._bring_nearer(solid, tip, axis, query[now], node[now], low, best)
+            now = np.arange(len(query)) - np.searchsorted(query, query) < share
+            self._bring_nearer(solid, tip, axis, query[now], node[now], low, best, which)
             left = ~now & (away < best[query])
             query, node, away, share = query[left], node[left], away[left], 4 * share
-        return np.where(best <= CONVERGED, 0.0, np.minimum(low, best))
+        return np.where(best <= CONVERGED, 0.0, np.minimum(low, best)), which
 
     def _bring_nearer(
-        self, solid: Frustum, tip: Array, axis: Array, query: Index, node: Index, low: Array, best: Array
+        self, solid: Frustum, tip: Array, axis: Array, query: Index, node: Index, low: Array, best: Array, which: Index
     ) -> None:
         """Lower the bounds of queries (n,) by their obstacles."""
         for q, n in tree.parts(query, node):
@@ -263,7 +270,14 @@ class Obstacles:
             bottom, top = separation.bounds(solid.rows(q), axis[q], points, round_, best[q] + round_)
             bottom, top = np.maximum(bottom - round_, 0.0), np.maximum(top - round_, 0.0)
             np.minimum.at(low, q, np.where(top > CONVERGED, bottom, 0.0))
-            np.minimum.at(best, q, top)
+            _lower(best, which, q, n, top)
+
+
+def _lower(best: Array, which: Index, query: Index, node: Index, most: Array) -> None:
+    """Lower what is best of queries (n,) to what nodes (n,) have at most, and note which has it."""
+    np.minimum.at(best, query, most)
+    has = most <= best[query]
+    which[query[has]] = node[has]
 
 
 def _each_with_each(queries: int, nodes: int) -> tuple[Index, Index]:

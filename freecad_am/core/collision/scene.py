@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.columns import lengths
 from ..geometry.obstacles import Body
 from ..types import Array, Index, Mask
 from .bodies import Bodies, of_bodies
@@ -26,6 +27,7 @@ from .deposit import InParts
 from .frustum import Frustum
 from .nozzle import Nozzle
 from .obstacles import Obstacles
+from .separation import middles, ways
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,24 @@ class Scene:
             return found
         assert not isinstance(self.deposit, InParts), "made for looks, not for distances"
         return np.minimum(found, self.deposit.distance(nozzle.deposit, tip, axis, _all(moment, len(tip)), reach))
+
+    def nearest(self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float) -> tuple[Array, Array, Array]:
+        """Where solids are nearest to what is there before the moment (k,): by how many mm (k,), 0 where they meet, at most
+        `reach`; unit vectors (k, 3) from there towards the solids, and the places (k, 3) of these; none where nothing is
+        within reach or they meet. A solid within a body counts by the body's triangles."""
+        gap, normal, place = np.full(len(tip), reach), np.zeros((len(tip), 3)), np.zeros((len(tip), 3))
+        assert not isinstance(self.deposit, InParts), "made for looks, not for distances"
+        for obstacles in (self.bodies.triangles, *(() if self.deposit is None else (self.deposit,))):
+            away, which = obstacles.nearest(solid, tip, axis, moment, reach)
+            rows = np.flatnonzero(away < gap)
+            gap[rows] = away[rows]
+            corners = obstacles.corners[which[rows]] - tip[rows, None]
+            there, way = ways(solid.rows(rows), axis[rows], corners, middles(corners))
+            size = lengths(way)
+            normal[rows] = way / np.where(size > 0.0, size, 1.0)[:, None]
+            place[rows] = tip[rows] + there + way
+        normal[gap == 0.0] = 0.0
+        return gap, normal, place
 
 
 def scene(

@@ -80,6 +80,34 @@ def bounds(
     return np.minimum(low, high), high
 
 
+def ways(solid: Frustum, axis: Array, points: Array | Hull, middle: Array) -> tuple[Array, Array]:
+    """Where hulls of points (k, c, 3) are nearest to solids about unit axes (k, 3), and the ways (k, 3) from there to these,
+    seen from the tips; none where the two meet. middle: (k, 3) a point of each hull."""
+    found = np.concatenate([solid.nearest(middle, axis) - middle, middle], axis=1)
+    rows = np.flatnonzero(dots(found[:, :3], found[:, :3]) > CONVERGED**2)
+    place, simplex = found[rows], None
+    solid, axis, points = solid.rows(rows), axis[rows], points[rows]
+    for _ in range(MAX_STEPS):
+        if not len(rows):
+            break
+        way = place[:, :3]
+        there = _farthest(points, way)
+        newest = np.concatenate([solid.farthest(-way, axis) - there, there], axis=1)
+        size = np.sqrt(dots(way, way))
+        going = np.flatnonzero(dots(way, newest[:, :3]) < size * (size - CONVERGED))
+        rows, newest, place, size = rows[going], newest[going], place[going], size[going]
+        solid, axis, points = solid.rows(going), axis[going], points[going]
+        place, simplex = _of_two(place, newest) if simplex is None else _nearest(simplex[going], newest)
+        now = np.sqrt(dots(place[:, :3], place[:, :3]))
+        nearer = now < size
+        found[rows[nearer]] = place[nearer]
+        found[rows[now <= CONVERGED], :3] = 0.0
+        going = np.flatnonzero((now > CONVERGED) & nearer)
+        rows, place, simplex = rows[going], place[going], simplex[going]
+        solid, axis, points = solid.rows(going), axis[going], points[going]
+    return found[:, 3:], found[:, :3]
+
+
 def _farthest(points: Array | Hull, direction: Array) -> Array:
     """The points (k, 3) of hulls that lie farthest along directions (k, 3)."""
     if not isinstance(points, np.ndarray):
@@ -154,7 +182,8 @@ def _cross(one: Array, other: Array) -> Array:
 def _of_two(one: Array, newest: Array) -> tuple[Array, Array]:
     """As `_nearest`, of the segments from points (k, 3) to the newest ones."""
     edge = one - newest
-    square, pull, own = dots(edge, edge), -dots(newest, edge), dots(newest, newest)
+    along, at = edge[:, :3], newest[:, :3]
+    square, pull, own = dots(along, along), -dots(at, along), dots(at, at)
     part = np.clip(pull / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
     share = np.where(own - 2.0 * part * pull + part * part * square < own, part, 0.0)[:, None]
     return newest + share * edge, np.stack([
@@ -164,10 +193,12 @@ def _of_two(one: Array, newest: Array) -> tuple[Array, Array]:
 
 def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     """The point (k, 3) nearest to the origin of the hulls of three points (k, 3, 3), of which some may be one, and a fourth
-    (k, 3) that has a share in it; and the up to three points (k, 3, 3) that have."""
-    edge = simplex - newest[:, None]
-    square, pull = np.einsum("kim,kim->ik", edge, edge), -np.einsum("km,kim->ik", newest, edge)
-    own = dots(newest, newest)
+    (k, 3) that has a share in it; and the up to three points (k, 3, 3) that have. Columns beside the three of a point are
+    taken by the same shares."""
+    edges, at = simplex - newest[:, None], newest[:, :3]
+    edge = edges[:, :, :3]
+    square, pull = np.einsum("kim,kim->ik", edge, edge), -np.einsum("km,kim->ik", at, edge)
+    own = dots(at, at)
     # of all corners, sides and faces that hold the newest point at once: most calls are about a handful of simplices
     shares, value = np.zeros((7, 3, len(newest))), np.empty((7, len(newest)))
     value[0] = own
@@ -185,17 +216,17 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
         normal = _cross(edge[:, 1], edge[:, 2])
         volume = dots(edge[:, 0], normal)
         parts = [
-            -dots(newest, normal) / volume, -dots(newest, _cross(edge[:, 2], edge[:, 0])) / volume,
-            -dots(newest, _cross(edge[:, 0], edge[:, 1])) / volume,
+            -dots(at, normal) / volume, -dots(at, _cross(edge[:, 2], edge[:, 0])) / volume,
+            -dots(at, _cross(edge[:, 0], edge[:, 1])) / volume,
         ]
         inside = (np.abs(volume) > 1e-12 * np.sqrt(square[0] * square[1] * square[2])) & (sum(parts) < 1.0)
         for each in parts:
             inside &= each > 0.0
     rows = np.arange(len(newest))
     share = shares[value.argmin(axis=0), :, rows]
-    place = newest + np.einsum("ki,kij->kj", share, edge)
-    place[inside] = 0.0
+    place = newest + np.einsum("ki,kij->kj", share, edges)
+    place[inside, :3] = 0.0
     kept = np.concatenate([simplex, newest[:, None]], axis=1)
     weight = np.concatenate([share, 1.0 - share.sum(axis=1, keepdims=True)], axis=1)
     order = _KEPT[(weight > 0.0) @ _CODE]
-    return place, kept.reshape(-1, 3).take(4 * rows[:, None] + order, axis=0)
+    return place, kept.reshape(-1, kept.shape[2]).take(4 * rows[:, None] + order, axis=0)

@@ -60,9 +60,9 @@ def box(low, size, name):
     return Body(name, corners, np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]))
 
 
-def planned(toolpath, cell, method="layer-by-layer"):
+def planned(toolpath, cell, method="layer-by-layer", **more):
     """The motion of a job, and its issues."""
-    rods, parameters = link_rods.of_robot(cell.robot.chain), JointParameters(method=method)
+    rods, parameters = link_rods.of_robot(cell.robot.chain), JointParameters(method=method, **more)
     path = plan_joints(toolpath, cell, parameters, cylinders=rods)
     motion, rapids = assemble(
         path, cell, ProcessParameters(), toolpath.surroundings, parameters, toolpath.layer_height, rods
@@ -88,12 +88,17 @@ def on_rods(rods, spacing=8.0):
 
 def nearest(motion, cell, low):
     """(n,) mm between the links, by PyKDL, and the post in part coordinates, at ten places of each move of a motion."""
-    arm, found = KdlLinks(cell.machine), []
     joints = motion.joints
     parts = [joints[:-1] + share * np.diff(joints, axis=0) for share in np.linspace(0.1, 1.0, 10)]
+    return nearest_of(np.concatenate(parts)[::23], cell, low)
+
+
+def nearest_of(joints, cell, low):
+    """(k,) the same with joints (k, axes)."""
+    arm, found = KdlLinks(cell.machine), []
     mount = cell.station @ np.linalg.inv(cell.mount)
     links = [(number, on_rods(rods)) for number, rods in enumerate(link_rods.of_robot(cell.robot.chain)) if number and rods]
-    for q in np.concatenate(parts)[::23]:
+    for q in joints:
         best = np.inf
         for number, points in links:
             link = arm.frame(q, number)
@@ -156,6 +161,51 @@ def test_what_cannot_be_cleared_is_named(dome):
     assert {issue.layer for issue in told} == set(range(len(job.layers)))
     assert all(issue.message.startswith("link q") and "60 mm" in issue.message for issue in told)
     assert any("back wall" in issue.message for issue in told)
+
+
+def beside_the_dome(dome, radius, azimuth):
+    """The dome with a post beside it, and the post's lower corner."""
+    turn = np.radians(azimuth)
+    low = np.array([radius * np.cos(turn), radius * np.sin(turn), 195.0]) - 0.5 * SIZE
+    return dataclasses.replace(dome, surroundings=(*dome.surroundings, box(low, SIZE, "post"))), low
+
+
+def objectives(path, cell):
+    """Of each bead the objective of eq. 17, here."""
+    weights = 1.0 / (cell.limits.upper - cell.limits.lower)
+    weights[~np.isfinite(weights)] = 0.0
+    return np.array([(weights * np.diff(bead.joints, axis=0) ** 2).sum() for bead in path.beads])
+
+
+def test_what_came_too_near_is_refined_again_up_to_the_clearance(dome, monkeypatch):
+    """Two layers were taken back to 25 and 50 % of the way from the search to the optimum, which a post is in the way of:
+    with gaps among the constraints they come nearer to it by far more than half, and to the post as near as they may."""
+    whole, low = beside_the_dome(dome, 120.0, 180.0)
+    job = dataclasses.replace(whole, layers=whole.layers[:3])
+    cell = cells.resolve(CellParameters(**CELL, branch=UP, arm_clearance=CLEARANCE), job.frame)
+    rods, parameters = link_rods.of_robot(cell.robot.chain), JointParameters(degree=3)
+    taken_back = []
+
+    def kept(task, kept, points, places, start):
+        taken_back.extend(place for place in places)
+        return arm_clear.Refined(start, np.zeros(len(start)), ("",) * len(start), (0,) * len(start))
+
+    with monkeypatch.context() as before:
+        before.setattr(arm_clear, "refined_clear", kept)
+        back = objectives(plan_joints(job, cell, parameters, cylinders=rods), cell)
+    free_cell = dataclasses.replace(cell, arm_clearance=None)
+    free = objectives(plan_joints(job, free_cell, parameters, cylinders=rods), cell)
+    path = plan_joints(job, cell, parameters, cylinders=rods)
+    now = objectives(path, cell)
+    assert taken_back == [(0, 0), (1, 0)] and not has_errors(path.issues)
+    assert (free[:2] < 0.97 * back[:2]).all() and (now[2:] == back[2:]).all()
+    assert (back[:2] - now[:2] > 0.5 * (back[:2] - free[:2])).all() and (now[:2] > free[:2]).all()
+    for bead in path.beads[:2]:
+        between = np.linspace(0.0, 1.0, 10)[:, None, None]
+        dense = (bead.joints[:-1] + between * np.diff(bead.joints, axis=0)).reshape(-1, 6)
+        least = nearest_of(dense[::5], cell, low)
+        # links are 0.2 mm larger than they are, points on them up to 8 mm apart, and bodies are met by edges of larger links
+        assert CLEARANCE <= least.min() < 1.5 * CLEARANCE
 
 
 # a UR whose wrist is bent onto its own forearm where the nozzle lies across, and one whose forearm meets its base, mm

@@ -61,8 +61,8 @@ class OwnLinks:
         near = np.flatnonzero(_apart(a, b, self.balls[outer], self.balls[inner]) < self.gap)
         if len(near):
             a, b = a[near], b[near]
-            others = [_placed(other, b) for other in self.solids[inner]]
-            for one in (_placed(one, a) for one in self.solids[outer]):
+            others = [placed(other, b) for other in self.solids[inner]]
+            for one in (placed(one, a) for one in self.solids[outer]):
                 for other in others:
                     rows = np.flatnonzero(~touch[near])
                     touch[near[rows]] = nearer(one.of(rows), other.of(rows), self.gap)
@@ -133,7 +133,7 @@ def _apart(one: Array, other: Array, ball: tuple[Array, float], second: tuple[Ar
     return np.asarray(np.linalg.norm(away, axis=1) - ball[1] - second[1])
 
 
-def _placed(solid: Solid, frame: Array) -> PlacedCylinders:
+def placed(solid: Solid, frame: Array) -> PlacedCylinders:
     """The cylinder that a solid is, with frames (k, 4, 4) of its link."""
     turn = frame[:, :3, :3]
     return PlacedCylinders(turn @ solid.tip + frame[:, :3, 3], turn @ solid.axis, solid.solid.high, solid.solid.radius)

@@ -2,12 +2,15 @@
 """Rotations at which the links of the robot stay clear.
 
 Those at which a link comes too near are not candidates of the search. What the local search makes of one that is clear may
-come too near again: then the polynomial that goes furthest towards it and stays clear is taken.
+come too near again: then it is made once more with how far links are off, and how that changes, among its constraints, from
+the polynomial that goes furthest towards the first and stays clear. Where that finds nothing clear, this one is taken.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -18,11 +21,11 @@ from ...toolpath import Bead
 from ...types import Array, Mask
 from ..joint_path import BeadPath
 from ..points import Points, gather
+from ..rotation.refine import Refined
 from ..rotation.search import Found
 from ..task import FITS, UNREACHABLE, Task, condition_margin
-from .kept import ArmKept, clearance_issue
-
-Place = tuple[int, int]
+from .kept import ArmKept, Place, clearance_issue
+from .refined import refined_clear
 
 FIRST_LOOK, TURNS = 4, 72  # candidates of a bead looked at before there is a map, and rotations of that
 ENDS = 3  # points of a bead looked at before all of them: where no rotation serves one of these, none serves the bead
@@ -86,24 +89,62 @@ def _map(kept: ArmKept, points: Points, places: Sequence[Place], joints: Array, 
 
 
 def brought_clear(
-    task: Task, kept: ArmKept, beads: Sequence[Bead], places: Sequence[Place], start: Array, reached: Array
-) -> tuple[Array, Mask]:
-    """Coefficients (B, degree + 1) that keep the links clear, as near as may be to those reached, and which (B,) of them are
-    others than these; where none do, those reached. start: those with which the local search began."""
+    task: Task, kept: ArmKept, beads: Sequence[Bead], places: Sequence[Place], start: Array, reached: Refined
+) -> tuple[Refined, Mask]:
+    """Polynomials that keep the links clear in place of those `reached` that do not, where there are any, and which (B,)
+    these are. start: (B, degree + 1) coefficients with which the local search began."""
     points = gather(beads, task.cell, POINTS_PER_BEAD)
-    threshold = task.thresholds(points)
-    result, changed = reached.copy(), np.zeros(points.beads, dtype=bool)
-    left = _touched(task, kept, points, places, reached, ~changed)
-    joined = task.joined & points.closed
+    near = _touched(task, kept, points, places, reached.coefficients, np.ones(points.beads, dtype=bool))
+    some = np.flatnonzero(near)
+    if not len(some):
+        return reached, near
+    points = gather([beads[k] for k in some], task.cell, POINTS_PER_BEAD)
+    serves = _Serving(task, kept, points, [places[k] for k in some])
+    back, near[some] = _stepped_back(start[some], reached.coefficients[some], task.joined & points.closed, serves)
+    coefficients, reason, iterations = reached.coefficients.copy(), list(reached.reason), list(reached.iterations)
+    coefficients[some] = back
+    some = np.flatnonzero(near)
+    if len(some):
+        full = gather([beads[k] for k in some], task.cell)
+        again = refined_clear(task, kept, full, [places[k] for k in some], coefficients[some])
+        points = gather([beads[k] for k in some], task.cell, POINTS_PER_BEAD)
+        for k in np.flatnonzero(_Serving(task, kept, points, [places[k] for k in some])(again.coefficients)):
+            coefficients[some[k]] = again.coefficients[k]
+            reason[some[k]], iterations[some[k]] = again.reason[k], again.iterations[k]
+    return Refined(coefficients, reached.objective, tuple(reason), tuple(iterations)), near
+
+
+@dataclass(frozen=True)
+class _Serving:
+    """Which beads keep limits, condition and links clear with coefficients (B, degree + 1): (B,)."""
+
+    task: Task
+    kept: ArmKept
+    points: Points
+    places: Sequence[Place]
+
+    @cached_property
+    def _threshold(self) -> Array:
+        return self.task.thresholds(self.points)
+
+    def __call__(self, coefficients: Array) -> Mask:
+        every = np.ones(self.points.beads, dtype=bool)
+        near = _touched(self.task, self.kept, self.points, self.places, coefficients, every)
+        return np.asarray(~near & _fits(self.task, self.points, self._threshold, coefficients))
+
+
+def _stepped_back(start: Array, reached: Array, joined: Mask, serves: Callable[[Array], Mask]) -> tuple[Array, Mask]:
+    """Coefficients (B, degree + 1) that serve, as near as may be to those reached, and which (B,) do; where none does, those
+    reached. joined: (B,) which beads have to join up."""
+    result, changed = reached.copy(), np.zeros(len(start), dtype=bool)
     for share in SHARES:
-        if not left.any():
+        if changed.all():
             break
         mixed = start + share * (reached - start)
-        serves = left & ~_touched(task, kept, points, places, mixed, left) & _fits(task, points, threshold, mixed)
+        good = ~changed & serves(mixed)
         if share > 0.0:  # between two numbers of whole turns a bead that has to join up does not
-            serves &= ~joined | (np.abs(reached - start)[:, 1:].max(axis=1, initial=0.0) < 1e-9)
-        result[serves], changed[serves] = mixed[serves], True
-        left &= ~serves
+            good &= ~joined | (np.abs(reached - start)[:, 1:].max(axis=1, initial=0.0) < 1e-9)
+        result[good], changed[good] = mixed[good], True
     return result, changed
 
 

@@ -6,6 +6,7 @@ Search everywhere, refine locally, settle in the flat valley, then find room for
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -87,10 +88,10 @@ def _searched(
         ]
     if task.kept is not None:
         progress(0.8, "keeping the arm clear")
-        reached = np.array([path.coefficients for path in paths])
+        reached = dataclasses.replace(refined, coefficients=np.array([path.coefficients for path in paths]))
         clear, changed = arm_clear.brought_clear(task, task.kept, beads, places, start, reached)
         if changed.any():
-            others = judged(task, beads, places, full, threshold, clear, refined)
+            others = judged(task, beads, places, full, threshold, clear.coefficients, clear)
             paths = [other if one else path for path, other, one in zip(paths, others, changed)]
     # a joined bead that a higher degree serves in one piece need not be split
     helped = {k: some for k, some in helped.items() if len(some) == 1 or not joined[k] or paths[k].margin < FITS}

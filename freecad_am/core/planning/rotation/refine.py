@@ -26,6 +26,8 @@ from .refine_state import State, slopes_of, state_of, values_of
 KEPT = 4e-7
 # runs of the optimiser, each with the constraints added that the one before came close to
 ROUNDS = 4
+FAR_OFF = 1.0  # of a constraint that does not matter; those of limits and condition are less
+SMALLEST = 1e-9  # objective that an objective is set against
 STATIONARY = "stationary at the start found by the search"
 OUT_OF_LIMITS = "no polynomial found that keeps all limits"
 
@@ -77,19 +79,47 @@ def refine(
 
 
 @dataclass(frozen=True)
+class Linear:
+    """Constraints >= 0 at all points of a bead, about the values `at` (T,) of its polynomial there: `value` and `slope`
+    (r, T), FAR_OFF and 0 of those that do not matter. reach: by how much the polynomial may change at most."""
+
+    at: Array
+    value: Array
+    slope: Array
+    reach: float
+
+
+def refine_along(
+    task: Task, points: Points, thresholds: Array, start: Array, directions: Array, more: Linear
+) -> tuple[Array, str, int]:
+    """Of one bead the coefficients (degree + 1,), better than those it starts with as long as `more` holds; why and after
+    how many iterations the optimiser stopped. directions: (degree + 1, degree + 1) what may change, as `basis.changes`
+    gives it; thresholds (T,)."""
+    used = directions[:, np.abs(directions).any(axis=0)]
+    return _slsqp(_Bead(task, points, thresholds, more), start, used)
+
+
+@dataclass(frozen=True)
 class _Bead:
-    """One bead alone, its points and the condition asked for at each."""
+    """One bead alone, its points and the condition asked for at each; what else is to be kept, where that is asked for."""
 
     task: Task
     points: Points
     thresholds: Array
+    more: Linear | None = None
 
     def state(self, coefficients: Array) -> State:
         return state_of(self.task, self.points, self.thresholds, coefficients[None])
 
     def constraints(self, coefficients: Array, free: Array) -> tuple[Array, Array] | None:
         """All constraints at all points (r,) and their derivatives (r, k) along the free columns; None out of reach."""
-        return _at_all_points(self.task, self.points, self.thresholds, coefficients[None], free)
+        found = _at_all_points(self.task, self.points, self.thresholds, coefficients[None], free)
+        if self.more is None or found is None:
+            return found
+        shape = self.points.powers(len(coefficients) - 1)
+        value = self.more.value + self.more.slope * (shape @ coefficients - self.more.at)
+        rate = (self.more.slope[:, :, None] * (shape @ free)).reshape(-1, free.shape[1])
+        return np.append(found[0], value.ravel()), np.concatenate([found[1], rate])
 
     def worth(self, coefficients: Array) -> tuple[float, float]:
         """By how much the constraints are violated at worst, and the objective: the less the better."""
@@ -174,28 +204,36 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: NDArray[n
             everywhere[key] = lost if found is None else (found[0][rows], found[1][rows])
         return everywhere[key]
 
+    # first steps are as long as the gradient: where constraints turn it aside, one of an objective much below 1 is none
+    scale = 1.0 if bead.more is None else max(float(state(x).objective[0]), SMALLEST)
+
     def objective(x: Array) -> float:
-        value = float(state(x).objective[0])
+        value = float(state(x).objective[0]) / scale
         return value if np.isfinite(value) else 1e6
 
+    kept = [{"type": "ineq", "fun": lambda x: constraints(x)[0], "jac": lambda x: constraints(x)[1]}]
+    if bead.more is not None:  # changes are of the size of a rotation, so that together they stay within reach
+        most, each = bead.more.reach / len(x), np.eye(len(x))
+        both = np.concatenate([each, -each])
+        kept.append({"type": "ineq", "fun": lambda x: most - both @ x, "jac": lambda x: -both})
     # scipy's stubs do not know a list of constraint dictionaries with their own types
     return minimize(  # type: ignore[call-overload]
-        objective, x, jac=lambda x: np.nan_to_num(state(x).gradient[0]) @ directions,
-        constraints=[{"type": "ineq", "fun": lambda x: constraints(x)[0], "jac": lambda x: constraints(x)[1]}],
-        method="SLSQP",
+        objective, x, jac=lambda x: np.nan_to_num(state(x).gradient[0]) @ directions / scale,
+        constraints=kept, method="SLSQP",
         options={"ftol": bead.task.parameters.tolerance, "maxiter": bead.task.parameters.max_iterations},
     )
 
 
 def _tightest(values: Array, points: int) -> NDArray[np.int64]:
-    """Which constraints are told to the optimiser: of each row those at its local minima along the bead and beside them."""
+    """Which constraints are told to the optimiser: of each row those at its local minima along the bead and beside them,
+    but for those that are FAR_OFF from being violated."""
     value = values.reshape(-1, points)
     padded = np.pad(value, ((0, 0), (1, 1)), constant_values=np.inf)
     lowest = (value <= padded[:, :-2]) & (value <= padded[:, 2:])
     tried = lowest.copy()
     tried[:, 1:] |= lowest[:, :-1]
     tried[:, :-1] |= lowest[:, 1:]
-    return np.flatnonzero(tried.ravel())
+    return np.flatnonzero((tried & (value < FAR_OFF)).ravel())
 
 
 def _at_all_points(
