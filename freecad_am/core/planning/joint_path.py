@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,6 +41,17 @@ class BeadPath:
     def reachable(self) -> bool:
         """True when every point has joint values."""
         return bool(np.isfinite(self.joints).all())
+
+
+def numbered(paths: Sequence[BeadPath]) -> list[BeadPath]:
+    """The paths with their beads numbered anew within each layer, some of them in pieces."""
+    count: dict[int, int] = {}
+    result = []
+    for path in paths:
+        index = count.get(path.layer, 0)
+        count[path.layer] = index + 1
+        result.append(replace(path, index=index))
+    return result
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from .beads.speeds import corners_slowed, rings_slowed, too_fast
 from .certificate import bound
 from .external import rule as external_rule
 from .external import track
-from .external.level import levelled, standing
+from .external.level import ways
 from .findings import findings, out_of_reach
 from .joint_path import BeadPath, JointPath
 from .methods import constant, layer_by_layer, point_by_point
@@ -67,36 +67,36 @@ def plan_joints(
     """
     if not cell.free:
         return _on_table(toolpath, cell, parameters, progress)
-    beads, tilted = levelled(cell, toolpath) if cell.external else (
-        [bead for _, _, bead in toolpath], standing(cell, toolpath))
     if parameters.lock != "none":
         raise InputError("NOT_FOR_SETUP", "joints.lock", "robots need all their axes; only machines with rotary axes can do "
                          "with four; use none")
     joined = all(part.family != REVOLUTION for part, _ in toolpath.parts)
     wanted = cell.branch if parameters.own_branch == OF_CELL else opw.branch_index(parameters.own_branch.split("-"))
     among = range(BRANCHES) if wanted is None else (wanted,)
-    places, kept = [(layer, index) for layer, index, _ in toolpath], of_job(toolpath, cell, cylinders)
+    kept = of_job(toolpath, cell, cylinders)
 
     def served(some: Sequence[Bead]) -> float:
         return -_ranked(some, places, Task(cell, 0, parameters, joined, kept), among)[0][0] / min(len(some), SCREENED)
 
     planned: JointPath | None = None
-    for moved in track.placed(beads, cell, served):
-        branches = [wanted] if wanted is not None else best_branches(moved, cell, parameters, joined, kept, places)
-        found = _of_robot(toolpath, moved, tilted, Task(cell, 0, parameters, joined, kept), branches, progress)
-        if planned is None or found.feasible:
-            planned = found
-        if planned.feasible:
-            break
+    for beads, places, tilted in ways(cell, toolpath):
+        for moved in track.placed(beads, cell, served):
+            branches = [wanted] if wanted is not None else best_branches(moved, cell, parameters, joined, kept, places)
+            found = _of_robot(toolpath, (moved, places), tilted, Task(cell, 0, parameters, joined, kept), branches, progress)
+            if planned is None or found.feasible:
+                planned = found
+            if planned.feasible:
+                return planned
     assert planned is not None  # there is one way at least
     return dataclasses.replace(planned, issues=(*out_of_reach(cell, planned.beads), *planned.issues))
 
 
 def _of_robot(
-    toolpath: Toolpath, beads: list[Bead], tilted: list[Issue], asked: Task, branches: Sequence[int], progress: Progress,
+    toolpath: Toolpath, placed: tuple[list[Bead], list[Place]], tilted: list[Issue], asked: Task, branches: Sequence[int],
+    progress: Progress,
 ) -> JointPath:
     """The joint path of a robot, external axes as the beads have them, in the first of the branches that serves."""
-    places, cell, parameters = [(layer, index) for layer, index, _ in toolpath], asked.cell, asked.parameters
+    (beads, places), cell, parameters = placed, asked.cell, asked.parameters
     together, notes = external_rule.asked(parameters, cell)
     task = dataclasses.replace(asked, branch=branches[0])
     paths, issues = _planned(task, toolpath, beads, places, progress)
@@ -136,7 +136,7 @@ def _of_robot(
 def _failed(paths: Sequence[BeadPath], issues: Sequence[Issue], places: Sequence[tuple[int, int]]) -> list[int]:
     """Which beads have errors, SCREENED of them at most; where some were divided, those of their layers."""
     wrong = {(issue.layer, issue.bead) for issue in issues if issue.level == ERROR}
-    if len(paths) != len(places):
+    if len(paths) != len(set(places)):
         wrong = {place for place in places if place[0] in {layer for layer, _ in wrong}}
     found = [k for k, place in enumerate(places) if place in wrong]
     return [found[k] for k in sorted({round(at) for at in np.linspace(0, len(found) - 1, SCREENED)})] if found else []

@@ -11,8 +11,8 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.inverse import opw
 from freecad_am.core.parameters.joints import JointParameters, given_text
 from freecad_am.core.planning.external import optimised
+from freecad_am.core.planning.external.courses import on_face
 from freecad_am.core.planning.external.freedom import AMPLE
-from freecad_am.core.planning.external.level import on_face
 from freecad_am.core.planning.external.rule import least_margin
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task

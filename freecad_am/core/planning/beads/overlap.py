@@ -9,6 +9,7 @@ import numpy as np
 
 from ...geometry.angles import TURN
 from ...types import Array
+from ..external import stroke
 from ..joint_path import BeadPath
 from ..task import Task
 
@@ -30,6 +31,10 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
 
     phi = again(path.phi) + float(path.phi[-1] - path.phi[0])
     near = np.stack([again(column) for column in path.joints.T], axis=1)
+    external = task.cell.external_of(near)
+    if external is not None:
+        own = near.shape[1] - external.shape[1]
+        near[:, own:] = stroke.waiting(task.cell, path.joints[:, own:], external)
     flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi, near)
     joints = unwrapped_from(task, path.joints[-1], task.inverse(flange, near))
     return dataclasses.replace(

@@ -10,52 +10,71 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ...geometry.angles import TURN
 from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...kinematics.external import ExternalAxes, tilt_from
-from ...kinematics.inverse import rotary_pair
 from ...toolpath import Bead, Toolpath
 from ...types import Array
 from ..joint_path import BeadPath, JointPath
-from ..reserve import RESERVE
-from ..turns.rotary_courses import continuous, kept
+from ..turns.unwrap import seam_notes
+from . import courses, stroke
+from .courses import middle, on_face
 
 ROUNDING = 1e-9
-# rad; a direction this near to the turning axis counts as on it, or the axis would race round to meet it
-AT_POLE = math.radians(0.1)
-STEPS = 200  # of the search for the middle of directions
+Place = tuple[int, int]
+Levelled = tuple[list[Bead], list[Place], list[Issue]]
 
 
-def levelled(cell: Cell, toolpath: Toolpath) -> tuple[list[Bead], list[Issue]]:
-    """The beads of a toolpath with the values of the external axes at their points, and where the tool axis is farther from
-    the vertical than `max_from_vertical` allows."""
+def ways(cell: Cell, toolpath: Toolpath) -> Iterator[Levelled]:
+    """The beads of a toolpath as `levelled` gives them, and where that changes them once more, with seams and cuts already
+    chosen for axes that have a whole turn too: others are chosen with the rotation, where that is planned for."""
+    if cell.external is None:
+        yield [bead for _, _, bead in toolpath], [(layer, index) for layer, index, _ in toolpath], standing(cell, toolpath)
+        return
+    first = levelled(cell, toolpath)
+    yield first
+    again = levelled(cell, toolpath, whole_turns=True)
+    if [len(bead) for bead in again[0]] != [len(bead) for bead in first[0]] or any(
+        (one.points[0] != other.points[0]).any() for one, other in zip(first[0], again[0], strict=True)
+    ):
+        yield again
+
+
+def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Levelled:
+    """The beads of a toolpath with the values of the external axes at their points, the layer and index of each, and where
+    the tool axis is farther from the vertical than `max_from_vertical` allows. Where an axis has no room for a bead it
+    begins elsewhere, or comes in pieces of one place, which a note or a warning says; with `whole_turns` where that is one
+    that has a whole turn too."""
     external = cell.external
     assert external is not None
-    beads = [bead for _, _, bead in toolpath]
-    places = [(layer, index) for layer, index, _ in toolpath]
     allowed = _allowed(toolpath)
-    seen = [on_face(cell, bead.tool) for bead in beads]
-    one = _middle(np.concatenate(seen))
+    seen = [on_face(cell, bead.tool) for _, _, bead in toolpath]
+    before, hold = _standing_all(external, cell, seen, allowed)
     done: list[Bead] = []
+    places: list[Place] = []
     issues: list[Issue] = []
-    before = np.zeros(external.axes)
-    hold = not external.turning or (one is not None and float(tilt_from(np.concatenate(seen), one).max()) <= min(allowed))
-    if external.turning and hold and one is not None:
-        before = _standing(external, cell, one, before)
-    for bead, directions, most, place in zip(beads, seen, allowed, places, strict=True):
+    helped: tuple[list[int], list[int]] = [], []
+    for (layer, index, bead), directions, most in zip(toolpath, seen, allowed, strict=True):
         values = np.tile(before, (len(bead), 1)) if hold else _followed(external, cell, directions, most, before)
-        tilt = tilt_from(external.upright(directions, values), external.up)
-        worst = int(tilt.argmax())
-        if tilt[worst] > most + ROUNDING:
-            issues.append(_not_level(bool(external.turning), float(tilt[worst]), most, *place, worst))
-        before = values[-1]
-        done.append(dataclasses.replace(bead, external=values))
-    return done, issues
+        held = [dataclasses.replace(bead, external=values)]
+        if stroke.lacks(cell, values, whole_turns) or not stroke.runs_on(cell, held[0], most, toolpath.overlap):
+            held = stroke.found(cell, bead, most, before, toolpath.overlap) or held
+        for one in held:
+            assert one.external is not None
+            tilt = tilt_from(external.upright(on_face(cell, one.tool), one.external), external.up)
+            worst = int(tilt.argmax())
+            if tilt[worst] > most + ROUNDING:
+                issues.append(_not_level(bool(external.turning), float(tilt[worst]), most, layer, index, worst))
+            before = one.external[-1]
+        done += held
+        places += [(layer, index)] * len(held)
+        if len(held) > 1 or held[0].points[0].tolist() != bead.points[0].tolist():
+            helped[len(held) > 1].append(layer)
+    return done, places, [*issues, *seam_notes(*helped)]
 
 
 def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
@@ -132,86 +151,32 @@ def allowed_by_layer(toolpath: Toolpath) -> dict[int, float]:
     return {int(number): part.max_from_vertical for part, numbers in toolpath.parts for number in numbers}
 
 
-def on_face(cell: Cell, tool: Array) -> Array:
-    """Tool axes (n, 3) of the part as seen from the face that carries it."""
-    turned = cell.station[:3, :3] @ cell.mount[:3, :3].T
-    return np.asarray(tool @ turned.T)
-
-
-def _middle(directions: Array) -> Array | None:
-    """The direction (3,) whose largest angle to the directions (n, 3) is least, None where they point all ways."""
-    mean = directions.mean(axis=0)
-    if np.linalg.norm(mean) < 1e-6:
-        return None
-    mean = mean / np.linalg.norm(mean)
-    middle = mean
-    for step in range(1, STEPS):  # Badoiu and Clarkson 2003: towards what is farthest, ever less
-        farthest = directions[int((directions @ middle).argmin())]
-        middle = middle + (farthest - middle) / (step + 1)
-        middle /= np.linalg.norm(middle)
-    nearer = float((directions @ middle).min()) > float((directions @ mean).min())
-    return np.asarray(middle if nearer else mean)
+def _standing_all(
+    external: ExternalAxes, cell: Cell, seen: Sequence[Array], allowed: Sequence[float]
+) -> tuple[Array, bool]:
+    """Values (k,) of the external axes to begin with, and whether they serve the whole job."""
+    zero = np.zeros(external.axes)
+    if not external.turning:
+        return zero, True
+    directions = np.concatenate(seen)
+    one = middle(directions)
+    if one is None or float(tilt_from(directions, one).max()) > min(allowed):
+        return zero, False
+    values = _standing(external, cell, one, zero)
+    return (zero, False) if stroke.lacks(cell, values[None]) else (values, True)
 
 
 def _standing(external: ExternalAxes, cell: Cell, direction: Array, before: Array) -> Array:
     """Values (k,) with a direction (3,) upright, the nearest to those before."""
-    return np.asarray(_chosen(cell, _courses(external, direction[None]), before)[0])
+    return np.asarray(courses.chosen(cell, courses.upright(external, direction[None]), before)[0])
 
 
 def _followed(external: ExternalAxes, cell: Cell, directions: Array, most: float, before: Array) -> Array:
     """Values (n, k) along a bead: one and the same where that is near enough, else each direction upright."""
-    middle = _middle(directions)
-    if middle is not None and float(tilt_from(directions, middle).max()) <= most:
+    one = middle(directions)
+    if one is not None and float(tilt_from(directions, one).max()) <= most:
         stays = external.upright(directions, np.tile(before, (len(directions), 1)))
         if float(tilt_from(stays, external.up).max()) <= most:
             return np.tile(before, (len(directions), 1))
-        return np.tile(_standing(external, cell, middle, before), (len(directions), 1))
-    return _chosen(cell, _courses(external, directions), before)
-
-
-def _courses(external: ExternalAxes, directions: Array) -> list[Array]:
-    """All ways (n, k) to turn the directions (n, 3) of the face upright, up to whole turns."""
-    source = directions @ external.at_zero.T
-    if len(external.turning) == 1:
-        return [np.unwrap(rotary_pair.nearest(external.turning[0], source, external.up).angle)[:, None]]
-    first, second = external.turning
-    pole = _pole(second, source)
-    found = rotary_pair.between(first, second, pole, external.up)
-    turned = np.stack([found.first, found.second], axis=-1)
-    if not np.isfinite(turned).all():  # axes that are not at right angles reach no farther
-        angle = rotary_pair.nearest(second, source, external.up).angle
-        return [np.unwrap(np.stack([np.zeros(len(angle)), angle], axis=-1), axis=0)]
-    for axis, free in enumerate((found.first_free, found.second_free)):
-        turned[:, :, axis] = kept(turned[:, :, axis], free)
-    return continuous(turned)
-
-
-def _pole(axis: Array, directions: Array) -> Array:
-    """Directions (n, 3), those nearly along an axis or against it brought onto it."""
-    near = np.linalg.norm(np.cross(directions, axis), axis=1) < math.sin(AT_POLE)
-    return np.where(near[:, None], np.sign(directions @ axis)[:, None] * axis, directions)
-
-
-def _chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
-    """Of all courses and whole turns the one within the limits that moves least, then the one that starts nearest to the
-    values before (k,)."""
-    own = cell.robot.chain.axes
-    assert cell.external is not None
-    turned = own + cell.external.turned
-    lower, upper = cell.limits.lower[turned] + RESERVE, cell.limits.upper[turned] - RESERVE
-    speed, start = cell.machine.max_speed[turned], before
-    before = start[cell.external.turned]
-    ranked = []
-    for course in courses:
-        low, high = course.min(axis=0), course.max(axis=0)
-        fewest, most = np.ceil((lower - low) / TURN - 1e-12), np.floor((upper - high) / TURN + 1e-12)
-        wanted = np.round((before - course[0]) / TURN)
-        centred = np.round(np.nan_to_num(0.5 * (lower + upper) - 0.5 * (low + high)) / TURN)
-        moved = course + TURN * np.where(fewest <= most, np.clip(wanted, fewest, most), centred)
-        over = float(np.maximum(lower - moved, moved - upper).max())
-        motion = float(np.abs(np.diff(moved, axis=0)).sum())
-        ranked.append((max(over, 0.0), round(motion, 6), float((np.abs(moved[0] - before) / speed).max()), moved))
-    best = min(range(len(ranked)), key=lambda k: ranked[k][:3])
-    values = np.tile(start, (len(ranked[best][3]), 1))
-    values[:, cell.external.turned] = ranked[best][3]
-    return values
+        return np.tile(_standing(external, cell, one, before), (len(directions), 1))
+    return courses.chosen(cell, courses.upright(external, directions), before)

@@ -13,7 +13,8 @@ from ...parameters.joints import LEVEL, JointParameters
 from ...toolpath import Toolpath
 from ..joint_path import BeadPath
 from ..task import Task, condition_margin
-from .level import allowed_by_layer, axes_figures, on_face
+from .courses import on_face
+from .level import allowed_by_layer, axes_figures
 from .optimised import optimised
 
 Found = tuple[list[BeadPath], list[Issue]]

@@ -14,7 +14,7 @@ from ...toolpath import Bead
 from ...types import Array
 from .. import criteria
 from ..arm import clear as arm_clear
-from ..joint_path import BeadPath
+from ..joint_path import BeadPath, numbered
 from ..points import Points, gather
 from ..rotation import search
 from ..task import Task, condition_margin
@@ -120,13 +120,13 @@ def bead_paths(
     margin = points.worst(np.minimum(task.rows.margin(joints), condition_margin(condition, threshold)))
     objective = criteria.displacement(task, points, joints)
     ends = np.append(points.first, len(points))
-    return [
+    return numbered([
         BeadPath(
             layer, index, bead, phi[a:b], joints[a:b], condition[a:b], threshold[a:b], float(objective[k]),
             float(margin[k]), None, reason,
         )
         for k, (bead, (layer, index), a, b) in enumerate(zip(beads, places, ends[:-1], ends[1:]))
-    ]
+    ])
 
 
 def _unwrapped(phi: Array, points: Points) -> Array:

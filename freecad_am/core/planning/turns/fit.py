@@ -12,7 +12,7 @@ from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...toolpath import Bead
 from ...types import Array
-from ..joint_path import BeadPath
+from ..joint_path import BeadPath, numbered
 from ..points import gather
 from ..rotation import refine, search, ties
 from ..rotation.evaluation import judged
@@ -66,8 +66,7 @@ def put_in(
             ))
     moved = sorted({found[0].layer for found in helped.values() if len(found) == 1})
     split = sorted({found[0].layer for found in helped.values() if len(found) > 1})
-    issues += ([turns.seam_note(moved)] if moved else []) + ([turns.split_note(split)] if split else [])
-    return _numbered(result), issues
+    return numbered(result), [*issues, *turns.seam_notes(moved, split)]
 
 
 def _would_fit_continuous(task: Task, path: BeadPath) -> bool:
@@ -123,13 +122,3 @@ def _last_continuous(cell: Cell) -> Cell:
         limits, lower=np.where(last, -np.inf, limits.lower), upper=np.where(last, np.inf, limits.upper)
     )
     return dataclasses.replace(cell, limits=free)
-
-
-def _numbered(paths: Sequence[BeadPath]) -> list[BeadPath]:
-    count: dict[int, int] = {}
-    result = []
-    for path in paths:
-        index = count.get(path.layer, 0)
-        count[path.layer] = index + 1
-        result.append(dataclasses.replace(path, index=index))
-    return result

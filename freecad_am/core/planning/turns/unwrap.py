@@ -70,10 +70,11 @@ def _turns(task: Task, path: BeadPath, before: Array) -> Array:
 def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
     """A closed bead started where the turning axis has room, and the index of the new start.
 
-    joints: (n, axes) counted on over the bead as it is. The bead itself where no axis turns or where no start helps.
+    joints: (n, axes) counted on over the bead as it is. The bead itself where no axis turns or where no start helps, and
+    where an external axis that waits at its limit does not come round.
     """
     axis = turning_axis(task, joints)
-    if axis is None or not bead.closed:
+    if axis is None or not bead.closed or not _come_round(bead):
         return bead, 0
     limits = task.cell.limits
     centre = 0.5 * (limits.lower[axis] + limits.upper[axis])
@@ -82,6 +83,11 @@ def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
     off = shortest(off)
     index = int(first_least(np.abs(off)))
     return bead.started_at(index), index
+
+
+def _come_round(bead: Bead) -> bool:
+    """Whether the external axes of a closed bead end where they began, but for whole turns."""
+    return bead.external is None or bool((np.abs(shortest(bead.external[-1] - bead.external[0])) < ROUNDING).all())
 
 
 def turning_axis(task: Task, joints: Array) -> int | None:
@@ -133,6 +139,11 @@ def _cut(along: Array, rising: bool, low: float, high: float) -> list[slice]:
 def is_spiral(bead: Bead) -> bool:
     """True for an open bead that runs more than one turn about the axis."""
     return not bead.closed and abs(bead.parameter[-1] - bead.parameter[0]) > 1.01 * TURN
+
+
+def seam_notes(moved: list[int], split: list[int]) -> list[Issue]:
+    """What is said of layers whose seams were moved, and of those with beads that were split."""
+    return ([seam_note(moved)] if moved else []) + ([split_note(split)] if split else [])
 
 
 def seam_note(layers: list[int]) -> Issue:

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The ways a positioner has to turn the directions along a bead upright, and which of them is taken."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...geometry.angles import TURN
+from ...kinematics.cell import Cell
+from ...kinematics.external import ExternalAxes
+from ...kinematics.inverse import rotary_pair
+from ...types import Array
+from ..reserve import RESERVE
+from ..turns.rotary_courses import continuous, kept
+
+# rad; a direction this near to the turning axis counts as on it, or the axis would race round to meet it
+AT_POLE = math.radians(0.1)
+STEPS = 200  # of the search for the middle of directions
+
+
+def on_face(cell: Cell, tool: Array) -> Array:
+    """Tool axes (n, 3) of the part as seen from the face that carries it."""
+    turned = cell.station[:3, :3] @ cell.mount[:3, :3].T
+    return np.asarray(tool @ turned.T)
+
+
+def middle(directions: Array) -> Array | None:
+    """The direction (3,) whose largest angle to the directions (n, 3) is least, None where they point all ways."""
+    mean = directions.mean(axis=0)
+    if np.linalg.norm(mean) < 1e-6:
+        return None
+    mean = mean / np.linalg.norm(mean)
+    middle = mean
+    for step in range(1, STEPS):  # Badoiu and Clarkson 2003: towards what is farthest, ever less
+        farthest = directions[int((directions @ middle).argmin())]
+        middle = middle + (farthest - middle) / (step + 1)
+        middle /= np.linalg.norm(middle)
+    nearer = float((directions @ middle).min()) > float((directions @ mean).min())
+    return np.asarray(middle if nearer else mean)
+
+
+def upright(external: ExternalAxes, directions: Array) -> list[Array]:
+    """All ways (n, k) to turn the directions (n, 3) of the face upright, up to whole turns."""
+    source = directions @ external.at_zero.T
+    if len(external.turning) == 1:
+        return [np.unwrap(rotary_pair.nearest(external.turning[0], source, external.up).angle)[:, None]]
+    first, second = external.turning
+    pole = _pole(second, source)
+    found = rotary_pair.between(first, second, pole, external.up)
+    turned = np.stack([found.first, found.second], axis=-1)
+    if not np.isfinite(turned).all():  # axes that are not at right angles reach no farther
+        angle = rotary_pair.nearest(second, source, external.up).angle
+        return [np.unwrap(np.stack([np.zeros(len(angle)), angle], axis=-1), axis=0)]
+    for axis, free in enumerate((found.first_free, found.second_free)):
+        turned[:, :, axis] = kept(turned[:, :, axis], free)
+    return continuous(turned)
+
+
+def _pole(axis: Array, directions: Array) -> Array:
+    """Directions (n, 3), those nearly along an axis or against it brought onto it."""
+    near = np.linalg.norm(np.cross(directions, axis), axis=1) < math.sin(AT_POLE)
+    return np.where(near[:, None], np.sign(directions @ axis)[:, None] * axis, directions)
+
+
+def chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
+    """Of all courses and whole turns the one within the limits that moves least, then the one that starts nearest to the
+    values before (k,)."""
+    own = cell.robot.chain.axes
+    assert cell.external is not None
+    turned = own + cell.external.turned
+    lower, upper = cell.limits.lower[turned] + RESERVE, cell.limits.upper[turned] - RESERVE
+    speed, start = cell.machine.max_speed[turned], before
+    before = start[cell.external.turned]
+    ranked = []
+    for course in courses:
+        low, high = course.min(axis=0), course.max(axis=0)
+        fewest, most = np.ceil((lower - low) / TURN - 1e-12), np.floor((upper - high) / TURN + 1e-12)
+        wanted = np.round((before - course[0]) / TURN)
+        centred = np.round(np.nan_to_num(0.5 * (lower + upper) - 0.5 * (low + high)) / TURN)
+        moved = course + TURN * np.where(fewest <= most, np.clip(wanted, fewest, most), centred)
+        over = float(np.maximum(lower - moved, moved - upper).max())
+        motion = float(np.abs(np.diff(moved, axis=0)).sum())
+        ranked.append((max(over, 0.0), round(motion, 6), float((np.abs(moved[0] - before) / speed).max()), moved))
+    best = min(range(len(ranked)), key=lambda k: ranked[k][:3])
+    values = np.tile(start, (len(ranked[best][3]), 1))
+    values[:, cell.external.turned] = ranked[best][3]
+    return values

@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Finds room along a bead for axes of a positioner that have less than a whole turn: another seam, another way to turn the
+part, a place at the limit from where the tool leans no more than it may, or as the last resort a bead that is cut.
+
+Such an axis has a gap that no whole turn leads over. A way to turn the part has room from a point on until it leaves the
+limits by more than leaning makes up for, so seams and cuts follow from how far each way reaches.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from ...geometry.angles import TURN
+from ...geometry.columns import lengths
+from ...kinematics.cell import Cell
+from ...kinematics.external import ExternalAxes, tilt_from
+from ...toolpath import Bead
+from ...types import Array, Index, Mask
+from ..reserve import RESERVE
+from .courses import chosen, middle, on_face, upright
+
+ROUNDING = 1e-9
+ROUNDS = 6  # of points between those of a bead
+# rad from where planning ends to where an axis waits at a limit, so that waiting there is within limits to the last digit
+WAITS = RESERVE
+
+
+def lacks(cell: Cell, values: Array, whole_turns: bool = False) -> bool:
+    """Whether an axis is out of its limits at some of the values (n, k): one that has less than a whole turn, or any."""
+    rows, lower, upper = _limits(cell)
+    over = np.maximum(lower - values[:, rows], values[:, rows] - upper)
+    return bool((over[:, whole_turns | (upper - lower < TURN)] > ROUNDING).any())
+
+
+def found(cell: Cell, bead: Bead, most: float, before: Array, overlap: float) -> list[Bead]:
+    """The bead with values of the external axes that have room, from another seam or in the fewest pieces; empty where
+    neither helps. most: rad from the vertical; before: values (k,) where the axes are; overlap: mm that a closed bead runs
+    on. It gets points where seams, or ends of pieces, have room between its own."""
+    begun = _begun_elsewhere(cell, bead, most, before, overlap) if bead.closed else None
+    if begun is not None:
+        return [begun]
+    for _ in range(ROUNDS):
+        ways = _Ways.along(cell, bead, most)
+        if cuts := _cuts(ways.reach, 0, ways.last(bead, 0, overlap)):
+            return _pieces(bead, ways, cuts, before, overlap)
+        if not ways.fits.any(axis=0).all():
+            break
+        count = len(bead) - 1
+        bead = bead.halved(np.flatnonzero(ways.reach[:count] <= np.arange(count)))
+    return []
+
+
+def _begun_elsewhere(cell: Cell, bead: Bead, most: float, before: Array, overlap: float) -> Bead | None:
+    """A closed bead from a seam that leaves room for all of it."""
+    for _ in range(ROUNDS):
+        ways, count = _Ways.along(cell, bead, most), len(bead) - 1
+        for start, values in ways.seams(count, before):
+            moved = _with(bead.started_at(start), values, before, ways.rows)
+            if runs_on(cell, moved, most, overlap):
+                return moved
+        ends = ways.nearly_round(count)
+        if not len(ends):
+            break
+        bead = bead.halved(ends)
+    return None
+
+
+def _pieces(bead: Bead, ways: _Ways, cuts: Sequence[int], before: Array, overlap: float) -> list[Bead]:
+    """A bead in pieces, cut at points that serve, or of a closed one from where fewer do; the last one runs on."""
+    starts = [0, *(cut % (len(bead) - 1) for cut in cuts[1:-1] if bead.closed)]
+    tried = [_cuts(ways.reach, start, ways.last(bead, start, overlap)) for start in starts]
+    cuts = _balanced(ways.reach, min(filter(None, tried), key=len))
+    whole = (bead.started_at(cuts[0]) if cuts[0] else bead).run_on(overlap)
+    pieces = list[Bead]()
+    for low, high in itertools.pairwise(cuts):
+        values = ways.taken(low, high, before)
+        piece = whole.part(slice(low - cuts[0], high + 1 - cuts[0]))
+        if high == cuts[-1] and overlap > 0.0:
+            values[-1] = values[-2] + _share(bead, high, piece) * (values[-1] - values[-2])
+        pieces.append(_with(piece, values, before, ways.rows))
+        before = np.array(before)
+        before[ways.rows] = values[-1]
+    return pieces
+
+
+def _share(bead: Bead, last: int, piece: Bead) -> float:
+    """Where the end of a piece is in the segment of a bead that ends at its point `last`, counted on round after round."""
+    if not bead.closed:
+        return 1.0
+    end = 1 + (last - 1) % (len(bead) - 1)
+    deposited, whole = piece.points[-1] - piece.points[-2], bead.points[end] - bead.points[end - 1]
+    return float(np.linalg.norm(deposited) / np.linalg.norm(whole))
+
+
+def runs_on(cell: Cell, bead: Bead, most: float, overlap: float) -> bool:
+    """Whether a bead with external axes, where it is closed, leans no more than it may where it runs on so many mm."""
+    external = cell.external
+    if overlap <= 0.0 or not bead.closed:
+        return True
+    assert external is not None and bead.external is not None
+    more = _run_on(bead, 0, overlap) + 1
+    on = bead.external[:more]
+    values = waiting(cell, bead.external, on)
+    leans = tilt_from(external.upright(on_face(cell, bead.tool[:more]), values), external.up)
+    return values is on or bool((leans <= most).all())
+
+
+def waiting(cell: Cell, values: Array, on: Array) -> Array:
+    """Values (m, k) with which a bead runs on over its beginning, on (m, k) there: the same, or where that leaves the limits
+    of an axis, whole turns aside, those of its end: there the axes wait. values: (n, k) of the bead."""
+    rows, lower, upper = _limits(cell)
+    turned = on[:, rows] + TURN * np.round((values[-1, rows] - values[0, rows]) / TURN)
+    every = np.concatenate([values[:, rows], turned])
+    fewest = np.ceil((lower - every.min(axis=0)) / TURN - ROUNDING)
+    greatest = np.floor((upper - every.max(axis=0)) / TURN + ROUNDING)
+    return on if (fewest <= greatest).all() else np.asarray(np.tile(values[-1], (len(on), 1)))
+
+
+@dataclasses.dataclass(frozen=True)
+class _Ways:
+    """Ways to turn directions (n, 3) upright, three times round a closed bead, whole turns told apart, held within the
+    limits. values: (ways, n, k) of the turning axes, `rows` of all. held: (ways, n) rad by which they are kept from where
+    they would go. fits: (ways, n) whether the tool then leans no more than it may, `most`."""
+
+    cell: Cell
+    external: ExternalAxes
+    directions: Array
+    most: float
+    rows: Index
+    values: Array
+    held: Array
+    fits: Mask
+
+    @classmethod
+    def along(cls, cell: Cell, bead: Bead, most: float) -> _Ways:
+        external, (rows, lower, upper) = cell.external, _limits(cell)
+        assert external is not None
+        once = on_face(cell, bead.tool)
+        directions = np.concatenate([once[:-1], once[:-1], once]) if bead.closed else once
+        values, held, fits = [], [], []
+        for course in upright(external, directions):
+            for moved in _turned(course, lower - most, upper + most):
+                inside = ((moved >= lower) & (moved <= upper)).all(axis=1)
+                kept = np.where(inside[:, None], moved, np.clip(moved, lower + WAITS, upper - WAITS))
+                every = np.zeros((len(kept), external.axes))
+                every[:, rows] = kept
+                values.append(kept)
+                held.append(np.abs(kept - moved).sum(axis=1))
+                fits.append(inside | (tilt_from(external.upright(directions, every), external.up) <= most))
+        count = len(directions)
+        return cls(
+            cell, external, directions, most, rows, np.array(values).reshape(-1, count, len(rows)),
+            np.array(held).reshape(-1, count), np.array(fits, dtype=bool).reshape(-1, count),
+        )
+
+    @cached_property
+    def furthest(self) -> Index:
+        """(ways, n) the last point to which each way has room from a point on, the one before that where it has none."""
+        count = self.fits.shape[1]
+        without = np.where(self.fits, count, np.arange(count))
+        return np.asarray(np.minimum.accumulate(without[:, ::-1], axis=1)[:, ::-1] - 1)
+
+    @cached_property
+    def reach(self) -> Index:
+        """(n,) the last point to which any way has room from a point on."""
+        return np.asarray(self.furthest.max(axis=0, initial=-1))
+
+    def last(self, bead: Bead, start: int, overlap: float) -> int:
+        """The point at which a bead ends that begins at one, or up to which it runs on."""
+        return start + len(bead) - 1 + (_run_on(bead, start, overlap) if bead.closed else 0)
+
+    def nearly_round(self, count: int) -> Index:
+        """Segments of a closed bead in which what a way has room for ends, where all but these two are in it."""
+        way, start = np.nonzero(self.fits[:, 1 : count + 1] & ~self.fits[:, :count])
+        end = self.furthest[way, start + 1]
+        near = end - start > count - 2  # and so with a share of the segments at both ends perhaps all round
+        return np.asarray(np.unique(np.concatenate([start[near], end[near] % count])))
+
+    def seams(self, count: int, before: Array) -> Iterator[tuple[int, Array]]:
+        """Points of a closed bead of so many segments from which a way has room all round, with its values (count + 1, k):
+        those first that hold an axis back least, then the nearest to the seam, then to where the axes are."""
+        way, start = np.nonzero(self.furthest[:, :count] >= np.arange(count) + count)
+        so_far = np.cumsum(np.pad(self.held, ((0, 0), (1, 0))), axis=1)
+        held = np.round(so_far[way, start + count + 1] - so_far[way, start], 6)
+        away = self._away(self.values[way, start], before)
+        for k in np.lexsort((away, np.minimum(start, count - start), held)):
+            yield int(start[k]), self.values[way[k], start[k] : start[k] + count + 1]
+
+    def taken(self, low: int, high: int, before: Array) -> Array:
+        """Values (n, k) from one point to another: one and the same where that serves, else of the ways that have room the
+        one that holds the axes back least, then moves least, then starts nearest to where they are."""
+        directions = self.directions[low : high + 1]
+        one = middle(directions)
+        if one is not None and float(tilt_from(directions, one).max()) <= self.most:
+            standing = chosen(self.cell, upright(self.external, one[None]), before)
+            if not lacks(self.cell, standing):
+                return np.asarray(np.tile(standing[:, self.rows], (len(directions), 1)))
+        able = np.flatnonzero(self.furthest[:, low] >= high)
+        values = self.values[able, low : high + 1]
+        held = np.round(self.held[able, low : high + 1].sum(axis=1), 6)
+        motion = np.round(np.abs(np.diff(values, axis=1)).sum(axis=(1, 2)), 6)
+        return np.asarray(values[np.lexsort((self._away(values[:, 0], before), motion, held))[0]])
+
+    def _away(self, values: Array, before: Array) -> Array:
+        """(m,) s from where the axes are to values (m, k), told to the microsecond."""
+        speed = self.cell.machine.max_speed[self.cell.robot.chain.axes + self.rows]
+        return np.asarray(np.round((np.abs(values - before[self.rows]) / speed).max(axis=1), 6))
+
+
+def _run_on(bead: Bead, start: int, overlap: float) -> int:
+    """How many points a closed bead, begun at one of its own, has where it runs on."""
+    if overlap <= 0.0:
+        return 0
+    along = np.cumsum(np.roll(lengths(np.diff(bead.points, axis=0)), -start))
+    return 1 + int(np.searchsorted(along[:-1], overlap))
+
+
+def _limits(cell: Cell) -> tuple[Index, Array, Array]:
+    """Which of the external values turn the part, and their limits (k,), the reserve taken off."""
+    assert cell.external is not None
+    rows = cell.external.turned
+    axes = cell.robot.chain.axes + rows
+    return rows, cell.limits.lower[axes] + RESERVE, cell.limits.upper[axes] - RESERVE
+
+
+def _turned(course: Array, lower: Array, upper: Array) -> Iterator[Array]:
+    """A course (n, k) moved by all whole turns that bring it between limits somewhere; by none of axes without limits."""
+    with np.errstate(invalid="ignore"):
+        fewest = np.ceil((lower - course.max(axis=0)) / TURN)
+        greatest = np.floor((upper - course.min(axis=0)) / TURN)
+    ranges = [range(int(a), int(b) + 1) if np.isfinite(b - a) else range(1) for a, b in zip(fewest, greatest, strict=True)]
+    for turns in itertools.product(*ranges):
+        yield course + TURN * np.array(turns, float)
+
+
+def _with(bead: Bead, values: Array, before: Array, rows: Index) -> Bead:
+    """The bead with values (n, k) of the axes that turn the part, and of others (k,) as they were."""
+    external = np.tile(before, (len(bead), 1))
+    external[:, rows] = values
+    return dataclasses.replace(bead, external=external)
+
+
+def _cuts(reach: Index, low: int, high: int) -> list[int]:
+    """Where the fewest pieces from one point to another end, each going as far as it can; empty where there is no way."""
+    cuts = [low]
+    while cuts[-1] < high:
+        far = min(int(reach[cuts[-1]]), high)
+        if far <= cuts[-1]:
+            return []
+        cuts.append(far)
+    return cuts
+
+
+def _balanced(reach: Index, cuts: Sequence[int]) -> list[int]:
+    """The same number of pieces, as equal as may be: where each must end at the latest follows from where it begins, at the
+    earliest from the end of all."""
+    low, high, count = cuts[0], cuts[-1], len(cuts) - 1
+    earliest = [high]
+    for _ in range(count - 1):
+        earliest.append(low + int(np.searchsorted(reach[low : high + 1], earliest[-1])))
+    wanted = np.round(np.linspace(low, high, count + 1)).astype(int).tolist()
+    ends = [low]
+    for first, equal in zip(reversed(earliest[1:]), wanted[1:-1], strict=True):
+        ends.append(min(int(reach[ends[-1]]), max(first, equal)))
+    return [*ends, high]
