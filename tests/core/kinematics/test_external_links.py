@@ -327,3 +327,112 @@ def test_what_a_file_says_wrongly_is_refused(tmp_path, changed, words):
     with pytest.raises(InputError, match=words) as raised:
         cell_of(text(path, RAIL, "robot"))
     assert raised.value.code == "BAD_MACHINE"
+
+
+LOOKED_AT = {  # what is not looked at against what, of mechanism by mechanism's link
+    "positioner": {
+        "base": {"D500 base"}, "part": {"D500 e1", "D500 e2"},
+    },
+    "track": {
+        "base": {"KL base", "KL e1"}, "1": {"KL e1"}, "part": {"KL base"},
+    },
+    "both": {
+        "base": {"KL base", "KL e3"}, "1": {"KL e3"}, "part": {"D500 e1", "D500 e2"},
+        "KL base": {"D500 base"},
+    },
+}
+CELLS = {"positioner": text(D500, STANDS, "part"), "track": text(TRACK, RAIL, "robot"), "both": BOTH}
+
+
+def shortly(name):
+    return name.replace("Yaskawa MotoPos ", "").replace("KUKA KL 100-2", "KL")
+
+
+@pytest.mark.parametrize("external", CELLS)
+def test_pairs_that_are_left_out_are_these_and_no_others(external):
+    """Of every pair of a link and a link beside the robot, or of such a one and the part, by name."""
+    cell = cell_of(CELLS[external], platform_diameter=100.0)
+    arm = ArmContact(cell, link_rods.of_robot(cell.robot.chain))
+    names = [arm.links[number] for number in range(len(arm.links))]
+    looked_at = {
+        (shortly(names[number]).removeprefix("A"), shortly(what)) for group, what in zip(arm.groups, arm.names)
+        for number in group.links if arm.solids[number] or names[number] in ("part", "torch")
+    }
+    beside = [shortly(one.name) for one in cell.external_links]
+    # the part is looked at as a link where it moves, and else as what stands: either way counts
+    looked_at |= {("part", one) for one, other in looked_at if other == "platform" and one in beside}
+    own = [str(name).removeprefix("A") for name in names if shortly(name) not in beside and name not in ("torch",)]
+    tracks = [one for one in beside if one.startswith("KL")]
+    every = {(one, other) for one in own for other in beside} | {
+        (one, other) for one in tracks for other in beside if not other.startswith("KL")}
+    left_out = {}
+    for one, other in every - looked_at:
+        left_out.setdefault(one, set()).add(other)
+    assert left_out == LOOKED_AT[external]
+
+
+def box_file(folder, name, changed):
+    """A mechanism's file whose links are made of other boxes."""
+    told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
+    path = folder / f"{name}-of-boxes.json"
+    path.write_text(json.dumps({**told, "id": f"{name}-of-boxes", "bodies": {"source": "made up", **changed}}),
+                    encoding="utf-8")
+    return path
+
+
+def boxed(size, origin):
+    return [{"box": list(size), "origin": list(origin), "rpy": [0, 0, 0]}]
+
+
+def test_link_1_meets_a_post_of_the_rail_it_turns_past(tmp_path):
+    """The post stands beside the track: link 1 is in it where the robot has come to it and nothing else is there."""
+    post = boxed((60.0, 60.0, 900.0), (0.0, 200.0, 450.0))
+    rail = box_file(tmp_path, TRACK, {"base": post})
+    cell = cell_of(text(rail, RAIL, "robot"))
+    rods = [[] if link != 1 else link_rods.of_robot(cell.robot.chain)[1] for link in range(7)]
+    arm = ArmContact(cell, rods)
+    q = np.zeros((501, 7))
+    q[:, 6], q[:, 0] = np.linspace(cell.limits.lower[6], cell.limits.upper[6], 501), np.linspace(-2.0, 2.0, 501)
+    found = arm.touches(q)
+    points = points_within(post[0])
+    deep = np.zeros(501)
+    links, seen = cell.links(q), cell.external_link_frames(q)
+    for k in range(501):
+        to_link = np.linalg.inv(links[k, 1]) @ seen[k, 0]
+        at = points @ to_link[:3, :3].T + to_link[:3, 3]
+        for rod in rods[1]:
+            axis = (rod.end - rod.start) / rod.length
+            along = (at - rod.start) @ axis
+            out = np.linalg.norm(at - rod.start - along[:, None] * axis, axis=1)
+            deep[k] = max(deep[k], float(np.minimum(np.minimum(along, rod.length - along), rod.radius - out).max()))
+    assert (deep > 5.0).sum() > 10 and (deep == 0.0).sum() > 20
+    assert (found.link[deep > 1.0] == 1).all()
+    away = np.convolve(deep, np.ones(15), "same") == 0.0  # no point of it in the rod a good way on
+    assert away.sum() > 20 and not found.any[away].any()
+
+
+def test_the_base_meets_what_a_positioner_swings_at_it_and_a_carriage_runs_into_the_part(tmp_path):
+    arm_of_table = boxed((1400.0, 60.0, 60.0), (-700.0, 0.0, 0.0))  # from the tilt axis towards the robot
+    table = box_file(tmp_path, D500, {"joint_1": arm_of_table})
+    cell = cell_of(text(table, (1300.0, 0.0, -250.0, 0.0, 0.0, 0.0), "part"))
+    rods = link_rods.of_robot(cell.robot.chain)
+    arm = ArmContact(cell, [rods[0], *[[] for _ in range(6)]])
+    q = np.zeros((3, 8))
+    q[:, 6] = np.radians([0.0, 40.0, -60.0])  # level it reaches the robot's foot, else it is over it or under the floor
+    names = [None if link == NONE else arm.links[link] for link in arm.touches(q).link]
+    assert names == ["base", None, None]
+
+    cell = cell_of(text(TRACK, RAIL, "robot"), deposition_point=(500.0, 900.0, 0.0, 0.0, 0.0, 0.0))
+    wall = box((100.0, 100.0, 400.0), np.eye(4), "wall")
+    place = cell.mount @ np.linalg.inv(cell.station)  # the world, with the track at zero, in part coordinates
+    across = frames.pose(np.eye(3), [0.0, 700.0, -150.0])
+    wall = dataclasses.replace(wall, vertices=wall.vertices @ (place @ across)[:3, :3].T + (place @ across)[:3, 3])
+    arm = ArmContact(cell, [[] for _ in range(7)], [wall])
+    q = np.zeros((41, 7))
+    q[:, 6] = np.linspace(-1000.0, 1000.0, 41)
+    found = arm.touches(q)
+    met = np.array([None if link == NONE else arm.links[link] for link in found.link])
+    # RAIL turns the track's X along the world's Y; the carriage's box is 454 long and begins 227 before its middle
+    inside = np.abs(q[:, 6] - 700.0) < 227.0
+    assert set(met[inside]) == {"KUKA KL 100-2 e1"}
+    assert (met[np.abs(q[:, 6] - 700.0) > 500.0] == None).all()  # noqa: E711 - elementwise

@@ -7,10 +7,18 @@ wide and high as they are. So what is not told to touch does not touch, as far a
 carries is not looked at against the last two links, which hold it and can hardly move against it, nor what stands still
 against the base. A part that moves is all there from the beginning: cylinders about its bodies and beads. The nozzle is
 looked at as it is against bodies, without clearance: it deposits next to them. What holds the nozzle is looked at where
-`cell.nozzle.shape` shows it. The links of positioner and track (`beside`) move with their axes: those of the robot, nozzle
-and torch are looked at against them, the part against those of the positioner that it does not stand on, and they against
-obstacles. Links of the robot against each other: `own`. The floor is looked at where it is an obstacle, cables and hoses
-where the file of the torch has them.
+`cell.nozzle.shape` shows it. The links of positioner and track (`beside`) move with their axes: robot, nozzle and torch
+are looked at against them, and they against obstacles. Of these pairs are left out
+
+- what stands on the floor against what does too, the base of a robot without a track among it: it never moves;
+- base and link 1 against the carriage, which the base is one with and link 1 turns on; and the base against the rail, along
+  which it slides. Link 1 is looked at against the rail, which it turns and slides past;
+- the part against the last two links of what it stands on. It is looked at against the other links of a positioner, carriage
+  and rail, if one of both moves;
+- links of positioners against each other, which their own stops keep apart.
+
+Links of the robot against each other: `own`. The floor is looked at where it is an obstacle, cables and hoses where the file
+of the torch has them.
 """
 
 from __future__ import annotations
@@ -99,7 +107,7 @@ class ArmContact:
         if self.cell.platform_diameter > 0.0:
             around.append(disc(self.cell.platform_diameter, self.cell.mount, PLATFORM))
         held, holder = self.cell.torch, self._links(not self._carries_part)
-        part = [*self._links(self._carries_part), *self._torch]
+        part = [*self._links(self._carries_part), *self._torch, *self._track(self.cell.part_moves)]
         about_nozzle = [nozzle_body(self.cell.nozzle)]
         about_nozzle += [] if held is None else [dataclasses.replace(held.body, name=TORCH)]
         groups = [*(_of_body(body, holder, NOZZLE) for body in about_nozzle), *(_of_body(body, part) for body in around)]
@@ -119,7 +127,8 @@ class ArmContact:
         groups += [_of_body(one.body, self._against(one), one.name) for one in self.cell.external_links]
         names += [one.name for one in self.cell.external_links]
         solids += [
-            [of_cylinder(cylinder, more) for cylinder in (one.cylinders if self.cell.obstacles else ())]
+            [of_cylinder(cylinder, more) for cylinder in (
+                one.cylinders if self.cell.obstacles or one.carries == ROBOT else ())]
             for one in self.cell.external_links
         ]
         object.__setattr__(self, "links", (
@@ -159,13 +168,22 @@ class ArmContact:
                 *adjacent]
 
     def _against(self, one: ExternalLink) -> list[int]:
-        """What is looked at against a link beside the robot: the robot's links, but not those that stand on the carriage of
-        a track, nozzle and torch, and the part but for the last two links of what it stands on, as with a flange."""
+        """What is looked at against a link beside the robot: the robot's links two joints away or more where it carries
+        these, or that move against it; nozzle and torch; and the part but for the last two links of what it stands on."""
         axes, on_robot = self.cell.robot.chain.axes, one.carries == ROBOT
         on_track = self.cell.external is not None and self.cell.external.slides is not None
-        first = 2 if on_robot else 0 if on_track else 1
+        first = 2 - one.after if on_robot else 0 if on_track or one.axis != STANDS else 1
         part = [] if on_robot or one.after <= 1 else [axes + 1]
-        return [*range(first, axes + 1), *part, axes + 2, *self._torch]
+        track = [] if on_robot else self._track(one.axis != STANDS)
+        return [*range(first, axes + 1), *part, axes + 2, *self._torch, *track]
+
+    def _track(self, moves: bool) -> list[int]:
+        """The links of a track that move against what moves in the world, or else stands."""
+        first = self.cell.robot.chain.axes + LINKS_MORE
+        return [
+            first + k for k, one in enumerate(self.cell.external_links)
+            if one.carries == ROBOT and (one.axis != STANDS or moves)
+        ]
 
     def _part_cylinders(self, around: Sequence[Body]) -> list[Cylinder]:
         """Cylinders that hold the part with what it stands on, where it may meet obstacles."""
