@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Programs of plain numbers for FANUC's post, those of the golden files among them, and its refusals."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,13 @@ def beads(count, points, layers=1, **options):
             blocks += [moves("rapid", np.zeros((2, 6)), layer=layer, bead=bead), DepositOn()]
             blocks += [moves("deposit", value, layer=layer, bead=bead), DepositOff()]
     return program(*blocks, **options)
+
+
+def with_tool(of, **more):
+    """The same with the tool on the robot and a platform that stands."""
+    return dataclasses.replace(of, **{
+        "name": "tool", "setup": "tool-on-robot", "station": (700.0, 10.5, -100.0, 0.1, -0.2, 3.0),
+        "carried": (0.0, 0.0, 150.0, 0.0, 0.0, 0.5), **more})
 
 
 def refusal(of, *, code, where=None):

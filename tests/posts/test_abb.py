@@ -15,6 +15,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitBelow, WaitInput
 from freecad_am.posts import catalogue
 from freecad_am.posts.abb import post as abb
+from tests.posts.fanuc_programs import with_tool
 
 VARIANTS = [("joint", "part-on-robot"), ("cartesian", "part-on-robot"), ("cartesian", "tool-on-robot")]
 NO_AXES = [9e9] * 6
@@ -182,7 +183,8 @@ def both(of, **more):
 
 GOLDENS = {
     "joint": JOINT, "held": HELD, "positioner": beside(HELD), "track": along(HELD, max_points=2000),
-    "track-joint": along(JOINT), "both": both(HELD),
+    "track-joint": along(JOINT), "both": both(HELD), "tool-joint": with_tool(JOINT), "tool": with_tool(HELD),
+    "positioner-joint": beside(JOINT), "both-joint": both(JOINT),
 }
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
 from freecad_am.posts.fanuc import post as fanuc
-from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program, refusal
+from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program, refusal, with_tool
 
 
 def body(content):
@@ -19,7 +19,10 @@ def body(content):
     return [line[5:] for line in text[text.index("/MN") + 5 : text.index("/POS")].split("\r\n")[:-1]]
 
 
-GOLDENS = {"joint": GOLDEN_JOINT, "table": GOLDEN_TABLE, "parts": beads(1, 12, layers=2, name="parts", max_points=10)}
+GOLDENS = {
+    "joint": GOLDEN_JOINT, "table": GOLDEN_TABLE, "parts": beads(1, 12, layers=2, name="parts", max_points=10),
+    "tool": with_tool(GOLDEN_JOINT),
+}
 
 
 @pytest.mark.parametrize("name", GOLDENS)

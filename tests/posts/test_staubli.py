@@ -12,6 +12,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput
 from freecad_am.posts import catalogue
 from freecad_am.posts.staubli import post as staubli
+from tests.posts.fanuc_programs import with_tool
 
 VARIANTS = [("joint", "part-on-robot"), ("cartesian", "part-on-robot"), ("cartesian", "tool-on-robot")]
 NOMINAL = (math.radians(287.0), math.radians(287.0), math.radians(319.0), math.radians(410.0), math.radians(320.0),
@@ -93,7 +94,7 @@ def gauge_bead(layer):
 
 
 GAUGE = program(*gauge_bead(0), *gauge_bead(1), name="gauge", motion="cartesian", max_points=8, blend=50)
-GOLDENS = {"joint": JOINT, "gauge": GAUGE}
+GOLDENS = {"joint": JOINT, "gauge": GAUGE, "tool-joint": with_tool(JOINT), "tool": with_tool(GAUGE)}
 
 
 @pytest.mark.parametrize("name", GOLDENS)

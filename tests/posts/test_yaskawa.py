@@ -15,7 +15,7 @@ from freecad_am.objects.checks.controllers import check_pulses, written_by
 from freecad_am.posts import earlier
 from freecad_am.posts.ur import post as ur
 from freecad_am.posts.yaskawa import post as yaskawa
-from tests.posts.fanuc_programs import GOLDEN_JOINT, beads, moves, program
+from tests.posts.fanuc_programs import GOLDEN_JOINT, beads, moves, program, with_tool
 
 PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75)
 STATION = (*PULSES, 1019.6875, -568.5)
@@ -67,7 +67,8 @@ def along(of, at=0, **more):
 
 
 GOLDENS = {
-    "joint": known(GOLDEN_JOINT), "station": beside(known(GOLDEN_JOINT)), "rail": along(known(GOLDEN_JOINT)),
+    "joint": known(GOLDEN_JOINT), "tool": with_tool(known(GOLDEN_JOINT)),
+    "station": beside(known(GOLDEN_JOINT)), "rail": along(known(GOLDEN_JOINT)),
     "both": along(beside(known(GOLDEN_JOINT)), at=1, name="both"),
     "linear": linear(dataclasses.replace(GOLDEN_JOINT, name="linear", tool_frame=3, deposit_output=7, blend=50)),
     "parts": linear(beads(1, 12, layers=2, name="parts", max_points=10)),
