@@ -484,6 +484,11 @@
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque. (s)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length beside it along which the speed changes step by step to that of the bead.</source>
+        <translation>Longueur à côté, le long de laquelle la vitesse passe par paliers à celle du cordon.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Length of all beads.</source>
         <translation>Longueur de tous les cordons.</translation>
@@ -3367,6 +3372,11 @@
         <translation>Longueur le long de x, mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length beside it along which the speed changes step by step to that of the bead.</source>
+        <translation>Longueur à côté, le long de laquelle la vitesse passe par paliers à celle du cordon.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Length of all beads.</source>
         <translation>Longueur de tous les cordons.</translation>
@@ -4460,6 +4470,11 @@
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Radius of the sphere</source>
         <translation>Rayon de la sphère</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Ramp</source>
+        <translation>Rampe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -6625,6 +6640,11 @@
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>a radius of {0} mm makes no arc between points {1} mm apart; give I and J</source>
         <translation>un rayon de {0} mm ne fait pas d&apos;arc entre des points distants de {1} mm ; donnez I et J</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/classes.py"/>
+        <source>a ramp of {0} mm leads from or to the travel_speed there, and there is none; give it, or leave the ramp out</source>
+        <translation>une rampe de {0} mm mène de ou vers travel_speed, qui n&apos;y est pas donnée ; donnez-la, ou omettez la rampe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/text.py"/>
@@ -10593,6 +10613,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
+        <source>start and end take {0} mm with their ramps, and a bead of this class in layer {1} is {2} mm long; make them shorter for the class, or lay no beads as short as that</source>
+        <translation>le début et la fin prennent {0} mm avec leurs rampes, et un cordon de cette classe dans la couche {1} est long de {2} mm ; raccourcissez-les pour la classe, ou ne déposez pas de cordons aussi courts</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/classes.py"/>
         <source>start and end take {0} mm, and a bead of this class in layer {1} is {2} mm long; make them shorter for the class, or lay no beads as short as that</source>
         <translation>le début et la fin prennent {0} mm, et un cordon de cette classe dans la couche {1} est long de {2} mm ; raccourcissez-les pour la classe, ou ne déposez pas de cordons aussi courts</translation>
     </message>
@@ -12493,8 +12518,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>without a bead model the travel speed does not vary, and the wire has nothing to follow; use constant, or a process.bead_model</source>
-        <translation>sans modèle de cordon la vitesse d&apos;avance ne varie pas, et le fil n&apos;a rien à suivre ; utilisez constant, ou un process.bead_model</translation>
+        <source>without a bead model or a ramp the travel speed does not vary, and the wire has nothing to follow; use constant, a process.bead_model, or process.start.ramp or process.end.ramp</source>
+        <translation>sans modèle de cordon ni rampe, la vitesse d&apos;avance ne varie pas et le fil n&apos;a rien à suivre ; utilisez constant, un process.bead_model, ou process.start.ramp ou process.end.ramp</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
@@ -13225,11 +13250,6 @@
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a range; give two percentages, the smaller first</source>
         <translation>{0} n&apos;est pas une plage ; donnez deux pourcentages, le plus petit d&apos;abord</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} is not a robot and takes no external axes; leave them out</source>
-        <translation>{0} n&apos;est pas un robot et n&apos;admet pas d&apos;axes externes ; omettez-les</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/links/shape.py"/>

@@ -273,3 +273,63 @@ def test_a_weave_that_cannot_be_told_is_named_before_planning(workshop):
     done = workshop.run("plan", "joint.yaml", "-o", "joint")
     assert done.status == 2 and "error[WEAVE]" in done.err and "motion: cartesian" in done.err
     assert not list((workshop.folder / "joint").glob("program/*"))
+
+
+RAMPED = """\
+  wire: {feed_mode: proportional, feed: 30 mm/s}
+  start: {length: 4 mm, travel_speed: 3 mm/s, ramp: 5 mm}
+  end: {length: 2 mm, travel_speed: 9 mm/s, ramp: 3 mm}
+"""
+
+
+def test_speed_and_feed_of_a_ramp_are_in_the_text(workshop):
+    """A text of LinuxCNC has the speed of every move, and that of the wire before it; both rise along the ramp in small
+    steps, from what they are at the start to what they are in the bead, and go on to what they are at the end."""
+    job = JOB.replace("CLASSES\n", RAMPED)
+    job = job[: job.index("cell:")] + job[job.index("process:") : job.index("program:")] + (
+        "cell: {machine: table-xyzac, setup: rotary-table, platform: 30 mm}\n"
+        "program: {post: linuxcnc, nc: {feed: path, wire_output: 2, wire_gain: 1}}\n")
+    Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
+    (workshop.folder / "bar.yaml").write_text(job)
+    done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    lines = (workshop.folder / "out" / "program" / "bar.ngc").read_text().splitlines()
+    here, wire, speed, found, beads = np.zeros(3), None, 0.0, [], []
+    for line in lines:
+        words = dict(re.findall(r"\b([XYZFQ])(-?[\d.]+)", line))
+        if line.startswith(("M67 E1", "M68 E1")):
+            wire = float(words["Q"])
+        elif line.startswith("M64 P0"):
+            found = []
+        elif line.startswith("M65 P0"):
+            beads.append(np.array(found))
+        elif {"X", "Y", "Z"} & set(words):
+            there = np.array([float(words.get(axis, old)) for axis, old in zip("XYZ", here)])
+            speed = float(words.get("F", speed))
+            found.append((np.linalg.norm(there - here), speed / 60.0, wire))
+            here = there
+    assert len(beads) > 10
+    for moves in beads:
+        length, speeds, wires = moves.T
+        end = np.cumsum(length)
+        middle = end - 0.5 * length
+        total = end[-1]
+        wanted = np.interp(middle, [0.0, 4.0, 9.0, total - 5.0, total - 2.0, total], [3.0, 3.0, 6.0, 6.0, 9.0, 9.0])
+        assert np.abs(speeds - wanted).max() <= 0.1 * 9.0 / 2.0 + 0.01
+        assert np.abs(np.diff(speeds)).max() <= 0.1 * 9.0 + 0.01 and {3.0, 6.0, 9.0} <= set(np.round(speeds, 2))
+        # 30 mm of wire a second where the torch has 6 mm/s, as much to a mm everywhere; the output is m/min
+        np.testing.assert_allclose(wires / 0.06 / speeds, 30.0 / 6.0, rtol=1e-3)
+
+
+@pytest.mark.parametrize(("more", "words"), [
+    ("  end: {length: 8 mm, travel_speed: 3 mm/s, ramp: 21 mm}\n",
+     ["error[PHASE_LENGTH]", "29 mm with their ramps", "is 20 mm long", "make them shorter"]),
+    ("  start: {length: 5 mm, ramp: 5 mm}\n", ["error[BAD_VALUE]", "process.start.ramp", "there is none; give it"]),
+    ("  classes: {fill: {end: {ramp: 5 mm}}}\n", ["error[BAD_VALUE]", "process.classes.fill.end.ramp", "give it"]),
+    (RAMPED, ["error[NO_WIRE_OUTPUT]"]),
+])
+def test_ramps_that_cannot_be(workshop, more, words):
+    Part.makeBox(SIDE, SIDE, HIGH).exportStep(str(workshop.folder / "bar.step"))
+    (workshop.folder / "bar.yaml").write_text(JOB.replace("CLASSES\n", more))
+    done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
+    assert done.status in (2, 3) and all(word in done.err for word in words), done.err

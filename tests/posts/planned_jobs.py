@@ -230,7 +230,7 @@ def body(setup):
 
 
 @functools.cache
-def planned(name, lift=LIFT, retreat=0.0):
+def planned(name, lift=LIFT, retreat=0.0, ramps=()):
     """The cell, the beads and the motion of a set-up. Without a retract distance all beads are on one side, each on the one
     before: the straight way back to the next start leads through what was just laid."""
     setup = SETUPS[name]
@@ -239,7 +239,9 @@ def planned(name, lift=LIFT, retreat=0.0):
         cell = dataclasses.replace(cell, machine=dataclasses.replace(
             cell.machine, pulses_per_degree=PULSES[: cell.machine.chain.axes], speed_unit="mm/s"))
     sides = range(SIDES if lift else 1)
-    layers = tuple(Layer(tuple(_bead(setup.hub, side, k) for side in sides)) for k in range(2))
+    beads = [[_bead(setup.hub, side, k) for side in sides] for k in range(2)]
+    layers = tuple(Layer(tuple(
+        dataclasses.replace(bead, ends=(*bead.ends, *ramps) if bead.ends else ()) for bead in some)) for some in beads)
     toolpath = Toolpath(
         layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable", max_from_vertical=setup.most, retreat=retreat,
     )
@@ -252,10 +254,10 @@ def planned(name, lift=LIFT, retreat=0.0):
 
 
 @functools.cache
-def written(way, max_points=2000, lift=LIFT, retreat=0.0):
+def written(way, max_points=2000, lift=LIFT, retreat=0.0, ramps=()):
     """The cell, the motion, the program and its files."""
     post, kind, feed, name = way
-    cell, beads, motion = planned(name, lift, retreat)
+    cell, beads, motion = planned(name, lift, retreat, ramps)
     if post == "staubli" and kind == "cartesian" and cell.setup == "part-on-robot":
         motion = moving_tool.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
     parameters = ProgramParameters(post=post, motion=kind, max_points=max_points, nc=NcParameters(feed=feed))

@@ -35,6 +35,10 @@ class PhaseParameters:
     schedule: int | None = f.parameter(
         None, f.COUNT, "Schedule that is told there, without a stop.", low=1, high=LARGEST_SCHEDULE, optional=True,
     )
+    ramp: float = f.parameter(
+        0.0, f.LENGTH, "Length beside it along which the speed changes step by step to that of the bead.", low=0.0,
+        advanced=True,
+    )
 
     where: ClassVar[str] = WHERE
 
@@ -44,7 +48,7 @@ class PhaseParameters:
     @property
     def there(self) -> bool:
         """Whether anything differs."""
-        return self.length > 0.0 and (self.travel_speed is not None or self.schedule is not None)
+        return self.length + self.ramp > 0.0 and (self.travel_speed is not None or self.schedule is not None)
 
 
 class BeadStart(PhaseParameters):
@@ -95,9 +99,11 @@ class BeadClass:
     start_length: float | None = _phase("length")
     start_travel_speed: float | None = _phase("travel_speed")
     start_schedule: int | None = _phase("schedule")
+    start_ramp: float | None = _phase("ramp")
     end_length: float | None = _phase("length")
     end_travel_speed: float | None = _phase("travel_speed")
     end_schedule: int | None = _phase("schedule")
+    end_ramp: float | None = _phase("ramp")
 
     def own_values(self) -> dict[str, float]:
         """What it has of its own, by name, in inner units."""

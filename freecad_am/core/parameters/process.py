@@ -206,6 +206,12 @@ class ProcessParameters:
         return any((self.weave, *(one.weave for one in bead_classes.classes(self.classes).values())))
 
     @property
+    def ramped(self) -> bool:
+        """Whether starts or ends of any beads have ramps."""
+        named = [self, *(self.for_class(name) for name in bead_classes.classes(self.classes))]
+        return any(phase.there and phase.ramp > 0.0 for one in named for phase in (one.start, one.end))
+
+    @property
     def scheduled(self) -> bool:
         """Whether any bead has a schedule."""
         classes = bead_classes.classes(self.classes).values()

@@ -49,28 +49,40 @@ def refuse_speeds(process: ProcessParameters) -> None:
 
 
 def with_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """The toolpath with the lengths and speeds of the phases at the ends of its beads. InputError PHASE_LENGTH where they
-    are longer than a bead."""
-    of_class = {name: _ends(process.for_class(name)) for name in (*CLASSES, "")}
+    """The toolpath with the lengths, speeds and ramps of the phases at the ends of its beads. InputError PHASE_LENGTH where
+    they are longer than a bead, BAD_VALUE for a ramp from no speed."""
+    of_class = {name: _ends(process.for_class(name), name) for name in (*CLASSES, "")}
     if not any(of_class.values()):
         return toolpath
     layers = list(toolpath.layers)
     for number, layer in enumerate(toolpath.layers):
         for bead in layer.beads:
             ends = of_class[bead.bead_class]
-            if ends and ends[0] + ends[2] > bead.length:
+            used, more = ends[0] + ends[2] + sum(ends[4:]) if ends else 0.0, " with their ramps" if ends[4:] else ""
+            if used > bead.length:
                 raise InputError(
                     "PHASE_LENGTH", f"process.classes.{bead.bead_class}",
-                    f"start and end take {ends[0] + ends[2]:.4g} mm, and a bead of this class in layer {number} is "
-                    f"{bead.length:.4g} mm long; make them shorter for the class, or lay no beads as short as that",
+                    f"start and end take {used:.4g} mm{more}, and a bead of this class in "
+                    f"layer {number} is {bead.length:.4g} mm long; make them shorter for the class, or lay no beads as "
+                    "short as that",
                 )
         layers[number] = replace(layer, beads=tuple(replace(bead, ends=of_class[bead.bead_class]) for bead in layer.beads))
     return replace(toolpath, layers=tuple(layers))
 
 
-def _ends(process: ProcessParameters) -> tuple[float, ...]:
-    """`Bead.ends`; nothing where no end differs."""
+def _ends(process: ProcessParameters, name: str) -> tuple[float, ...]:
+    """`Bead.ends` of a class; nothing where no end differs."""
+    for end, phase in ((START, process.start), (END, process.end)):
+        if phase.ramp > 0.0 and phase.travel_speed is None:
+            where = f"process.{end}" if getattr(process.of_class(name), f"{end}_ramp") is None else (
+                f"process.classes.{name}.{end}")
+            raise InputError(
+                "BAD_VALUE", f"{where}.ramp", f"a ramp of {phase.ramp:g} mm leads from or to the travel_speed there, and "
+                "there is none; give it, or leave the ramp out",
+            )
     if not process.start.there and not process.end.there:
         return ()
     phases = [phase if phase.there else PhaseParameters() for phase in (process.start, process.end)]
-    return tuple(value for phase in phases for value in (phase.length, phase.travel_speed or 0.0))
+    ends = tuple(value for phase in phases for value in (phase.length, phase.travel_speed or 0.0))
+    ramps = tuple(phase.ramp for phase in phases)
+    return (*ends, *ramps) if any(ramps) else ends

@@ -91,10 +91,10 @@ def layers_of(of: Given) -> CoreToolpath:
     """Layers and beads of a feature; the nozzle is kept clear of the feature alone, and of that only where directions are
     settled with the layers. InputError, those of the family."""
     process = of.process
-    if process.bead_model == "none" and process.wire.feed_mode != "constant":
+    if process.bead_model == "none" and process.wire.feed_mode != "constant" and not process.ramped:
         raise InputError(
-            "NOT_FOR_FAMILY", "process.wire.feed_mode", "without a bead model the travel speed does not vary, and the wire "
-            "has nothing to follow; use constant, or a process.bead_model"
+            "NOT_FOR_FAMILY", "process.wire.feed_mode", "without a bead model or a ramp the travel speed does not vary, and "
+            "the wire has nothing to follow; use constant, a process.bead_model, or process.start.ramp or process.end.ramp"
         )
     classes.refuse_speeds(process)
     family = family_of(of.strategy)

@@ -7,8 +7,8 @@ They are put in once seams, overlaps and joints are known, on the way that is dr
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from ...geometry.columns import dots, lengths
 from ...issues import ERROR, Issue
 from ...kinematics.cell import Cell
 from ...motion import AT_END, AT_START, MIDDLE
+from ...parameters.ramp import SHORTEST, ramp
 from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath
@@ -25,41 +26,75 @@ Rows = NDArray[np.intp]
 
 STEPS = 4  # of which each leaves a small share of what was off before
 END_MM = 1e-3  # mm; a point so near to where a phase ends is where it ends
+STEP_MM = 0.2 * SHORTEST  # a point so near to where a step of a ramp ends is where it ends
 CODE = "PHASE_LENGTH"
 _UNIT = ("build", "tool", "tangents")
 Condition = Callable[[Array, Array], Array]
 
 
+class Stretch(NamedTuple):
+    """Where a stretch of a bead begins and ends, mm along it, of which of PHASES it is, and mm/s there, 0: as elsewhere."""
+
+    begin: float
+    end: float
+    phase: int
+    speed: float
+
+
 def phased(cell: Cell, path: BeadPath, condition_at: Condition | None = None) -> tuple[BeadPath, list[Issue]]:
-    """The path with points where the phases of its bead begin and end, and their speeds; an error where they are longer
-    than the bead, as that of a piece of one that was divided. condition_at: (n,) of flange poses (n, 4, 4) and joints
-    (n, axes); None on machines that have none."""
+    """The path with points where the phases of its bead, and the steps of their ramps, begin and end, and their speeds; an
+    error where they are longer than the bead, as that of a piece of one that was divided. condition_at: (n,) of flange poses
+    (n, 4, 4) and joints (n, axes); None on machines that have none."""
     if not path.bead.ends or not path.reachable:
         return path, []
-    first, _, last, _ = path.bead.ends
+    first, _, last, _ = path.bead.ends[:4]
+    used = first + last + sum(path.bead.ends[4:])
     along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
-    if first + last > along[-1] + END_MM:
+    if used > along[-1] + END_MM:
         return path, [Issue(
-            ERROR, CODE, f"start and end take {first + last:.4g} mm of this bead of {along[-1]:.4g} mm; make process.start "
+            ERROR, CODE, f"start and end take {used:.4g} mm of this bead of {along[-1]:.4g} mm; make process.start "
             "and process.end shorter, or those of its class", path.layer, path.index,
         )]
-    borders = np.array([at for at, length in ((first, first), (along[-1] - last, last)) if length > 0.0])
-    borders = borders[np.abs(along[:, None] - borders).min(axis=0) > END_MM]
-    borders = borders[np.r_[True, np.diff(borders) > END_MM]] if len(borders) else borders
+    stretches = _stretches(path.bead, float(along[-1]))
+    borders = _borders(stretches, along)
     if len(borders):
         path = _with_points(cell, path, along, borders, condition_at)
         along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
-    return dataclasses.replace(path, bead=_timed(path.bead, along)), []
+    return dataclasses.replace(path, bead=_timed(path.bead, along, stretches)), []
 
 
-def _timed(bead: Bead, along: Array) -> Bead:
+def _borders(stretches: Sequence[Stretch], along: Array) -> Array:
+    """(k,) where points are put in, mm along a bead whose points are `along` (n,) mm of it: at the ends of phases, and at
+    those of the steps of ramps where none is near."""
+    known = along
+    for of_phase, apart in ((True, END_MM), (False, STEP_MM)):
+        at = np.unique([at for one in stretches if (one.phase != MIDDLE) == of_phase for at in (one.begin, one.end)])
+        at = at[np.abs(known[:, None] - at).min(axis=0) > apart] if len(at) else at
+        known = np.r_[known, at[np.r_[True, np.diff(at) > apart]] if len(at) else at]
+    return np.sort(known[len(along) :])
+
+
+def _stretches(bead: Bead, length: float) -> list[Stretch]:
+    """What of a bead is at another speed. Steps of ramps are of no phase: what is told at the ends of a bead beside their
+    speed is not told there."""
+    first, slow, last, late = bead.ends[:4]
+    up, down = bead.ends[4:] or (0.0, 0.0)
+    rising, falling = ramp(up, slow, float(bead.speed[1])), ramp(down, float(bead.speed[-1]), late)
+    found = [Stretch(0.0, first, AT_START, slow), Stretch(length - last, length, AT_END, late)]
+    for begin, size, speeds in ((first, up, rising), (length - last - down, down, falling)):
+        at = begin + np.linspace(0.0, size, len(speeds) + 1)
+        found += [Stretch(float(a), float(b), MIDDLE, float(speed)) for a, b, speed in zip(at, at[1:], speeds)]
+    return [one for one in found if one.end > one.begin]
+
+
+def _timed(bead: Bead, along: Array, stretches: Sequence[Stretch]) -> Bead:
     """The bead, points `along` (n,) mm of it, at the speeds of its phases, and which of its segments are in these."""
-    first, slow, last, late = bead.ends
     phase, speed = np.full(len(along), float(MIDDLE)), np.array(bead.speed)
     middle = 0.5 * (along + np.r_[0.0, along[:-1]])  # of the segment that ends at each point
-    for number, mine, wanted in ((AT_START, middle < first, slow), (AT_END, middle > along[-1] - last, late)):
-        phase[mine] = number
-        speed[mine] = wanted or speed[mine]
+    for one in stretches:
+        mine = (middle > one.begin) & (middle < one.end)
+        phase[mine] = one.phase
+        speed[mine] = one.speed or speed[mine]
     return dataclasses.replace(bead, speed=speed, phase=phase)
 
 

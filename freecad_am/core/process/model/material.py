@@ -28,7 +28,7 @@ def with_speed_issues(toolpath: Toolpath, process: ProcessParameters) -> Toolpat
         return toolpath
     worst, where, some = 1.0 + ROUNDING, (0, 0), [float("inf"), 0.0]
     for layer, number, bead in toolpath:
-        at_ends = [speed for speed in bead.ends[1::2] if speed]
+        at_ends = [speed for speed in bead.ends[1:4:2] if speed]
         low, high = float(min(bead.speed[1:].min(), *at_ends, np.inf)), float(max(bead.speed[1:].max(), *at_ends, 0.0))
         some = [min(some[0], low), max(some[1], high)]
         off = max(slowest / low, 0.0 if fastest is None else high / fastest)

@@ -37,8 +37,8 @@ def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None)
     taken = width * height * speed
     balanced = taken / process.wire.section
     if isinstance(process.wire.feed, str):
-        return _of_classes(replace(toolpath, wire_feed=balanced), process)
-    made = replace(toolpath, wire_feed=process.wire.feed)
+        return _of_classes(_following(replace(toolpath, wire_feed=balanced), process), process)
+    made = _following(replace(toolpath, wire_feed=process.wire.feed), process)
     given = process.wire.feed * process.wire.section
     if given == 0.0 or abs(given - taken) <= TOLERANCE * taken:
         return _of_classes(made, process)
@@ -50,11 +50,22 @@ def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None)
     )))
 
 
+def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+    """The toolpath with a wire that follows the travel speed, where that is asked for and beads have ramps. Speeds that
+    change in one step are no reason: a schedule tells what is fed there."""
+    ramped = any(bead.ends[4:] for _, _, bead in toolpath)
+    if process.wire.feed_mode != "proportional" or not toolpath.wire_feed or not ramped:
+        return toolpath
+    share = toolpath.wire_feed / process.travel_speed
+    return replace(toolpath, layers=tuple(
+        replace(layer, beads=tuple(replace(bead, wire_share=share) for bead in layer.beads)) for layer in toolpath.layers))
+
+
 def _of_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     """The toolpath with an issue where classes of beads, or their starts and ends, have travel speeds of their own at which
     the wire does not balance, and no schedule of their own that could feed it otherwise."""
     given = (toolpath.wire_feed or 0.0) * process.wire.section
-    if given == 0.0 or not _at_other_speeds(process):
+    if given == 0.0 or not _at_other_speeds(process) or any(bead.wire_share is not None for _, _, bead in toolpath):
         return toolpath
     off = [one for one in taken_of(toolpath) if by_wire(one, process) and abs(given - one.rate) > TOLERANCE * one.rate]
     if not off:

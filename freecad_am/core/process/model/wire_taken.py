@@ -9,6 +9,7 @@ import numpy as np
 
 from ...motion import AT_END, AT_START, MIDDLE
 from ...parameters.process import ProcessParameters
+from ...parameters.ramp import ramp
 from ...toolpath import Bead, Toolpath
 from ...types import Array
 
@@ -16,13 +17,15 @@ _KEYS = {MIDDLE: "", AT_START: ".start", AT_END: ".end"}
 
 
 class Taken(NamedTuple):
-    """What beads of a class take of the wire, mm3/s, in one of PHASES of them, and layer and bead of the first of these."""
+    """What beads of a class take of the wire, mm3/s, in one of PHASES of them, and layer and bead of the first of these.
+    section: mm2 that they count in the mean."""
 
     bead_class: str
     phase: int
     rate: float
     layer: int
     bead: int
+    section: float
 
     @property
     def name(self) -> str:
@@ -50,7 +53,11 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
     known = [one for one in taken_of(toolpath) if by_wire(one, process)]
     if not known or given == 0.0:
         return None
-    return max(((abs(given / one.rate - 1.0), one.layer, one.bead) for one in known), key=lambda found: found[0])
+    follows = any(bead.wire_share is not None for _, _, bead in toolpath)  # the travel speed: so many mm3 to a mm
+    return max((
+        (abs((given / process.travel_speed / one.section if follows else given / one.rate) - 1.0), one.layer, one.bead)
+        for one in known
+    ), key=lambda found: found[0])
 
 
 def taken_of(toolpath: Toolpath) -> list[Taken]:
@@ -63,28 +70,35 @@ def taken_of(toolpath: Toolpath) -> list[Taken]:
     for layer, number, bead in toolpath:
         for phase, sum_ in _sums(bead, toolpath.bead_width * toolpath.layer_height, toolpath).items():
             key = bead.bead_class, phase
-            sums[key] = sums.get(key, np.zeros(2)) + sum_
+            sums[key] = sums.get(key, np.zeros(3)) + sum_
             first.setdefault(key, (layer, number))
-    return [Taken(*key, float(volume / time), *first[key]) for key, (volume, time) in sums.items() if time > 0.0]
+    return [
+        Taken(*key, float(volume / time), *first[key], float(volume / length))
+        for key, (volume, time, length) in sums.items() if time > 0.0
+    ]
 
 
 def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[int, Array]:
-    """mm3 and s (2,) of a bead, by phase; before joints are planned by the lengths of its phases alone."""
+    """mm3, s and mm (3,) of a bead, by phase; before joints are planned by the lengths of its phases alone."""
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     section: Array | float = usual
     if bead.width is not None or bead.height is not None:
         high = toolpath.layer_height if bead.height is None else bead.height
         at = high * (np.full(len(bead), toolpath.bead_width) if bead.width is None else bead.width)
         section = 0.5 * (at[1:] + at[:-1])
-    both = np.stack([section * length, length / bead.speed[1:]])
+    both = np.stack([section * length, length / bead.speed[1:], length])
     if bead.phase is not None:
         return {phase: both[:, bead.phase[1:] == phase].sum(axis=1) for phase in sorted(set(bead.phase[1:].astype(int)))}
     whole = both.sum(axis=1)
     if not bead.ends:
         return {MIDDLE: whole}
-    first, slow, last, late = bead.ends
+    first, slow, last, late = bead.ends[:4]
     found, size = {MIDDLE: whole * (1.0 - (first + last) / length.sum())}, length.sum()
+    for long, (one, other) in zip(bead.ends[4:], ((slow, float(bead.speed[1])), (float(bead.speed[-1]), late))):
+        steps = ramp(long, one, other)
+        if len(steps):
+            found[MIDDLE] = found[MIDDLE] + [0.0, float((long / len(steps) / steps).sum()) - whole[1] * long / size, 0.0]
     for phase, long, speed in ((AT_START, first, slow), (AT_END, last, late)):
         if long:
-            found[phase] = np.array([whole[0] * long / size, long / speed if speed else whole[1] * long / size])
+            found[phase] = np.array([whole[0] * long / size, long / speed if speed else whole[1] * long / size, long])
     return found

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Ramps between the speed of a phase at an end of a bead and that of the bead, in steps: a move has one speed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..types import Array
+
+SHARE, STEPS = 0.1, 20  # of the faster speed that a step changes at most, and how many steps there may be
+SHORTEST = 0.5  # mm of a step
+
+
+def ramp(length: float, start: float, end: float) -> Array:
+    """The speeds (k,) of k equal parts of `length` mm, between those at its start and its end: that of a steady ramp in the
+    middle of each. None where there is no length, or nothing to change: 0 mm/s is the other one's."""
+    if length <= 0.0 or start == end or not start or not end:
+        return np.zeros(0)
+    change = abs(end - start) / max(start, end)
+    count = max(1, min(int(np.ceil(change / SHARE)), STEPS, int(length / SHORTEST)))
+    return np.asarray(start + (end - start) * (np.arange(count) + 0.5) / count)
