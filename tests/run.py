@@ -29,10 +29,10 @@ WINDOW_TIMEOUT = 3000  # s for all tests of the window; one that hangs ends much
 HEADLESS_TIMEOUT = 2400  # s for a part without a window
 LONG_TIMEOUT = 8 * 3600  # with long tests, and where tests are named
 # folders and files of parts of their own, and one more part has all the rest: first the BESIDE ones that only compute,
-# beside the windows; then what looks at the clock, longest first and down to a minute, so that both cores end together
+# beside the windows; then the rest, and the others longest first and down to a minute, so that both cores end together
 FOLDERS = (
     ("core/strategies",), ("core/filling", "core/slicing"), ("core/planning", "core/kinematics"),
-    ("batch/test_wall_examples.py",), ("objects", "interop"), ("batch",), ("robust",),
+    ("batch",), ("objects", "interop"), ("robust",), ("batch/test_wall_examples.py",),
     tuple(f"batch/test_{name}.py" for name in ("plan_command", "batch_command", "export_command", "interruption")),
     ("brep",),
     tuple(f"batch/test_{name}.py" for name in (
@@ -47,8 +47,9 @@ WINDOWS = (
     ))),
     ("tutorials", *(f"test_{name}.py" for name in ("redundancy_map", "new_machine", "flow", "docks", "tree", "clicks"))),
 )
-# of a core: what a window has beside two others, and what each of two BESIDE parts, far behind them, has of what they leave
-WAITING, LEFT = 0.4, 0.6
+# of a core: what a window has beside two others; what each of two BESIDE parts, far behind them, has of what they leave; and
+# what other parts have, which wait for processes of theirs, so that three of them keep two cores busy
+WAITING, LEFT, USUAL = 0.4, 0.6, 0.8
 BEHIND = 15  # the niceness of the headless tests, so that no click in a window comes late for them
 # what depends on FreeCAD's version (docs/testing.md tells why): documents, shapes and what is written of them, without those
 # whose numbers are those of core, of triangles too; commands as they start, plan, export and are interrupted; of the window
@@ -226,7 +227,7 @@ def headless_parts(arguments: list[str]) -> list[Part]:
     if paths:
         return [Part("headless", lambda: run_headless(arguments))]
     return [
-        Part(name, partial(run_headless, [*arguments, *places]), LEFT if number < BESIDE else 1.0)
+        Part(name, partial(run_headless, [*arguments, *places]), LEFT if number < BESIDE else USUAL)
         for number, (name, places) in enumerate(cut(FOLDERS, "tests"))
     ]
 
@@ -307,7 +308,7 @@ def provide_version(version: str) -> None:
 
 def all_parts(arguments: list[str]) -> list[Part]:
     """What is to be run, in the order in which the parts begin: windows first, as they wait most and need something beside
-    them that does not, and the rest of all last."""
+    them that does not, and the shortest last."""
     in_version = []
     if arguments[:1] == ["--with-freecad"] and len(arguments) > 1:
         version, arguments = arguments[1], arguments[2:]
@@ -316,12 +317,12 @@ def all_parts(arguments: list[str]) -> list[Part]:
         without = (*HEADLESS_OF_VERSION, *(() if options else LONG_IN_VERSION))
         in_version = [
             Part(f"{version} {name}", partial(run_in_version, version, [*options, *places]), load)
-            for name, places, load in (("headless", without, 1.0), ("window", WINDOW_OF_VERSION, WAITING))
+            for name, places, load in (("headless", without, USUAL), ("window", WINDOW_OF_VERSION, WAITING))
         ]
     headless, window = apart(arguments)
     windows = [] if window is None else window_parts(window)
     others = [] if headless is None else headless_parts(headless)
-    return [*windows, *others[:BESIDE], *in_version, *others[BESIDE:]]
+    return [*windows, *others[:BESIDE], *in_version, *others[len(FOLDERS):], *others[BESIDE:len(FOLDERS)]]
 
 
 def compile_modules() -> None:

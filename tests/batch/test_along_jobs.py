@@ -86,7 +86,9 @@ def bend_of(points, straight=15.0):
     return np.arctan2(off[:, 2], -off[:, 0]), np.hypot(off[:, 0], off[:, 2])
 
 
-@pytest.mark.parametrize(("make", "guide", "spare"), [(elbow, "{file: spine.brep}", 1e-4), (beam, "auto", 0.15)])
+@pytest.mark.parametrize(("make", "guide", "spare"), [
+    pytest.param(elbow, "{file: spine.brep}", 1e-4, marks=pytest.mark.long), (beam, "auto", 0.15),
+])
 def test_a_bent_part_is_filled_by_planes_normal_to_its_spine(planned, make, guide, spare):
     part = make()
     done, report, rows = planned(part, guide, spine(), band="35 %")

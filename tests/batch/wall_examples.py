@@ -59,8 +59,6 @@ class Example:
 
 EXAMPLES = (
     Example("tube-on-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), has_cell=True),
-    Example("walls/wide-tube-on-pipe", "walls/wide-tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0)),
-    Example("walls/skewed-bend", "walls/skewed-bend.step", 4.0, rod(200.0, 75.0, 30.0), has_cell=True),
     Example("walls/flared-shell-on-dome", "walls/coque évasée.step", 4.0, dome),
     Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 8.0, cone, spacing_error=1e-3, thicker=True),
     Example("walls/elbow-on-block", "walls/elbow.step", 4.0, sloping_block, has_cell=True, spacing_error=1e-3),
@@ -75,6 +73,8 @@ EXAMPLES = (
     ),
 )
 LONG = (
+    Example("walls/wide-tube-on-pipe", "walls/wide-tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0)),
+    Example("walls/skewed-bend", "walls/skewed-bend.step", 4.0, rod(200.0, 75.0, 30.0), has_cell=True),
     Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate, spacing_error=1e-3),
     Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 4.0, cone, spacing_error=1e-3),
 )

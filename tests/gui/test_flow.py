@@ -74,6 +74,7 @@ def test_tools_stand_in_the_order_of_the_work(person, hemisphere):
 @pytest.mark.parametrize(
     "how", ["body", "feature", "face in the part", "link", "face of a link", "the part", "twice nested"]
 )
+@pytest.mark.always("body", "face in the part", "face of a link", "twice nested")
 def test_a_part_of_revolution_however_it_is_selected(person, coarse, how):
     doc = App.newDocument("Cups")
     outer, body = cup(doc)

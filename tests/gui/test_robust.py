@@ -360,6 +360,7 @@ def test_a_job_copied_into_another_document(person, hemisphere, coarse, whole):
     use_everything(person, other)
 
 
+@pytest.mark.long
 def test_undo_and_redo_across_recomputes(person, job):
     keys = [[obj.Key for obj in api.stages_of(job)]]
     for height in (20, 30):

@@ -191,7 +191,7 @@ def test_short_beads_that_close_gaps_go_on_until_they_are_long_enough(pattern):
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
-@pytest.mark.always
+@pytest.mark.always("connected", "contours", "lines", "spiral", "gyroid")
 def test_scale_changes_nothing_and_neither_does_doing_it_again(pattern):
     loops = SHAPES["blade"]
     one = filled("blade", pattern)

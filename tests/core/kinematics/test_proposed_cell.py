@@ -15,9 +15,11 @@ from freecad_am.core.parameters.cell import CellParameters
 from tests.core.kinematics.arms import EXAMPLES
 
 ROBOTS = [name for name in EXAMPLES if machines.load(name).opw is not None]
+OF_EACH_MAKER = {name.partition("-")[0]: name for name in ROBOTS}.values()
 
 
 @pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.always(*OF_EACH_MAKER)
 def test_every_robot_holds_a_dome_there_within_its_limits(name):
     """Any point of the dome, leaning any way: some rotation suits, told by the chain's poses and the limits of the file."""
     parameters = proposed(CellParameters(machine=name))
@@ -83,6 +85,7 @@ def inside_hulls(points, hulls):
 
 
 @pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.always(*OF_EACH_MAKER)
 def test_links_as_drawn_need_not_touch_the_platform_that_is_carried(name):
     """Points all over a platform 10 mm wider all round and hulls of what is drawn: at any lean a rotation within the limits
     has none inside. Where the papers have their point, an upright tool has no such rotation with the default robot."""

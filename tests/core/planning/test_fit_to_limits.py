@@ -64,7 +64,7 @@ def test_beads_are_split_only_where_the_stroke_is_less_than_a_turn(sliced, cell_
 
 @pytest.mark.parametrize("half", [2.0, 8.0, 20.0, 60.0])
 @pytest.mark.parametrize("kept", [2, 4, 8, 17])
-@pytest.mark.always
+@pytest.mark.always("2-2.0", "4-8.0", "17-60.0")
 def test_beads_of_few_points_are_cut_no_finer_than_that(sliced, cell_of, with_axis_6, kept, half):
     """An axis with hardly any stroke asks for more pieces of a coarse bead than it has segments."""
     whole = sliced("sphere", 15.0)

@@ -116,7 +116,7 @@ def test_outlines_are_those_where_it_is_cut(cut_at, share):
 
 
 @pytest.mark.parametrize("fill", ["contours", "lines", "zigzag", "spiral"])
-@pytest.mark.always("contours", "zigzag")
+@pytest.mark.always("contours")
 def test_covers_what_beads_can_reach_and_nothing_else(fill):
     """Counted in pixels: what lies within half a spacing of a bead, against the section opened by a bead's half width."""
     bar = box((30, -15, 0), (75, 15, 8), "bar")
@@ -345,6 +345,7 @@ def test_no_layer_takes_less_than_asked_for_and_islands_cool_alike():
 
 
 @pytest.mark.parametrize("way", [(0, 0, 1), (1, 0, 0), (0, -1, 0), (1, 2, -3)])
+@pytest.mark.always("way1", "way3")
 def test_any_direction(way):
     """The same part turned is deposited alike: as many layers, as long beads, the tool along the direction."""
     unit = np.array(way) / np.linalg.norm(way)
@@ -464,7 +465,7 @@ def test_random_hulls_are_filled():
 
 
 @pytest.mark.parametrize(("angle", "step"), [(0.0, 0.0), (90.0, 0.0), (30.0, 40.0), (-15.0, -120.0)])
-@pytest.mark.always
+@pytest.mark.always("0.0-0.0", "30.0-40.0", "-15.0--120.0")
 def test_closed_beads_of_plane_layers_start_where_the_seam_says(angle, step):
     """On a ring that lies beside the origin: each layer's by the azimuth about its middle; where a box is farthest out that
     way. With a step no layer's start lies over that of the layer below."""

@@ -102,6 +102,7 @@ def made(name):
 
 
 @pytest.mark.parametrize("name", WALLS)
+@pytest.mark.always("a half shell", "three tangent faces", "a bend", "a cap")
 def test_layers_are_a_height_apart_and_cover_the_wall(name):
     wall, height, toolpath = made(name)
     for below, layer in zip(toolpath.layers, toolpath.layers[1:]):  # chords are off by 0.0003 mm
