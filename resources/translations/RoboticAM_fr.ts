@@ -9968,8 +9968,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/notes.py"/>
-        <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the width asked for takes a speed outside of the table&apos;s {4} to {5} mm/min; it is kept within, and the width is not held: it is {6} mm at its farthest from the {7} mm</source>
-        <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm</translation>
+        <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the width asked for takes a speed outside of the table&apos;s {4} to {5} mm/min; it is kept within, and the width is not held: it is {6} mm at its farthest from the {7} mm. Straight beads of the table are {8} to {9} mm wide: ask for a process.bead_width among these, or measure beads at other speeds</source>
+        <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm. Les cordons droits du tableau ont {8} à {9} mm de large : demandez une process.bead_width parmi celles-ci, ou mesurez des cordons à d&apos;autres vitesses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>

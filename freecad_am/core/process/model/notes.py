@@ -67,11 +67,13 @@ def _outside(made: Sequence[Held], length: Array, wanted: float, model: BeadMode
         beads = sum(bool(one.clamped[1:].any()) for one in made if one.clamped is not None)
         width = np.concatenate([one.bead.width[1:] for one in made if one.bead.width is not None])[clamped]
         worst = float(width[np.abs(width - wanted).argmax()])
+        least, most = np.sort(model.widths(np.array(model.speeds), np.full(2, np.inf)))
         found.append(Issue(
             WARNING if slow > CLAMPED else NOTE, "OUTSIDE_TABLE", f"on {100.0 * slow:.3g} % of the length, in {beads} of "
             f"{len(made)} beads and {len(width)} segments, the width asked for takes a speed outside of the table's "
             f"{low:.4g} to {high:.4g} mm/min; it is kept within, and the width is not held: it is {worst:.3g} mm at its "
-            f"farthest from the {wanted:g} mm",
+            f"farthest from the {wanted:g} mm. Straight beads of the table are {least:.4g} to {most:.4g} mm wide: ask for a "
+            "process.bead_width among these, or measure beads at other speeds",
         ))
     if bent > 0.0:
         found.append(Issue(
