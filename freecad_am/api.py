@@ -21,12 +21,12 @@ What a function alone needs is imported when it is called: most of the time of a
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from .core.geometry.curves.bead_curves import POINT_FILES
 from .core.issues import InputError, Issue
-from .core.kinematics.machines import machine as machines
 from .core.kinematics.proposed_cell import cell_of
 from .core.kinematics.urdf import cell as urdf_cell
 from .core.kinematics.urdf import machine as urdf_machine
@@ -60,7 +60,7 @@ from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
 from .objects import user_machines
 from .objects.cell import Cell
-from .objects.checks.controllers import written_by
+from .objects.checks.controllers import post_of
 from .objects.fields.naming import proposed_name
 from .objects.job_group import grouped
 from .objects.joint_path import JointPath
@@ -69,13 +69,13 @@ from .objects.results.findings import issues_of
 from .objects.revival import revive
 from .objects.toolpath import Toolpath, own_process
 from .objects.work.progress import told_to
-from .posts import catalogue
 
 __all__ = (
     "change", "export", "export_cell", "export_report", "export_waypoints", "export_wires", "inspect", "issues", "make_all",
     "make_cam_path", "make_cell", "make_cladding_feature", "make_curves_feature", "make_developable_feature", "make_feature",
     "make_feature_of", "make_joint_path", "make_program", "make_scan", "make_solid_feature", "make_surface_feature",
-    "make_toolpath", "make_trajectory", "open_part", "place", "proposed_name", "recompute", "result", "stages_of", "told_to",
+    "make_toolpath", "make_trajectory", "open_part", "place", "proposed_name", "read_cell",
+    "recompute", "result", "stages_of", "told_to",
 )
 
 
@@ -147,8 +147,8 @@ def inspect(
 @one_thread()
 def make_all(
     doc: Any, source: Any, faces: Sequence[str] = (), *, kind: str = "revolution", layers: str = "", substrate: Any = None,
-    further: Sequence[Any] = (), base_faces: Sequence[str] = (), name: str = "", machine: str = "", post: str = "",
-    process: Mapping[str, Any] | None = None, then: Sequence[Mapping[str, Any]] = (), mend: float = 0.0,
+    further: Sequence[Any] = (), base_faces: Sequence[str] = (), name: str = "", machine: str = "", cell: str = "",
+    post: str = "", process: Mapping[str, Any] | None = None, then: Sequence[Mapping[str, Any]] = (), mend: float = 0.0,
 ) -> tuple[Any, ...]:
     """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
 
@@ -158,14 +158,15 @@ def make_all(
     usual one. The program is for the machine's controller, in the words of `post` where
     it reads them; there is none when no post is known that writes joint motion of this set-up for it, or the joint path is
     infeasible. process: parameters of the toolpath by key. A robot other than the default one gets a deposition point and a
-    branch that suit it; what reaches below the platform is put on it, where mounting it by the feature does that.
+    branch that suit it; `cell`, the path of a saved cell, stands in place of the machine. What reaches below the platform is
+    put on it, where mounting it by the feature does that.
     `am.make_all(doc, doc.Pot)`
 
     then: features that are deposited after it, in this order and one program, each by its `source`, `kind`, `layers`,
     `faces`, `substrate`, `further`, `base_faces` and `mend`; they come after the feature in what is returned.
     `am.make_all(doc, doc.Hub, then=[{"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}])`
     """
-    chosen = cell_of(machine, user_machines.folders())
+    chosen = read_cell(cell) if cell else cell_of(machine, user_machines.folders())
     with one_step(doc, "New job"):
         made = [make_cell(doc, parameters=chosen)]
         first = {
@@ -182,14 +183,23 @@ def make_all(
             toolpath = make_toolpath(doc, features, made[0], **(process or {}))
         path = make_joint_path(doc, toolpath, made[0])
         made += [*features, toolpath, path]
-        posts = written_by(machines.load(chosen.machine, user_machines.folders()))
-        wanted = post or ProgramParameters().post
-        post = wanted if posts is None or wanted in posts else next(
-            iter(catalogue.fitting(posts, ProgramParameters().motion, chosen.setup)), "")
+        post = post_of(chosen, post, user_machines.folders())
         if path.Status == "up to date" and post:
             made.append(make_program(doc, path, name=name or proposed_name(source.Label), post=post))
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
+
+
+def read_cell(file: str) -> CellParameters:
+    """The cell in a file of its own, as `export_cell` writes it and jobs name it; paths in it are relative to it.
+
+    `am.make_cell(doc, parameters=am.read_cell("my-cell.yaml"))` Raises InputError about a key of the file.
+    """
+    from .sections import cell as saved
+
+    found = saved.read(os.path.abspath(file), os.path.abspath(file))
+    assert found is not None  # a file was named
+    return found
 
 
 def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:

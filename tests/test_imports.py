@@ -61,12 +61,13 @@ OURS = {
     },
     "brep": {"core/issues", "core/geometry", "core/one_thread", "core/collision"},
     "objects": {"core", "brep", "posts", "verify", "kdl"},
+    "sections": {"core", "objects"},
     "interop": {"core", "objects"},
     "plots": {"core"},
     "report": {"core", "objects", "plots"},
     "macro": {"core", "objects", "posts", "interop", "report"},
-    "api": {"core", "objects", "posts", "macro"},
-    "batch": {"core", "api", "objects", "posts", "kdl", "brep", "read_back", "verify", "report"},
+    "api": {"core", "objects", "posts", "macro", "sections"},
+    "batch": {"core", "api", "sections", "objects", "posts", "kdl", "brep", "read_back", "verify", "report"},
     "gui": {"core", "api", "objects", "posts", "brep", "plots"},
 }
 # the foreign modules a part of the package may use besides the standard library
@@ -83,7 +84,8 @@ FOREIGN = {
     "api": set(),
     "plots": {"numpy", "matplotlib"},
     "report": {"numpy"},
-    "batch": {"numpy", "scipy", "yaml", "FreeCAD", "Part", "distributed"},
+    "sections": {"FreeCAD", "yaml"},
+    "batch": {"numpy", "scipy", "FreeCAD", "Part", "distributed"},
     "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }
 # single files that may use more

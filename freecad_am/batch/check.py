@@ -34,10 +34,11 @@ from freecad_am.objects.checks import controllers
 from freecad_am.posts import catalogue
 from freecad_am.read_back import driven
 from freecad_am.report import figures
+from freecad_am.sections import cell as job_cell
+from freecad_am.sections import tree
 
 from . import paths
-from .job import cell as job_cell
-from .job import job, tree
+from .job import job
 from .outputs import folder as outputs
 
 # of the promises about joints and rapids, in their order, where one is not kept

@@ -9,9 +9,9 @@ from typing import Any
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.machines import machine
+from freecad_am.sections import quantity
 
 from . import paths
-from .job import quantity
 
 
 def listing() -> str:

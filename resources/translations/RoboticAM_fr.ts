@@ -1867,6 +1867,11 @@
         <translation>Cellule, élément, trajectoire d&apos;outil, trajectoire articulaire et programme sont faits avec leurs valeurs par défaut ; double-cliquez sur l&apos;un d&apos;eux dans l&apos;arbre pour le modifier.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
+        <source>Cells</source>
+        <translation>Cellules</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Cell…</source>
         <translation>Cellule…</translation>
@@ -4627,6 +4632,16 @@
         <translation>Enregistrer comme image (PNG, SVG, PDF), ou les valeurs (CSV)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
+        <source>Save cell</source>
+        <translation>Enregistrer la cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
+        <source>Save cell…</source>
+        <translation>Enregistrer la cellule…</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Save figures</source>
         <translation>Enregistrer les chiffres</translation>
@@ -5463,8 +5478,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/fields.py"/>
-        <source>The machine that deposits; the program is written for its controller</source>
-        <translation>La machine qui dépose ; le programme est écrit pour sa commande</translation>
+        <source>The machine that deposits, or a saved cell; the program is written for its controller</source>
+        <translation>La machine qui dépose, ou une cellule enregistrée ; le programme est écrit pour sa commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/canvas.py"/>
@@ -10405,6 +10420,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>rz</source>
         <translation>RZ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <source>saved cell: {}</source>
+        <translation>cellule enregistrée : {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/fit.py"/>

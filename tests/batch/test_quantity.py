@@ -7,9 +7,9 @@ import random
 import FreeCAD
 import pytest
 
-from freecad_am.batch.job import quantity
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
+from freecad_am.sections import quantity
 
 KINDS = {f.LENGTH: "Length", f.ANGLE: "Angle", f.SPEED: "Velocity", f.TIME: "TimeSpan"}
 

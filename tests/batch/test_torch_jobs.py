@@ -10,8 +10,8 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.batch.job import cell as job_cell
 from freecad_am.interop import cell_file
+from freecad_am.sections import cell as job_cell
 
 CELL = """\
 cell:

@@ -8,10 +8,10 @@ import json
 import numpy as np
 import pytest
 
-from freecad_am.batch.job import cell as job_cell
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.interop import cell_file
+from freecad_am.sections import cell as job_cell
 from tests.kdl_links import KdlLinks
 
 PART = np.array([[0.0, 0.0, 0.0], [40.0, 0.0, 0.0], [0.0, 40.0, 0.0], [0.0, 0.0, 40.0]])

@@ -12,11 +12,11 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.batch.job import cell as job_cell
 from freecad_am.core.geometry.frames import rotation_about
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.interop.lines import Line, attitudes, of_motion, of_toolpath, thinned
+from freecad_am.sections import cell as job_cell
 from tests.core.kinematics.test_calibration import FILE as calibrated_robot
 
 LABEL = "Hémisphère n° 1"

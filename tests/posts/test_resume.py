@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A text that resumes at a layer or a bead: driven from its words alone it comes from where it is safe, over what the text it
-is the rest of has laid until then, and goes on as that one does."""
+"""A text that resumes at a layer or a bead: driven from its words alone it comes from where it is safe, over what the whole
+text has laid until then, and goes on as that one does."""
 
 import dataclasses
 

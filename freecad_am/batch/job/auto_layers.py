@@ -12,8 +12,7 @@ from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.process.model import bead_table
 from freecad_am.core.process.model.wire import with_model
-
-from . import quantity
+from freecad_am.sections import quantity
 
 WORD = "auto"
 HEIGHT, SPACING = "layer_height", "bead_spacing"

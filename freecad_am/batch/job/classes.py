@@ -8,8 +8,7 @@ from typing import Any
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import bead_classes
-
-from . import fields, quantity
+from freecad_am.sections import fields, quantity
 
 
 def as_text(section: dict[str, Any]) -> dict[str, Any]:

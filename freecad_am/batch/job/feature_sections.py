@@ -13,10 +13,12 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.families import AUTO, KINDS, NEEDED, NONE, family_of
+from freecad_am.sections import fields, quantity
+from freecad_am.sections.paths import absolute
 
 from . import classes as job_classes
-from . import fields, material, quantity
-from .part_source import PartSource, absolute, part_of
+from . import material
+from .part_source import PartSource, part_of
 
 
 def kept_clear(kind: str) -> tuple[str, ...]:

@@ -13,8 +13,9 @@ from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family, family_of
+from freecad_am.sections import fields, tree
 
-from . import auto_layers, fields, material, tree
+from . import auto_layers, material
 from . import classes as job_classes
 from .feature_sections import (
     kept_clear,

@@ -17,9 +17,9 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.sequence import BY_FEATURE, BY_HEIGHT
+from freecad_am.sections import cell as job_cell
+from freecad_am.sections import fields, quantity, tree
 
-from . import cell as job_cell
-from . import fields, quantity, tree
 from .features import JobFeature, one_feature, process_of_all, several
 from .part_source import PartSource
 

@@ -15,9 +15,8 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import bead_classes
 from freecad_am.core.parameters import field as f
 from freecad_am.core.process.model import bead_table
-
-from . import fields, quantity, tree
-from .part_source import absolute
+from freecad_am.sections import fields, quantity, tree
+from freecad_am.sections.paths import absolute
 
 KEY = "process.material"
 FOLDER = Path(__file__).resolve().parents[2] / "materials"

@@ -8,12 +8,12 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any
 
-from freecad_am.core.geometry.located import expanded, is_there, located
+from freecad_am.core.geometry.located import is_there
 from freecad_am.core.geometry.mesh.file_unit import MESHES, refuse_scale
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
-
-from . import fields, quantity
+from freecad_am.sections import fields, quantity
+from freecad_am.sections.paths import absolute
 
 _EDGE = re.compile(r"Edge[1-9]\d*", re.ASCII)
 _FACE = re.compile(r"Face[1-9]\d*", re.ASCII)
@@ -135,10 +135,3 @@ def _settings(section: Any, part: str) -> list[tuple[str, str, str]]:
                 raise InputError("BAD_VALUE", f"{part}.set.{name}.{key}", "give one value such as 45 mm")
             settings.append((name, key, quantity.shown(value) if isinstance(value, bool) else str(value)))
     return settings
-
-
-def absolute(file: str, path: str) -> str:
-    """`file` as an absolute path; relative ones start at the folder of the job file `path`."""
-    found = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(path)), expanded(file)))
-    located(found)  # who collects what a job is made of is told of it
-    return found

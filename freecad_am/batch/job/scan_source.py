@@ -11,9 +11,8 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.inspection import AUTO, BEST, NONE, UNITS, InspectionParameters
 from freecad_am.core.parameters.scan import PREFIX, ScanParameters
-
-from . import fields as job_fields
-from .part_source import absolute
+from freecad_am.sections import fields as job_fields
+from freecad_am.sections.paths import absolute
 
 FITS = (AUTO, BEST, NONE)
 OWN = ("scan", "scan_unit", "scan_fit", "scan_pairs")

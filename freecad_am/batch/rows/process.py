@@ -12,11 +12,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from freecad_am.core.issues import AmError, Issue, has_errors
+from freecad_am.sections import tree
 
 from .. import run as planning
 from .. import supervised
 from ..console import Session
-from ..job import job, tree
+from ..job import job
 
 CHECKED = "checked"  # status of a row that was not planned
 

@@ -13,9 +13,10 @@ from typing import Any
 
 from freecad_am.core.geometry import located
 from freecad_am.core.issues import InputError
+from freecad_am.sections import tree
 
 from .. import run
-from ..job import job, tree
+from ..job import job
 
 SETTING = "part.set."
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.filled import GEODESIC
-from ...objects.fields import preferences
+from ...objects.fields import preferences, saved_cells
 from .. import recorded
 from .proposal import DEVELOPABLE, REVOLUTION, SOLID, JobProposal
 
 
 def arguments(found: JobProposal, machine: str) -> dict[str, str]:
-    """Keywords and their values as text, of what was proposed for a machine."""
+    """Keywords and their values as text, of what was proposed for a machine or a saved cell."""
     first = found.parts[0]
     given = {"source": recorded.reference(first.obj)}
     if found.kind != REVOLUTION:
@@ -26,7 +26,9 @@ def arguments(found: JobProposal, machine: str) -> dict[str, str]:
         given["faces"] = repr(list(first.names))
         if found.ground is not None:
             given["substrate"] = recorded.reference(found.ground.obj)
-    if machine != CellParameters().machine:
+    if saved_cells.is_file_of_cell(machine):
+        given["cell"] = repr(machine)
+    elif machine != CellParameters().machine:
         given["machine"] = repr(machine)
     if preferences.post():
         given["post"] = repr(preferences.post())

@@ -7,6 +7,7 @@ from typing import Any
 
 from PySide import QtGui
 
+from ...objects.fields import saved_cells
 from ..texts.translation import tr
 from ..widgets import choices
 
@@ -31,12 +32,13 @@ def shown(name: str, help: str) -> Any:
     return line
 
 
-def machines(chosen: str) -> Any:
-    """The machines there are, one of them chosen."""
+def machines(chosen: str, doc: Any) -> Any:
+    """The machines there are, one of them chosen, and the saved cells, first."""
     machine = QtGui.QComboBox()
     machine.setObjectName("Machine")
-    machine.setToolTip(tr("The machine that deposits; the program is written for its controller"))
+    machine.setToolTip(tr("The machine that deposits, or a saved cell; the program is written for its controller"))
     machine.setEditable(True)
-    choices.offer(machine, choices.machines())
+    cells = [(path, tr("saved cell: {}").format(name)) for path, name in saved_cells.known(doc)]
+    choices.offer(machine, [*cells, *choices.machines()])
     choices.enter(machine, chosen)
     return machine

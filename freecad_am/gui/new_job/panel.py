@@ -70,7 +70,7 @@ class JobPanel:
         self.kind = self._kinds()
         self.part = shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
         self.ground = shown("Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view"))
-        self.machine = machines(_machine_before(self.document))
+        self.machine = machines(_machine_before(self.document), self.document)
         self.name = inputs.NameChoice("")
         self.fold = Fold(tr("Inputs"), True)
         rows = (

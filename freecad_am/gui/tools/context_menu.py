@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
+from PySide import QtGui
 
 from ... import api
 from ...core.issues import AmError
+from ...objects.fields import saved_cells
 from ...objects.job_group import stages_in
 from ...objects.stage import stage_of
 from ...objects.staleness import UP_TO_DATE
@@ -36,6 +40,8 @@ def of_stage(menu: Any, obj: Any) -> None:
         _add(menu, "Edit", tr("Edit…"), lambda: registry.edit(obj))
     fits = obj.Status == UP_TO_DATE
     _add(menu, "Renew", tr("Compute again") if fits else tr("Renew"), lambda: renew(obj, fits))
+    if kind == "cell":
+        _add(menu, "SaveCell", tr("Save cell…"), lambda: _save_cell(obj))
     if kind in ("joint path", "program"):
         _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(obj), bool(obj.Key))
     for tool, text in _next_tools(kind):
@@ -162,6 +168,23 @@ def _export(obj: Any) -> None:
     from ..program import window
 
     window.export(obj)
+
+
+def _save_cell(obj: Any) -> None:
+    """Ask for a file, first one in the folder that New Job offers cells of, and write the cell into it."""
+    first = saved_cells.path_of(os.path.join(saved_cells.own_folder(), obj.Label))
+    with contextlib.suppress(OSError):  # which is told where the file cannot be written
+        os.makedirs(os.path.dirname(first), exist_ok=True)
+    path, _ = QtGui.QFileDialog.getSaveFileName(
+        Gui.getMainWindow(), tr("Save cell"), first, f"{tr('Cells')} {saved_cells.PATTERN}")
+    if not path:
+        return
+    path = saved_cells.path_of(path)
+    Gui.doCommand(recorded.IMPORT)
+    try:
+        Gui.doCommand(f"am.export_cell({recorded.reference(obj)}, {path!r})")
+    except AmError as error:
+        App.Console.PrintError(error_line(error))
 
 
 def _report(obj: Any) -> None:

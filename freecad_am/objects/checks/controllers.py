@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ...core.issues import InputError
 from ...core.kinematics.cell import Cell
+from ...core.kinematics.machines import machine as machines
 from ...core.kinematics.machines.machine import UNKNOWN_REMARK, Machine
+from ...core.parameters.cell import CellParameters
+from ...core.parameters.external import externals
 from ...core.parameters.program import ProgramParameters
 from ...core.toolpath import Toolpath
-from ...posts.catalogue import NAMES, controller
+from ...posts.catalogue import NAMES, controller, fitting
 
 APPROACH_POINTS = 50  # of the ways to a bead, which are counted with it, at most
 
@@ -88,6 +93,16 @@ def written_by(machine: Machine) -> tuple[str, ...] | None:
     if machine.posts is None or machine.pulses_per_degree:
         return machine.posts
     return tuple(post for post in machine.posts if not controller(post).pulses)
+
+
+def post_of(settings: CellParameters, wanted: str, folders: Sequence[str]) -> str:
+    """The post of a new program in a cell: the one that is wanted, '' for the usual one, where the controller reads it, else
+    one that writes the usual motion for it; '' where none does."""
+    posts, usual = written_by(machines.load(settings.machine, tuple(folders))), ProgramParameters()
+    if externals(settings.external):
+        posts = tuple(post for post in sorted(NAMES if posts is None else posts) if controller(post).external)
+    wanted = wanted or usual.post
+    return wanted if posts is None or wanted in posts else next(iter(fitting(posts, usual.motion, settings.setup)), "")
 
 
 def readers(cell: Cell) -> tuple[str, ...] | None:

@@ -12,9 +12,8 @@ import math
 from collections.abc import Iterable
 from typing import Any, TypeVar
 
-from freecad_am.core.issues import InputError
-from freecad_am.core.parameters import field as f
-
+from ..core.issues import InputError
+from ..core.parameters import field as f
 from . import quantity
 
 Parameters = TypeVar("Parameters")

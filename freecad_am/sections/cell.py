@@ -8,20 +8,19 @@ import dataclasses
 import os
 from typing import Any
 
-from freecad_am.core.geometry.located import is_there
-from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import arrangement, proposed_cell
-from freecad_am.core.kinematics.machines import calibration
-from freecad_am.core.kinematics.urdf import cell as urdf_cell
-from freecad_am.core.kinematics.urdf import machine as urdf_machine
-from freecad_am.core.kinematics.urdf import reference as urdf_reference
-from freecad_am.core.parameters import external, obstacles, touched
-from freecad_am.core.parameters import field as f
-from freecad_am.core.parameters.cell import NO_SHAPE, CellParameters
-from freecad_am.objects import user_machines
-
+from ..core.geometry.located import is_there
+from ..core.issues import InputError
+from ..core.kinematics import arrangement, proposed_cell
+from ..core.kinematics.machines import calibration
+from ..core.kinematics.urdf import cell as urdf_cell
+from ..core.kinematics.urdf import machine as urdf_machine
+from ..core.kinematics.urdf import reference as urdf_reference
+from ..core.parameters import external, obstacles, touched
+from ..core.parameters import field as f
+from ..core.parameters.cell import NO_SHAPE, CellParameters
+from ..objects import user_machines
 from . import fields, quantity, tree
-from .part_source import absolute
+from .paths import absolute
 
 PAPERS = "paper"  # limits
 

@@ -12,8 +12,8 @@ import math
 import re
 from typing import Any
 
-from freecad_am.core.issues import InputError
-from freecad_am.core.parameters import field as f
+from ..core.issues import InputError
+from ..core.parameters import field as f
 
 Dimension = tuple[int, int, int]  # powers of length, time and angle
 
@@ -116,12 +116,10 @@ def _read_with_freecad(text: str, key: str, example: str) -> tuple[float, Dimens
         raise InputError("BAD_VALUE", key, f"there is no value; give {example}")
     if _FOREIGN.search(text):  # FreeCAD passes over signs it does not know, which changes the meaning
         raise wrong
-    from .. import host
-
-    if not host.find_freecad():
-        raise wrong
-    import FreeCAD
-
+    try:
+        import FreeCAD
+    except ImportError:
+        raise wrong from None
     try:
         quantity = FreeCAD.Units.Quantity(text)
         length, _, time, _, _, _, _, angle = quantity.Unit.Signature

@@ -12,8 +12,8 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from freecad_am.core.geometry.file_content import content
-from freecad_am.core.issues import InputError
+from ..core.geometry.file_content import content
+from ..core.issues import InputError
 
 _INTEGER = re.compile(r"[-+]?\d{1,18}", re.ASCII)
 _FLOAT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
@@ -52,8 +52,10 @@ def read(path: str, kind: str = "a job", least: str = "part: {file: ...}", keys:
     """
     label = os.path.basename(path) or path
     text = text_of(path, label)
-    import yaml
-
+    try:
+        import yaml
+    except ImportError:
+        raise InputError("BAD_FILE", label, "this Python cannot read YAML; install PyYAML into it") from None
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         node = yaml.compose(text, Loader=loader)
