@@ -63,7 +63,7 @@ def verify(
     issues += time_issues(cell, planned, read)
     if read.position is None:
         return _verify_joints(cell, planned, program, read, chord_error, issues)
-    if not cell.free:
+    if not cell.machine.free:
         return _verify_tips(cell, planned, program, read, issues)
     return _verify_poses(cell, planned, program, read, chord_error, issues)
 

@@ -168,7 +168,7 @@ def _promises(motion: Motion, cell: Cell, known: Known) -> list[Promise]:
     rows = np.flatnonzero(motion.deposit)
     condition, least = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
     reached = motion.reachable[rows]
-    if cell.free and reached.any():
+    if cell.machine.free and reached.any():
         asked = known.joints.min_condition
         least[:] = CONDITION_FLOOR if isinstance(asked, str) else asked
         condition[reached] = _condition(cell, motion.joints[rows[reached]], known.joints.characteristic_length)

@@ -68,7 +68,7 @@ def _driven(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array]
         assert read.joints is not None
         shown = _in_turns(read.joints, continuous)
         return text_path.joint_path(cell, shown, text_path.digits(cell, read))[0], machine.from_controller(shown)
-    if not cell.free:
+    if not cell.machine.free:
         path = text_path.text_tips(cell, program, read)
         serial = followed.by_table(cell, read, path)
     else:

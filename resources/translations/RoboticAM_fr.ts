@@ -7177,12 +7177,12 @@
         <translation>l&apos;axe {0} se tient à {1} deg et son tour ne peut pas être dit sûrement dans une position cartésienne ; utilisez `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
+        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
         <source>axis {0} stands at {1} deg; the tool is up to {2} deg off the direction asked for</source>
         <translation>l&apos;axe {0} se tient à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
+        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
         <source>axis {0} stands at {1} deg; the tool is up to {2} deg off the direction asked for, more than joints.max_residual allows ({3} deg); lock the other axis, elsewhere or none</source>
         <translation>l&apos;axe {0} se tient à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée, plus que joints.max_residual ne permet ({3} deg) ; bloquez l&apos;autre axe, ailleurs ou aucun</translation>
     </message>
@@ -7247,7 +7247,7 @@
         <translation>le cordon {0} recommence ; gardez ensemble les lignes d&apos;un cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
+        <location filename="../../freecad_am/core/planning/methods/closed_form.py"/>
         <source>bead {0} of {1}</source>
         <translation>cordon {0} de {1}</translation>
     </message>
@@ -10382,7 +10382,7 @@
         <translation>retraits, transferts et approches menés à nouveau, en {0} points distants de {1} mm, contre les corps, le plateau et les cordons avec leur largeur et leur hauteur du moment</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/plan.py"/>
+        <location filename="../../freecad_am/core/planning/turns/locked.py"/>
         <source>robots need all their axes; only machines with rotary axes can do with four; use none</source>
         <translation>les robots ont besoin de tous leurs axes ; seules les machines à axes rotatifs peuvent se contenter de quatre ; utilisez none</translation>
     </message>
@@ -10712,7 +10712,7 @@
         <translation>les axes externes finiraient au numéro {0}, et la commande en a {1} ; prenez un premier plus petit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
+        <location filename="../../freecad_am/core/planning/methods/closed_form.py"/>
         <source>the axes leave the bead by {0} mm, its direction by {1} deg between two points however many are added: near a pole; tilt away from it</source>
         <translation>les axes quittent le cordon de {0} mm, sa direction de {1} deg entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;un pôle ; inclinez pour vous en éloigner</translation>
     </message>
@@ -13797,7 +13797,7 @@
         <translation>{0} d&apos;entre eux s&apos;appellent {1} ; donnez à chacun son propre nom</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
         <source>{0} of {1} directions cannot be turned to the torch by this machine; tilt less, or mount the part otherwise</source>
         <translation>{0} de {1} directions ne peuvent pas être tournées vers la torche par cette machine ; inclinez moins, ou montez la pièce autrement</translation>
     </message>
@@ -14042,7 +14042,7 @@
         <translation>{0} serait à {1} {2}, sa limite est {3} {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/methods/five_axis.py"/>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
         <source>{0} would be at {1} {2}, its limit is {3} {4}; move the part on the table</source>
         <translation>{0} serait à {1} {2}, sa limite est {3} {4} ; déplacez la pièce sur la table</translation>
     </message>

@@ -118,11 +118,6 @@ class Cell:
         return of_setup(self.setup)
 
     @property
-    def free(self) -> int:
-        """How many coordinates point and tool axis leave free: 0 of five axes, 1 of a robot, more with axes beside it."""
-        return self.machine.free
-
-    @property
     def part_moves(self) -> bool:
         """Whether the part moves in the world."""
         return self.arrangement.carries_part or (self.external is not None and bool(self.external.turning))

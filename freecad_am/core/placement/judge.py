@@ -100,7 +100,7 @@ class Judge:
         job, some = self.job, self._some.toolpath
         try:
             cell = job.cell(settings)
-            share = self._share(cell) if cell.free else 1.0
+            share = self._share(cell) if cell.machine.free else 1.0
             if share is not None and share < 1.0 and not _several_alike(cell):
                 return Judged(share, UNREACHED, message="some points no rotation about the tool serves")
             cylinders = job.cylinders(cell)

@@ -22,6 +22,11 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
     """At most one issue of a kind and axis for the bead, at the point where it is worst."""
     place = {"layer": path.layer, "bead": path.index}
     lost = np.flatnonzero(~np.isfinite(path.joints).all(axis=1))
+    if len(lost) and not task.cell.machine.free:
+        return [Issue(
+            ERROR, "UNREACHABLE", f"{len(lost)} of {len(path.joints)} directions cannot be turned to the torch by this "
+            "machine; tilt less, or mount the part otherwise", point=int(lost[0]), **place,
+        )]
     if len(lost):
         count = f"{len(lost)} of {len(path.joints)} points cannot be reached with this branch; "
         external = task.cell.external
@@ -67,10 +72,9 @@ def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
         value = values[point, row]
         limit = rows.lower[row] if value < rows.lower[row] else rows.upper[row]
         unit, of = ("mm", 1.0) if (rows.matrix[row] @ task.cell.machine.chain.sliding).any() else ("deg", math.radians(1.0))
+        text = f"{rows.labels[row]} would be at {value / of:.2f} {unit}, its limit is {limit / of:g} {unit}"
         found.append(Issue(
-            ERROR, "LIMIT",
-            f"{rows.labels[row]} would be at {value / of:.2f} {unit}, its limit is {limit / of:g} {unit}",
-            point=point, **place,
+            ERROR, "LIMIT", text if task.cell.machine.free else f"{text}; move the part on the table", point=point, **place,
         ))
     return found
 
@@ -78,7 +82,7 @@ def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
 def _condition_findings(path: BeadPath, place: dict[str, int]) -> list[Issue]:
     short = path.threshold - path.condition
     point = int(short.argmax())
-    if short[point] <= ROUNDING:
+    if not short[point] > ROUNDING:  # or nothing is free, and there is no condition
         return []
     return [Issue(
         ERROR, "SINGULAR",

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..issues import ERROR, NOTE, WARNING, InputError, Issue, has_errors
+from ..issues import ERROR, NOTE, WARNING, Issue, has_errors
 from ..kinematics.cell import Cell
 from ..kinematics.inverse import opw
 from ..parameters.cell import NO_SHAPE
@@ -29,12 +29,12 @@ from .external import track
 from .external.level import ways
 from .findings import findings, out_of_reach
 from .joint_path import BeadPath, JointPath
-from .methods import constant, layer_by_layer, point_by_point
-from .methods import five_axis as table
+from .methods import closed_form, constant, layer_by_layer, point_by_point
 from .points import gather
 from .rotation import given, search
 from .task import Task
 from .turns import unwrap as turns
+from .turns.locked import as_held, lock_of
 
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
@@ -61,41 +61,51 @@ def plan_joints(
     """The joint path of a toolpath.
 
     Findings (unreachable, over a limit, singular, too fast) are issues of the result with layer, bead and point; the
-    path is there all the same, to be looked at. progress(fraction, text) may raise to cancel. rods: of each link of the
-    robot, which are kept clear where `cell.arm_clearance` asks for it. Raises InputError
-    NOT_FOR_SETUP for what only rotary axes can do.
+    path is there all the same, to be looked at. progress(fraction, text) may raise to cancel. cylinders: of each link, kept
+    clear where `cell.arm_clearance` asks for it. Raises InputError NOT_FOR_SETUP for what only rotary axes can do.
     """
-    if not cell.free:
-        return _on_table(toolpath, cell, parameters, progress)
-    if parameters.lock != "none":
-        raise InputError("NOT_FOR_SETUP", "joints.lock", "robots need all their axes; only machines with rotary axes can do "
-                         "with four; use none")
-    joined = all(part.family != REVOLUTION for part, _ in toolpath.parts)
-    wanted = cell.branch if parameters.own_branch == OF_CELL else opw.branch_index(parameters.own_branch.split("-"))
+    lock, (parameters, not_used) = lock_of(cell, parameters, toolpath), _used(cell, parameters)
+    joined, kept = all(part.family != REVOLUTION for part, _ in toolpath.parts), of_job(toolpath, cell, cylinders)
+    wanted = _branch_wanted(cell, parameters)
     among = range(BRANCHES) if wanted is None else (wanted,)
-    kept = of_job(toolpath, cell, cylinders)
+    asked = Task(cell, 0, parameters, joined, kept, lock, toolpath.chord_error, toolpath.overlap, toolpath.retreat)
 
     def served(some: Sequence[Bead]) -> float:
-        return -_ranked(some, places, Task(cell, 0, parameters, joined, kept), among)[0][0] / min(len(some), SCREENED)
+        return -_ranked(some, places, asked, among)[0][0] / min(len(some), SCREENED)
 
     planned: JointPath | None = None
     for beads, places, tilted in ways(cell, toolpath):
         for moved in track.placed(beads, cell, served):
             branches = [wanted] if wanted is not None else best_branches(moved, cell, parameters, joined, kept, places)
-            found = _of_robot(toolpath, (moved, places), tilted, Task(cell, 0, parameters, joined, kept), branches, progress)
+            found = _in_branches(toolpath, (moved, places), tilted, asked, branches, progress)
             if planned is None or found.feasible:
                 planned = found
             if planned.feasible:
-                return planned
+                return _with_issues(planned, cell, not_used)
     assert planned is not None  # there is one way at least
-    return dataclasses.replace(planned, issues=(*out_of_reach(cell, planned.beads), *planned.issues))
+    return _with_issues(planned, cell, not_used)
 
 
-def _of_robot(
+def _with_issues(planned: JointPath, cell: Cell, not_used: Sequence[Issue]) -> JointPath:
+    """A joint path with what is wrong with all of it; without method, objective and branch where nothing was to choose."""
+    issues = (*out_of_reach(cell, planned.beads), *planned.issues, *not_used)
+    if cell.machine.free:
+        return dataclasses.replace(planned, issues=issues)
+    return dataclasses.replace(planned, issues=issues, method=closed_form.METHOD, objective="none", branch=())
+
+
+def _branch_wanted(cell: Cell, parameters: JointParameters) -> int | None:
+    """The branch to plan in, None where all are to be searched. Where nothing is free it is chosen bead by bead."""
+    if not cell.machine.free:
+        return 0
+    return cell.branch if parameters.own_branch == OF_CELL else opw.branch_index(parameters.own_branch.split("-"))
+
+
+def _in_branches(
     toolpath: Toolpath, placed: tuple[list[Bead], list[Place]], tilted: list[Issue], asked: Task, branches: Sequence[int],
     progress: Progress,
 ) -> JointPath:
-    """The joint path of a robot, external axes as the beads have them, in the first of the branches that serves."""
+    """The joint path, external axes as the beads have them, in the first of the branches that serves."""
     (beads, places), cell, parameters = placed, asked.cell, asked.parameters
     together, notes = external_rule.asked(parameters, cell)
     task = dataclasses.replace(asked, branch=branches[0])
@@ -115,7 +125,7 @@ def _of_robot(
     if together:
         (paths, issues), level = _bettered(task, toolpath, beads, places, (paths, issues), progress)
     issues = [*tilted, *issues, *notes]
-    if task.arm.followed:
+    if cell.machine.free and task.arm.followed:
         issues = [*issues, Issue(
             NOTE, "FOLLOWED", "several solutions of this arm bear the same configuration; along each bead the one it begins "
             "with is followed",
@@ -142,27 +152,19 @@ def _failed(paths: Sequence[BeadPath], issues: Sequence[Issue], places: Sequence
     return [found[k] for k in sorted({round(at) for at in np.linspace(0, len(found) - 1, SCREENED)})] if found else []
 
 
-def _on_table(toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress) -> JointPath:
-    """The same on a machine with rotary axes, which leaves nothing to optimise."""
-    paths, issues = table.plan(cell, toolpath, parameters, progress)
-    paths, found = _phased(cell, paths)
-    issues += found
-    if not has_errors(issues):
-        paths, found = _slowed(cell, paths, toolpath)
-        issues += found
-    return JointPath(table.METHOD, "none", (), cell.limits.name, tuple(paths), (*issues, *_not_used(cell, parameters)))
-
-
-def _not_used(cell: Cell, parameters: JointParameters) -> list[Issue]:
-    """A note on what was chosen about the rotation about the tool, which machines with rotary axes do not have."""
+def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, list[Issue]]:
+    """The parameters without what was chosen about what is not free, the rotation about the tool, and a note on that."""
+    if cell.machine.free:
+        return parameters, []
     usual = JointParameters()
     chosen = [f"joints.{name}" for name in OF_ROBOTS if getattr(parameters, name) != getattr(usual, name)]
+    parameters = dataclasses.replace(parameters, **{name: getattr(usual, name) for name in OF_ROBOTS})
     chosen += [] if cell.arm_clearance is None else ["cell.arm_clearance"]
     chosen += ["cell.obstacles"] if cell.obstacles else []
     chosen += ["cell.nozzle.shape"] if cell.nozzle.shape != NO_SHAPE else []
     if not chosen:
-        return []
-    return [Issue(
+        return parameters, []
+    return parameters, [Issue(
         NOTE, "NOT_USED", f"{', '.join(chosen)}: of no effect on a machine with two rotary axes, which leaves no rotation "
         "about the tool to choose; leave out what is meant for robots",
     )]
@@ -211,7 +213,8 @@ def _compare_order(parameters: JointParameters) -> list[str]:
 def _planned(
     task: Task, toolpath: Toolpath, beads: Sequence[Bead], places: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    paths, issues = METHODS[task.parameters.method](task, beads, places, progress)
+    method = METHODS[task.parameters.method] if task.cell.machine.free else closed_form.plan
+    paths, issues = method(task, beads, places, progress)
     paths, found = _finished(task, toolpath, places, paths)
     return paths, given.not_used(task.parameters, places) + issues + found
 
@@ -237,13 +240,14 @@ def _finished(
     task: Task, toolpath: Toolpath, places: Sequence[Place], paths: Sequence[BeadPath]
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with the points that straight motion asks for, turns counted on, and what is wrong with them."""
-    longer = [run_on(task, go_back(task, path, toolpath.retreat), toolpath.overlap) for path in paths]
-    straight = [refined_to_chord_error(task, path, toolpath.chord_error) for path in longer]
+    straight = [_as_run(task, path) for path in paths]
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])
-    paths, more = _phased(task.cell, paths, task.condition_at)
-    issues = [*notes, *more, *(issue for _, found in straight for issue in found)]
+    paths, missed = as_held(task.cell, paths, task.lock, task.parameters.max_residual)
+    phased = [phases.phased(task.cell, path, task.condition_at) for path in paths]
+    paths, issues = [path for path, _ in phased], notes + [issue for _, found in (*phased, *straight) for issue in found]
     for path in paths:
         issues += findings(task, path)
+    issues += missed
     if task.kept is not None:
         issues += arm_clear.findings(task.kept, paths)
     if not has_errors(issues):
@@ -252,12 +256,12 @@ def _finished(
     return paths, issues
 
 
-def _phased(
-    cell: Cell, paths: Sequence[BeadPath], condition_at: phases.Condition | None = None
-) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths with the phases at the ends of their beads, and what is wrong with these."""
-    done = [phases.phased(cell, path, condition_at) for path in paths]
-    return [path for path, _ in done], [issue for _, found in done for issue in found]
+def _as_run(task: Task, path: BeadPath) -> tuple[BeadPath, list[Issue]]:
+    """The path longer where its bead goes back or runs on, with the points that straight motion asks for."""
+    if not task.cell.machine.free:  # whose beads are looked at as they are run: axes have room for all of it, or for none
+        return path, []
+    longer = run_on(task, go_back(task, path, task.retreat), task.overlap)
+    return refined_to_chord_error(task, longer, task.chord_error)
 
 
 def _slowed(cell: Cell, paths: Sequence[BeadPath], toolpath: Toolpath) -> tuple[list[BeadPath], list[Issue]]:

@@ -22,6 +22,7 @@ from .arm.kept import ArmKept
 from .points import Points, unwrapped
 from .reserve import RESERVE
 from .turns import configurations as following
+from .turns.directed import Lock
 
 PIECE = 4096  # points whose poses and Jacobians are held together
 
@@ -88,6 +89,7 @@ class Task:
 
     joined: whether the polynomial of a closed bead must come back to its value but for whole turns. On parts of revolution
     it need not: there a limited axis turns back between layers. kept: what keeps the links clear, where that is asked for.
+    lock: of two turning axes the one that stands. chord_error, overlap, retreat: mm, those of the toolpath.
     """
 
     cell: Cell
@@ -95,6 +97,10 @@ class Task:
     parameters: JointParameters
     joined: bool = False
     kept: ArmKept | None = None
+    lock: Lock | None = None
+    chord_error: float = 0.0
+    overlap: float = 0.0
+    retreat: float = 0.0
 
     @cached_property
     def rows(self) -> LimitRows:
@@ -234,7 +240,9 @@ class Task:
         return self.condition_at(flange, joints.reshape(-1, joints.shape[-1])).reshape(joints.shape[:-1])
 
     def condition_at(self, flange: Array, joints: Array) -> Array:
-        """(N,) the same for flange poses (N, 4, 4) and joints (N, axes)."""
+        """(N,) the same for flange poses (N, 4, 4) and joints (N, axes); NaN where nothing is free."""
+        if not self.cell.machine.free:
+            return np.full(len(joints), np.nan)
         good = np.flatnonzero(np.isfinite(joints).all(axis=1))
         value = np.zeros(len(joints))
         for piece in in_pieces(len(good)):

@@ -21,7 +21,7 @@ def carried(
     motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, issues: Sequence[Issue]
 ) -> list[Promise]:
     """Of robot or positioner; nothing where the part stands still, or lies on a machine with rotary axes."""
-    if not cell.carriers or not cell.free:
+    if not cell.carriers or not cell.machine.free:
         return []
     mass, text = finished(motion, cell, toolpath, process), of_codes(issues, (CODE,))
     least = min(cell.carriers, key=lambda one: one.payload.kg)

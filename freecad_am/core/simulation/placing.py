@@ -60,7 +60,7 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     axes of a machine with rotary axes are at 0.
     """
     place, chain = np.asarray(point, float), cell.machine.chain
-    if not cell.free:
+    if not cell.machine.free:
         slides = np.flatnonzero(chain.sliding)
         zero = np.zeros(chain.axes)
         away = cell.deposition_point(chain.forward(zero)[None])[0] - _seen(cell, zero, place)

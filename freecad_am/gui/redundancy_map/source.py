@@ -84,7 +84,7 @@ def source_of(obj: Any) -> Source:
         raise InputError("NO_MAP", getattr(obj, "Label", "?"), "it is not a joint path; select one")
     value, toolpath, looks = planned_of(obj, obj.Label)
     cell = resolved(looks, toolpath, user_machines.folders())
-    if not cell.free or not value.joint_path.branch:
+    if not cell.machine.free or not value.joint_path.branch:
         raise InputError(
             "NO_MAP", obj.Label, "its machine has two rotary axes, which leave no rotation about the tool to choose; a map "
             "is for robots",

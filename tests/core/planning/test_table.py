@@ -137,6 +137,9 @@ def test_a_limited_axis_unwinds_between_beads():
     path = plan_joints(toolpath(*(around(base, 3.0, 5.0 * k) for k in range(5))), cell, JointParameters())
     assert path.feasible, [issue.message for issue in path.issues]
     check(cell, path)
+    back = [abs(b.joints[0, 4] - a.joints[-1, 4]) > 1.5 * math.pi for a, b in zip(path.beads, path.beads[1:])]
+    assert any(back) and [issue.message for issue in path.issues] == [
+        f"axis c turns back {sum(back)} times between beads, first before layer {1 + back.index(True)}"]
 
 
 def with_limits(cell, axis, low, high):

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...issues import ERROR, Issue
+from ...kinematics.cell import Cell
 from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath
@@ -53,6 +54,17 @@ def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Arra
     if len(near):
         away[near] = np.maximum.reduce([away[near], *_looked_at(task, bead, joints, near, MORE)])
     return away
+
+
+def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
+    """(n - 1,) rad, by what angle the tool strays from the directions at the ends of each segment as joints run straight."""
+    way, count = np.diff(joints, axis=0)[:, None], len(INSIDE)
+    flange = cell.machine.chain.forward((joints[:-1, None] + INSIDE[:, None] * way).reshape(-1, joints.shape[1]))
+    tool = cell.tip_in_part(flange)[1].reshape(-1, count, 3)
+    asked = bead.tool[:-1, None] + INSIDE[:, None] * np.diff(bead.tool, axis=0)[:, None]
+    sine = np.linalg.norm(np.cross(asked, tool), axis=-1)
+    angle: Array = np.arctan2(sine, (asked * tool).sum(-1)).max(axis=1)
+    return angle
 
 
 def _looked_at(task: Task, bead: Bead, joints: Array, segments: NDArray[np.intp], shares: Array) -> Array:

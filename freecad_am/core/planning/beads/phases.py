@@ -41,10 +41,10 @@ class Stretch(NamedTuple):
     speed: float
 
 
-def phased(cell: Cell, path: BeadPath, condition_at: Condition | None = None) -> tuple[BeadPath, list[Issue]]:
+def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPath, list[Issue]]:
     """The path with points where the phases of its bead, and the steps of their ramps, begin and end, and their speeds; an
     error where they are longer than the bead, as that of a piece of one that was divided. condition_at: (n,) of flange poses
-    (n, 4, 4) and joints (n, axes); None on machines that have none."""
+    (n, 4, 4) and joints (n, axes)."""
     if not path.bead.ends or not path.reachable:
         return path, []
     first, _, last, _ = path.bead.ends[:4]
@@ -111,7 +111,7 @@ def _shares(cell: Cell, path: BeadPath, segment: Rows, lengths_in: Array) -> Arr
 
 
 def _with_points(
-    cell: Cell, path: BeadPath, along: Array, borders: Array, condition_at: Condition | None
+    cell: Cell, path: BeadPath, along: Array, borders: Array, condition_at: Condition
 ) -> BeadPath:
     """The path with points at `borders` (k,) mm along it, rising, none of which is one of its own."""
     segment = np.searchsorted(along, borders) - 1
@@ -130,7 +130,7 @@ def _with_points(
     }
     flange, condition = cell.machine.chain.forward(joints[new]), between(path.condition)
     columns["points"][new], columns["tool"][new] = cell.tip_in_part(flange)
-    condition[new] = condition[new] if condition_at is None else condition_at(flange, joints[new])
+    condition[new] = condition_at(flange, joints[new])
     columns["speed"][new] = bead.speed[at]
     if bead.tangents is not None:  # a point within a segment is not a corner
         columns["tangents"][new] = (bead.tangents[segment, 1] + bead.tangents[at, 0])[:, None]

@@ -3,21 +3,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from ...geometry.angles import TURN
 from ...kinematics.cell import Cell
 from ...kinematics.external import ExternalAxes
 from ...kinematics.inverse import rotary_pair
 from ...types import Array
 from ..reserve import RESERVE
-from ..turns.rotary_courses import continuous, kept
+from ..turns import rotary_courses
 
-# rad; a direction this near to the turning axis counts as on it, or the axis would race round to meet it
-AT_POLE = math.radians(0.1)
 STEPS = 200  # of the search for the middle of directions
 
 
@@ -48,21 +44,11 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
     if len(external.turning) == 1:
         return [np.unwrap(rotary_pair.nearest(external.turning[0], source, external.up).angle)[:, None]]
     first, second = external.turning
-    pole = _pole(second, source)
-    found = rotary_pair.between(first, second, pole, external.up)
-    turned = np.stack([found.first, found.second], axis=-1)
-    if not np.isfinite(turned).all():  # axes that are not at right angles reach no farther
+    found = rotary_pair.between(first, second, rotary_courses.onto_pole(source, second), external.up)
+    if not np.isfinite(found.first + found.second).all():  # axes that are not at right angles reach no farther
         angle = rotary_pair.nearest(second, source, external.up).angle
         return [np.unwrap(np.stack([np.zeros(len(angle)), angle], axis=-1), axis=0)]
-    for axis, free in enumerate((found.first_free, found.second_free)):
-        turned[:, :, axis] = kept(turned[:, :, axis], free)
-    return continuous(turned)
-
-
-def _pole(axis: Array, directions: Array) -> Array:
-    """Directions (n, 3), those nearly along an axis or against it brought onto it."""
-    near = np.linalg.norm(np.cross(directions, axis), axis=1) < math.sin(AT_POLE)
-    return np.where(near[:, None], np.sign(directions @ axis)[:, None] * axis, directions)
+    return rotary_courses.courses(found)
 
 
 def chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
@@ -76,11 +62,7 @@ def chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
     before = start[cell.external.turned]
     ranked = []
     for course in courses:
-        low, high = course.min(axis=0), course.max(axis=0)
-        fewest, most = np.ceil((lower - low) / TURN - 1e-12), np.floor((upper - high) / TURN + 1e-12)
-        wanted = np.round((before - course[0]) / TURN)
-        centred = np.round(np.nan_to_num(0.5 * (lower + upper) - 0.5 * (low + high)) / TURN)
-        moved = course + TURN * np.where(fewest <= most, np.clip(wanted, fewest, most), centred)
+        moved = rotary_courses.in_turns(course, before, lower, upper)
         over = float(np.maximum(lower - moved, moved - upper).max())
         motion = float(np.abs(np.diff(moved, axis=0)).sum())
         ranked.append((max(over, 0.0), round(motion, 6), float((np.abs(moved[0] - before) / speed).max()), moved))

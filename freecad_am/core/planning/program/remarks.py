@@ -33,7 +33,7 @@ def six_of(pose: Array) -> Six:
 def remarks_of(cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]) -> tuple[str, ...]:
     moved = not isinstance(parameters.origin, str)
     station, carried = frames_of(cell, parameters)
-    if not cell.free:
+    if not cell.machine.free:
         where, frame = "Work offset" if parameters.motion == "cartesian" else "Platform on the table", carried
     else:
         where = "Deposition point" if cell.torch_stands else "User frame" if moved else "Platform"

@@ -244,7 +244,7 @@ class Retracts:
 
     def condition(self, joints: Array) -> Array:
         """(n,) the robot's condition at joints (n, axes), as of deposit rows; infinite where nothing is free to lose."""
-        if not self.cell.free:
+        if not self.cell.machine.free:
             return np.full(len(joints), np.inf)
         chain = self.cell.robot.chain
         joints = joints[:, : chain.axes]

@@ -3,11 +3,31 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.angles import TURN
+from ...kinematics.inverse.rotary_pair import Turns
 from ...types import Array
+
+# rad; a direction this near to the pole counts as on it, or the axis would race round to meet it
+AT_POLE = math.radians(0.1)
+
+
+def onto_pole(directions: Array, pole: Array) -> Array:
+    """Directions (n, 3), those nearly along a turning axis (3,) or against it brought onto it."""
+    near = np.linalg.norm(np.cross(directions, pole), axis=1) < math.sin(AT_POLE)
+    return np.where(near[:, None], np.sign(directions @ pole)[:, None] * pole, directions)
+
+
+def courses(found: Turns) -> list[Array]:
+    """Two courses (n, 2) through the turns of the directions along a bead; an axis that is free stays where it was."""
+    turned = np.stack([found.first, found.second], axis=-1)
+    for axis, free in enumerate((found.first_free, found.second_free)):
+        turned[:, :, axis] = kept(turned[:, :, axis], free)
+    return continuous(turned)
 
 
 def continuous(turned: Array) -> list[Array]:
@@ -27,3 +47,14 @@ def kept(angles: Array, free: NDArray[np.bool_]) -> Array:
         return angles
     source = known[np.clip(np.searchsorted(known, np.arange(len(free)), side="right") - 1, 0, None)]
     return angles[:, source]
+
+
+def in_turns(course: Array, before: Array, lower: Array, upper: Array) -> Array:
+    """A course (n, a) moved by the whole turns that bring its start nearest to the axes before (a,) and leave it between
+    lower and upper (a,); an axis without room is brought to the middle between them."""
+    low, high = course.min(axis=0), course.max(axis=0)
+    fewest, most = np.ceil((lower - low) / TURN - 1e-12), np.floor((upper - high) / TURN + 1e-12)
+    wanted = np.round((before - course[0]) / TURN)
+    with np.errstate(invalid="ignore"):
+        centred = np.round(np.nan_to_num(0.5 * (lower + upper) - 0.5 * (low + high)) / TURN)
+    return np.asarray(course + TURN * np.where(fewest <= most, np.clip(wanted, fewest, most), centred))

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Nothing free, k = 0: point and tool axis leave a machine two branches and whole turns, chosen bead by bead (Dai 2020, 3).
+
+Within a bead the branch changes only where a direction lies along an axis and the way straight on leads there; elsewhere a
+change would be a jump. Where a turning axis has no room for a bead, its seam is moved or, as the last resort, it is split.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry.angles import TURN, shortest
+from ...issues import ERROR, Issue
+from ...toolpath import Bead
+from ...types import Array
+from ..beads.chord_error import ROUNDING, deviation, leaning
+from ..beads.retreat import gone_back
+from ..joint_path import BeadPath
+from ..reserve import RESERVE
+from ..task import Task
+from ..turns import directed
+from ..turns.unwrap import seam_notes
+
+Progress = Callable[[float, str], None]
+Place = tuple[int, int]
+
+METHOD = "five-axis"
+MOST_PIECES = 4
+FEWEST_POINTS = 3  # of a piece
+ROUNDS = 10
+STRAY = math.radians(0.5)  # between two points the tool may lean this far from the direction asked for
+KEPT = 1e-9  # a limit met exactly is kept, rad and mm
+
+
+class _Run(NamedTuple):
+    """A bead or a piece of one as it is run, with its axis values (n, 5), and whether it keeps the limits. bent: where it is
+    not straight between two points, the later one's number, mm off the bead and rad off its direction."""
+
+    bead: Bead
+    axes: Array
+    fits: bool
+    bent: tuple[int, float, float] | None = None
+
+
+def plan(
+    task: Task, beads: Sequence[Bead], places: Sequence[Place], progress: Progress
+) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths of all beads as they are run, with points added where axes running straight would leave them, and findings.
+
+    Where a limited turning axis has no room for a bead, its seam is moved or it is split; beads are then numbered anew.
+    """
+    paths: list[BeadPath] = []
+    issues: list[Issue] = []
+    helped: tuple[list[int], list[int]] = [], []
+    before, index = np.zeros(task.cell.machine.chain.axes), 0
+    for number, (bead, (layer, _)) in enumerate(zip(beads, places, strict=True)):
+        progress(number / len(beads), f"bead {number + 1} of {len(beads)}")
+        index = index if paths and paths[-1].layer == layer else 0
+        runs = _within_stroke(task, bead, before)
+        if len(runs) > 1 or runs[0].bead.points[0].tolist() != bead.points[0].tolist():
+            helped[len(runs) > 1].append(layer)
+        for run in runs:
+            paths.append(_path(task, run, (layer, index)))
+            if run.bent is not None:
+                issues.append(_not_straight(*run.bent, layer, index))
+            before, index = run.axes[-1] if paths[-1].reachable else before, index + 1
+    return paths, [*issues, *seam_notes(*helped)]
+
+
+def _within_stroke(task: Task, bead: Bead, before: Array) -> list[_Run]:
+    """The bead as it is, or where a turning axis has no room for it, from another seam or in pieces."""
+    whole = _run(task, bead, before)
+    if whole.fits or not _short_of_turns(task, whole.axes):
+        return [whole]
+    for parts in _ways(task, bead):
+        runs, last = list[_Run](), before
+        for part in parts:
+            runs.append(_run(task, part, last))
+            last = runs[-1].axes[-1]
+            if not runs[-1].fits:
+                break
+        else:
+            return runs
+    return [whole]
+
+
+def _run(task: Task, bead: Bead, before: Array) -> _Run:
+    """The bead in the turns and the branch that suit best after axes (5,), finer where it must be."""
+    cell, looked, axes = task.cell, bead, before
+    bead = gone_back(bead, task.retreat).run_on(task.overlap)
+    for _ in range(ROUNDS):
+        # all of it anew: near a pole the shorter way on shows only with more points
+        axes = directed.chosen(cell, directed.courses(cell, task.lock, bead), before)
+        if not np.isfinite(axes).all():
+            return _Run(bead, axes, False)
+        away, leans = deviation(task, bead, axes, task.chord_error), leaning(cell, bead, axes)
+        # with an axis locked the tool leans anyhow; that is told once for all
+        off = (away > task.chord_error + ROUNDING) | ((leans > STRAY) & (task.lock is None))
+        if not off.any():
+            return _Run(bead, axes, not cell.limits.exceeded(axes, KEPT).any())
+        looked, bead = bead, bead.halved(np.flatnonzero(off))
+    return _Run(looked, axes, False, (int(np.argmax(off)) + 1, float(away.max()), float(leans.max())))
+
+
+def _not_straight(point: int, away: float, leans: float, layer: int, bead: int) -> Issue:
+    return Issue(
+        ERROR, "NOT_STRAIGHT", f"the axes leave the bead by {away:.3g} mm, its direction by {math.degrees(leans):.3g} deg "
+        "between two points however many are added: near a pole; tilt away from it", layer, bead, point,
+    )
+
+
+def _path(task: Task, run: _Run, place: Place) -> BeadPath:
+    """The run as a path. There is no condition to keep: poles are told apart by the courses."""
+    none, limits = np.full(len(run.bead), np.nan), task.cell.limits
+    half = 0.5 * (limits.upper - limits.lower)
+    moved = np.abs(np.diff(run.axes, axis=0)).sum(axis=0) / np.where(np.isfinite(half), half, TURN)
+    margin = float(limits.smallest_share(run.axes).min()) if np.isfinite(run.axes).all() else -math.inf
+    return BeadPath(
+        *place, run.bead, np.zeros(len(run.bead)), run.axes, none, none, float(np.linalg.norm(moved)), margin,
+        reason="closed form",
+    )
+
+
+def _short_of_turns(task: Task, joints: Array) -> bool:
+    """Whether it is a turning axis that runs out of its stroke on axis values (n, 5)."""
+    limits, turning = task.cell.limits, ~task.cell.machine.chain.sliding
+    over = np.maximum(limits.lower + RESERVE - joints, joints - limits.upper + RESERVE) > KEPT
+    return bool(over[:, turning].any())
+
+
+def _ways(task: Task, bead: Bead) -> Iterator[list[Bead]]:
+    """Other ways to lay a bead, the best first: a closed one begun where a turning axis has room for all of it, then any in
+    two or more pieces."""
+    limits = task.cell.limits
+    if bead.closed:
+        for course in directed.courses(task.cell, task.lock, bead):
+            for axis in np.flatnonzero(~task.unturned):
+                start = _start(course[:, axis], float(limits.lower[axis]), float(limits.upper[axis]))
+                if start:
+                    yield [bead.started_at(start)]
+    whole = bead.run_on(task.overlap)
+    for count in range(2, min(MOST_PIECES, (len(whole) - 1) // (FEWEST_POINTS - 1)) + 1):
+        cuts = np.round(np.linspace(0, len(whole) - 1, count + 1)).astype(int).tolist()
+        yield [whole.part(slice(low, high + 1)) for low, high in zip(cuts[:-1], cuts[1:], strict=True)]
+
+
+def _start(angles: Array, low: float, high: float) -> int:
+    """The point of a closed bead from which its course (n,) lies best in the middle between two limits, but for turns."""
+    n = len(angles) - 1
+    turn = angles[-1] - angles[0]
+    twice = np.concatenate([angles[:-1], angles + turn])
+    windows = np.lib.stride_tricks.sliding_window_view(twice, n + 1)[:n]
+    least, most = windows.min(axis=1), windows.max(axis=1)
+    off = shortest(0.5 * (least + most) - 0.5 * (low + high))
+    over = np.maximum(np.abs(off) + 0.5 * (most - least) - 0.5 * (high - low), 0.0)
+    # rounded, so that the same point is taken everywhere; of those that fit, the nearest to the seam
+    fits = np.flatnonzero(over <= 0.0)
+    if len(fits):
+        return int(fits[np.argmin(np.minimum(fits, n - fits))])
+    return int(np.argmin(np.round(over, 9)))

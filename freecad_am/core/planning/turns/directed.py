@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Axis values of machines that point and tool axis leave nothing free: the ways along a bead.
+
+Two turning axes bring the tool axis to the torch, one of them where the other stands locked; what slides follows.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...kinematics.cell import Cell
+from ...kinematics.inverse.five_axis import FiveAxis
+from ...toolpath import Bead
+from ...types import Array
+from ..reserve import RESERVE
+from . import rotary_courses
+from .rotary_courses import in_turns
+
+
+@dataclasses.dataclass(frozen=True)
+class Lock:
+    """axis: 0 or 1, which of the turning axes stands still. angle: rad, where."""
+
+    axis: int
+    angle: float
+
+
+def courses(cell: Cell, lock: Lock | None, bead: Bead) -> list[Array]:
+    """All ways (n, 5) to run a bead, up to whole turns."""
+    arm, torch = FiveAxis(cell.machine.chain), cell.station[:3, 2]
+    points, tools = cell.on_flange(bead.points, bead.tool)
+    if lock is not None:
+        turned = _locked(arm, lock, tools, torch)
+        turned[:, 1 - lock.axis] = np.unwrap(turned[:, 1 - lock.axis])
+        return [arm.placed(turned, points, cell.station)]
+    found = arm.turns(rotary_courses.onto_pole(tools, arm.pole), torch)
+    return [arm.placed(course, points, cell.station) for course in rotary_courses.courses(found)]
+
+
+def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:
+    """Of all courses (n, 5) and whole turns the one within the limits that starts nearest to where the axes are; without one
+    within the limits, the one that leaves them least."""
+    lower, upper = cell.limits.lower + RESERVE, cell.limits.upper - RESERVE
+    turning, ranked = ~cell.machine.chain.sliding, []
+    for course in ways:
+        moved = course.copy()
+        if np.isfinite(course).all():
+            moved[:, turning] = in_turns(course[:, turning], before[turning], lower[turning], upper[turning])
+        over = float(np.maximum(lower - moved, moved - upper).max())
+        way = float((np.abs(moved[0] - before) / cell.machine.max_speed).max())
+        ranked.append((math.inf, math.inf, moved) if math.isnan(over) else (max(over, 0.0), way, moved))
+    return min(ranked, key=lambda one: one[:2])[2]
+
+
+def _locked(arm: FiveAxis, lock: Lock, tools: Array, torch: Array) -> Array:
+    """(n, 2) the turning axes, one of which stands."""
+    turned = np.full((len(tools), 2), lock.angle)
+    turned[:, 1 - lock.axis] = arm.locked(lock.axis, lock.angle, tools, torch).angle
+    return turned
