@@ -20,7 +20,7 @@ OURS = {
     "core/read_moves": set(),
     "core/motion": set(),
     "core/one_thread": set(),
-    "core/parameters": {"core/issues"},
+    "core/parameters": {"core/issues", "core/geometry"},
     "core/geometry": {"core/issues"},
     "core/filling": {"core/issues", "core/geometry"},
     "core/toolpath": {"core/issues", "core/geometry"},

@@ -168,7 +168,9 @@ def _point(value: Any, key: str) -> touched.Point:
 
 
 def _pose(value: Any, key: str) -> external.Pose:
-    """Six quantities of a job file."""
+    """Six quantities of a job file, or what a pendant shows."""
+    if (shown := fields.as_shown(value, key)) is not None:
+        return shown
     if not isinstance(value, list) or len(value) != 6:
         raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is not a pose; give [x, y, z, RX, RY, RZ]")
     kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3

@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from ..core.issues import InputError
 from ..core.parameters import field as f
+from ..core.parameters import pendant
 from . import quantity
 
 Parameters = TypeVar("Parameters")
@@ -74,6 +75,8 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
         return None
     if isinstance(value, str) and value in spec.words:
         return math.inf if value == "inf" else value
+    if _is_pose(spec, field) and (shown := as_shown(value, key)) is not None:
+        return shown
     if isinstance(value, list):
         return _list(spec, field, value, key)
     if spec.kind == f.POSE or spec.kind in f.END_OF:
@@ -83,6 +86,17 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
     if spec.kind in quantity.WANTED:
         return _number(value, spec, key)
     return _plain(spec, value, key)
+
+
+def _is_pose(spec: f.Spec, field: dataclasses.Field[Any]) -> bool:
+    """Whether a field takes a pose, it alone or as well as a length."""
+    return spec.kind == f.POSE or (spec.kind == f.LENGTH and "Pose" in str(field.type))
+
+
+def as_shown(value: Any, key: str) -> tuple[float, float, float, float, float, float] | None:
+    """The pose that a text or list says as a pendant shows it, mm and rad: kuka 1000 0 300 90 0 0; None of other values."""
+    words = value.split() if isinstance(value, str) else list(map(str, value)) if isinstance(value, list) else []
+    return pendant.six(words, key) if pendant.named(words) else None
 
 
 def _plain(spec: f.Spec, value: Any, key: str) -> Any:
@@ -106,7 +120,7 @@ def _unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputErro
 
 
 def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: str) -> Any:
-    if spec.kind == f.POSE or (spec.kind == f.LENGTH and "Pose" in str(field.type)):
+    if _is_pose(spec, field):
         if len(value) != 6:
             raise InputError("BAD_VALUE", key, f"a pose has six numbers x y z RX RY RZ, not {len(value)}")
         kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3

@@ -5957,6 +5957,11 @@
         <translation>Torsion autour de x, deg</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/widgets/pendant.py"/>
+        <source>Type the pose as this controller&apos;s pendant shows it, X Y Z in mm first</source>
+        <translation>Saisissez la pose telle que le pupitre de cette commande l&apos;affiche, X Y Z en mm d&apos;abord</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>UFRAME and UTOOL of the numbers in the program are those of the cell</source>
         <translation>UFRAME et UTOOL aux numéros du programme sont ceux de la cellule</translation>
@@ -7045,6 +7050,11 @@
         <location filename="../../freecad_am/core/strategies/size.py"/>
         <source>as it is this job cannot be carried out; looking for what would make it feasible takes up to {0} min of the processor</source>
         <translation>tel quel, ce travail n&apos;est pas réalisable ; chercher ce qui le rendrait réalisable prend jusqu&apos;à {0} min de processeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/widgets/pendant.py"/>
+        <source>as on the pendant of</source>
+        <translation>comme sur le pupitre de</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -10287,6 +10297,11 @@
         <translation>proportionnelle</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/pendant.py"/>
+        <source>q1 to q4 are together {0} long, a quaternion is 1; look at the digits</source>
+        <translation>q1 à q4 ont ensemble une longueur de {0}, un quaternion en a une de 1 ; vérifiez les chiffres</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/plots/fit.py"/>
         <source>r {0} mm, measured</source>
         <translation>r {0} mm, mesuré</translation>
@@ -11540,6 +11555,11 @@
         <location filename="../../freecad_am/core/planning/findings.py"/>
         <source>the rotation about the tool axis would be {0} deg, outside the range allowed</source>
         <translation>la rotation autour de l&apos;axe de l&apos;outil serait de {0} deg, hors de la plage permise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/pendant.py"/>
+        <source>the rotation vector is {0} rad long, more than a turn; give RX RY RZ in rad, as the pendant shows them</source>
+        <translation>le vecteur de rotation a une longueur de {0} rad, plus d&apos;un tour ; donnez RX RY RZ en rad, comme le pupitre les affiche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
@@ -13235,6 +13255,11 @@
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} is not a pose; give x y z in mm and RX RY RZ in deg</source>
         <translation>{0} n&apos;est pas une pose ; donnez x y z en mm et RX RY RZ en deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/pendant.py"/>
+        <source>{0} is not a pose; write such as: {1} X Y Z {2}</source>
+        <translation>{0} n&apos;est pas une pose ; écrivez par exemple : {1} X Y Z {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A cell saved by its context menu, and chosen by its name for the next job."""
 
+import numpy as np
+from scipy.spatial.transform import Rotation
+
 from freecad_am import api
 from freecad_am.gui.tools import context_menu
 from freecad_am.objects.fields import saved_cells
@@ -37,3 +40,29 @@ def test_a_saved_cell_is_chosen_by_name_in_new_job(person, hemisphere, coarse, n
     person.panel_closed()
     made = api.stages_of(doc)
     assert [obj.Proxy.kind for obj in made][:1] == ["cell"] and api.result(made[0]) == wanted
+
+
+def test_a_frame_is_typed_as_its_pendant_shows_it(person, hemisphere):
+    """What the six fields then hold is held against rotations put together here."""
+    doc = hemisphere.Document
+    person.click("RoboticAM_Cell")
+    panel = person.panel("RoboticAM_Cell")
+    choice, line = person.field(panel, "DepositionPointPendant"), person.field(panel, "DepositionPointShown")
+    assert not line.isVisible()
+    choice.setCurrentIndex(choice.findData("kuka"))
+    assert line.isVisible() and line.placeholderText() == "X Y Z A B C"
+    person.type(panel, "DepositionPointShown", "1000 -20 300 90 30 0")
+    line.editingFinished.emit()
+    choice.setCurrentIndex(choice.findData("abb"))
+    x, y, z, *shown = map(float, line.text().split())
+    # R = Rz(90) Ry(30): half angles of 45 and 15 deg
+    wanted = Rotation.from_euler("ZY", [90.0, 30.0], degrees=True)
+    assert (x, y, z) == (1000.0, -20.0, 300.0) and np.allclose(shown, np.roll(wanted.as_quat(), 1), atol=1e-6)
+    person.type(panel, "DepositionPointShown", "1000 -20 300 0.9 0.9 0 0")
+    line.editingFinished.emit()
+    assert "quaternion" in line.toolTip()  # and the fields stay as they are
+    person.press("Ok")
+    person.panel_closed()
+    pose = api.result(doc.Cell).deposition_point
+    assert np.allclose(pose[:3], (1000.0, -20.0, 300.0)) and np.allclose(
+        Rotation.from_euler("XYZ", pose[3:]).as_matrix(), wanted.as_matrix(), atol=1e-9)

@@ -82,3 +82,38 @@ def test_what_is_wrong_with_a_file_is_told(own):
     with pytest.raises(InputError) as raised:
         api.read_cell(str(own / "none.yaml"))
     assert raised.value.code == "NO_FILE"
+
+
+def test_poses_of_a_file_and_of_macros_as_pendants_show_them(own):
+    path = own / "shown.yaml"
+    path.write_text("""\
+machine: kuka-kr16-2
+setup: tool-on-robot
+deposition_point: [1050, 0, 200, kuka, 30, 0, 0]
+platform: kuka 0 0 5 0 0 0
+nozzle: {tool: fanuc 20 0 300 0 35 0}
+external: [{machine: motoman-motopos-d500, pose: abb 1100 60 -100 0.9659258 0 0 0.2588190, carries: part}]
+""", encoding="utf-8")
+    plain = own / "plain.yaml"
+    plain.write_text("""\
+machine: kuka-kr16-2
+setup: tool-on-robot
+deposition_point: [1050, 0, 200, 0, 0, 30]
+platform: [0, 0, 5, 0, 0, 0]
+nozzle: {tool: [20, 0, 300, 0, 35, 0]}
+external: [{machine: motoman-motopos-d500, pose: [1100, 60, -100, 0, 0, 30], carries: part}]
+""", encoding="utf-8")
+    shown, wanted = api.read_cell(str(path)), api.read_cell(str(plain))
+    for one, other in ((shown.deposition_point, wanted.deposition_point), (shown.nozzle.tool, wanted.nozzle.tool),
+                       (shown.platform, wanted.platform),
+                       (externals(shown.external)[0].pose, externals(wanted.external)[0].pose)):
+        assert one == pytest.approx(other, abs=1e-6)
+    doc = App.newDocument()
+    cell = api.make_cell(doc, machine="kuka-kr16-2", setup="tool-on-robot", deposition_point="kuka 1050 0 200 30 0 0",
+                         platform="kuka 0 0 5 0 0 0")
+    assert api.result(cell).deposition_point == pytest.approx(wanted.deposition_point, abs=1e-9)
+    App.closeDocument(doc.Name)
+    path.write_text("machine: kuka-kr16-2\nnozzle: {tool: kuka 20 0 300 0 35}\n", encoding="utf-8")
+    with pytest.raises(InputError, match="X Y Z A B C") as raised:
+        api.read_cell(str(path))
+    assert raised.value.where.endswith("cell.nozzle.tool")

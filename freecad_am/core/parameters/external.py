@@ -8,6 +8,7 @@ import re
 from dataclasses import dataclass
 
 from ..issues import InputError
+from . import pendant
 
 Pose = tuple[float, float, float, float, float, float]
 
@@ -54,8 +55,11 @@ def _external(text: str) -> External:
     found = _TEXT.fullmatch(text)
     if found is None:
         raise InputError("BAD_VALUE", WHERE, f"{text!r} names no external axes; {_FORM}")
+    words = found["pose"].replace(",", " ").split()
+    if pendant.named(words):
+        return External(found["machine"], pendant.six(words, WHERE), found["carries"])
     try:
-        numbers = [float(word) for word in found["pose"].replace(",", " ").split()]
+        numbers = [float(word) for word in words]
     except ValueError:
         raise InputError("BAD_VALUE", WHERE, f"{found['pose']!r} is not a pose; {_FORM}") from None
     if len(numbers) != 6:

@@ -18,6 +18,7 @@ from ...objects.fields.expressions import FOLLOW, is_expression
 from ...objects.fields.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, split
 from ..texts.translation import tr, translated
 from . import choices
+from .pendant import PendantLine
 from .quantity import PlainQuantity, QuantityField
 
 _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
@@ -234,4 +235,10 @@ def _pose(row: Row, shown: tuple[float, ...]) -> Field:
         for quantity, number in zip(quantities, numbers, strict=True):
             quantity.show(number)
 
-    return Field(row, widget, lambda: tuple(quantity.read() for quantity in quantities), show)
+    def read() -> tuple[Any, ...]:
+        return tuple(quantity.read() for quantity in quantities)
+
+    line = PendantLine(row.name, read, show)
+    grid.addWidget(line.choice, len(shown), 0, 1, 2)
+    grid.addWidget(line.line, len(shown) + 1, 0, 1, 2)
+    return Field(row, widget, read, show)

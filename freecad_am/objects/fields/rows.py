@@ -17,6 +17,7 @@ import FreeCAD as App
 
 from ...core.issues import InputError
 from ...core.parameters import field as f
+from ...core.parameters import pendant
 
 TEXT_LIST, MIXED, LENGTH_OR_POSE = "text list", "mixed", "length or pose"
 ENDS = ("low", "high")
@@ -266,6 +267,8 @@ def _pose(value: Any, where: str) -> tuple[float, ...]:
 
         return pose_of(value)
     numbers = split(value, where) if isinstance(value, str) else list(value)
+    if pendant.named([one for one in numbers if isinstance(one, str)]):
+        return pendant.six([str(one) for one in numbers], where)
     try:
         floats = [float(number) for number in numbers]
     except (TypeError, ValueError):

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Poses as pendants show them, against scipy's rotations and values worked out by hand."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import pendant
+from freecad_am.core.parameters.external import externals
+
+
+def of(turn, controller):
+    """What a pendant shows of a rotation, by scipy."""
+    return {
+        "kuka": lambda: turn.as_euler("ZYX", degrees=True), "fanuc": lambda: turn.as_euler("xyz", degrees=True),
+        "yaskawa": lambda: turn.as_euler("xyz", degrees=True), "staubli": lambda: turn.as_euler("XYZ", degrees=True),
+        "abb": lambda: np.roll(turn.as_quat(), 1), "ur": turn.as_rotvec,
+    }[controller]()
+
+
+@pytest.mark.parametrize("controller", pendant.SHOWN)
+def test_what_scipy_says_is_read_and_shown(controller):
+    turns = Rotation.random(200, random_state=3)
+    for turn in [*turns, *Rotation.from_euler("x", [0.0, 180.0, 90.0], degrees=True)]:
+        numbers = of(turn, controller)
+        found = pendant.six([controller, "10.5", "-20", "300", *(f"{number:.17g}" for number in numbers)], "here")
+        assert found[:3] == (10.5, -20.0, 300.0)
+        assert np.abs(frames.bryant(found)[:3, :3] - turn.as_matrix()).max() < 1e-12
+        again = pendant.shown(controller, found)
+        assert again[:3] == found[:3]
+        back = pendant.six([controller, *(f"{number:.17g}" for number in again)], "here")
+        assert np.abs(frames.bryant(back)[:3, :3] - turn.as_matrix()).max() < 1e-9
+        if controller == "abb":
+            positive = numbers if numbers[0] >= 0.0 else -numbers
+            assert positive[0] < 1e-9 or np.abs(np.array(again[3:]) - positive).max() < 1e-9
+
+
+@pytest.mark.parametrize(("text", "z"), [
+    # where the tool's Z points, by hand: a quarter of a turn about Y
+    ("kuka 0 0 0 0 90 0", [1, 0, 0]), ("fanuc 0 0 0 0 90 0", [1, 0, 0]), ("yaskawa 0 0 0 0 90 0", [1, 0, 0]),
+    ("staubli 0 0 0 0 90 0", [1, 0, 0]), ("abb 0 0 0 0.70711 0 0.70711 0", [1, 0, 0]),
+    (f"ur 0 0 0 0 {math.pi / 2} 0", [1, 0, 0]),
+    # then a quarter about the fixed Z, which is A of KUKA, R of FANUC, Rz of Yaskawa, and Rx of Staubli about its own X
+    ("kuka 0 0 0 90 90 0", [0, 1, 0]), ("fanuc 0 0 0 0 90 90", [0, 1, 0]), ("yaskawa 0 0 0 0 90 90", [0, 1, 0]),
+    ("staubli 0 0 0 90 90 0", [1, 0, 0]), ("staubli 0 0 0 90 0 90", [0, -1, 0]),
+])
+def test_by_hand(text, z):
+    assert np.abs(frames.bryant(pendant.six(text.split(), "here"))[:3, 2] - z).max() < 1e-5
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    ("kuka 1 2 3 4 5", "write such as: kuka X Y Z A B C"), ("abb 1 2 3 0.7 0 0.7 0.7", "quaternion is 1"),
+    ("abb 1 2 3 90 0 0", "q1 q2 q3 q4"), ("ur 0 0 0 90 0 0", "more than a turn"), ("fanuc 1 2 3 4 5 nan", "W P R"),
+])
+def test_what_is_no_such_pose_is_told(text, words):
+    with pytest.raises(InputError, match=words):
+        pendant.six(text.split(), "here")
+
+
+def test_a_positioner_where_its_pendant_says():
+    (one,) = externals("motoman-motopos-d500 at 1100 60 -100 kuka 30 0 0 carries part")
+    (other,) = externals("motoman-motopos-d500 at 1100 60 -100 0 0 30 carries part")
+    assert np.allclose(one.pose, other.pose, atol=1e-12)
