@@ -13,6 +13,7 @@ from freecad_am.core.toolpath import Toolpath
 from freecad_am.core.types import Array
 from freecad_am.plots.look import shade
 
+from ..core.geometry.mesh.facets import doubled_areas
 from . import svg
 
 WIDTH, HEIGHT, MARGIN = 960, 620, 34
@@ -76,7 +77,7 @@ def _body(corners: Array, scale: float, shift: Array) -> str:
     """The triangles (m, 3, 3) of a body that face the eye, in a few shades."""
     corners = corners[:: max(1, len(corners) // _MOST_TRIANGLES)] if len(corners) > _MOST_TRIANGLES else corners
     seen = _seen(corners.reshape(-1, 3)).reshape(-1, 3, 3)
-    normal = np.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
+    normal = doubled_areas(seen)
     slant = -normal[:, 2] / np.maximum(np.linalg.norm(normal, axis=1), 1e-12)  # the picture's second axis points down
     at = seen[:, :, :2] * scale + shift
     inside = ((at.max(axis=1) > 0.0) & (at.min(axis=1) < [WIDTH, HEIGHT])).all(axis=1) & (slant > 0.0)

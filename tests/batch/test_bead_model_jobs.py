@@ -216,7 +216,8 @@ def test_widths_outside_of_the_table_are_told_with_their_number_and_the_worst(fi
         float(text) for text in re.search(r"are (\S+) to (\S+) mm wide: ask for a process.bead_width", told).groups())
     slow, fast = (float(text) for text in re.search(r"the table's (\S+) to (\S+) mm/min", told).groups())
     assert (slow, "or measure beads at other speeds" in told) == (300.0, True) and least < most < 12.7
-    assert [least, most] == pytest.approx([85.55 / at ** (1.0 / 3.0) - 1.7542 for at in (fast, slow)], abs=5e-3)  # of four digits
+    widths = [85.55 / at ** (1.0 / 3.0) - 1.7542 for at in (fast, slow)]
+    assert [least, most] == pytest.approx(widths, abs=5e-3)  # told with four digits
 
 
 def test_walls_and_parts_of_revolution_hold_their_width(workshop):

@@ -13,6 +13,7 @@ from freecad_am.core.types import Array
 
 from ...core.collision.depths import grain, measured
 from ...core.geometry.curves.profile import RevolvedWall
+from ...core.geometry.mesh.facets import doubled_areas
 from ...core.geometry.mesh.solid import spread
 from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.part_depths import PartDepths, Surface
@@ -99,7 +100,7 @@ def _places(body: Body, on: Any) -> Surface:
     corners = body.corners()[on]
     if not len(corners):
         return Surface(*(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)))
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    across = doubled_areas(corners)
     twice: Array = np.linalg.norm(across, axis=1)
     points, of = spread(corners, grain(corners, float(2.0 * np.sqrt(0.5 * twice.sum() / PLACES))))
     areas = (0.5 * twice / np.maximum(np.bincount(of, minlength=len(corners)), 1))[of]

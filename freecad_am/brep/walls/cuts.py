@@ -8,6 +8,7 @@ import numpy as np
 from freecad_am.core.types import Array, Index
 
 from ...core.geometry.formatting import place
+from ...core.geometry.mesh.facets import doubled_areas
 from ...core.geometry.mesh.near_pairs import near_pairs
 from ...core.geometry.mesh.triangles import closest
 from ...core.geometry.walls.patch import SPLINE
@@ -55,7 +56,7 @@ def refuse_crossing(wall: PatchWall, label: str) -> None:
     """InputError SELF_INTERSECTION where triangles of the wall that are not neighbours cut each other, and the exact faces
     do so too."""
     corner = wall.vertices[wall.triangles]
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    normal = doubled_areas(corner)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     middle = corner.mean(axis=1)
     reach = np.linalg.norm(corner - middle[:, None], axis=2).max(axis=1)

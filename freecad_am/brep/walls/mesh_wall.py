@@ -14,6 +14,7 @@ from freecad_am.core.types import Array, Mask
 
 from ...core.geometry.formatting import at_least, count, place
 from ...core.geometry.mesh.edge_runs import CORNER, runs
+from ...core.geometry.mesh.facets import doubled_areas
 from ...core.geometry.mesh.refined import boundary
 from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.contact import first_curves, levels, splined
@@ -40,7 +41,7 @@ def find_mesh_wall(
     InputErrors of `core.geometry.walls.mesh_wall`, and NO_CONTACT, INSIDE, NO_START, UNKNOWN_EDGE, GAP.
     """
     corner = body.corners()
-    area = 0.5 * float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum())
+    area = 0.5 * float(np.linalg.norm(doubled_areas(corner), axis=1).sum())
     about = area / (EQUAL * height) / height
     if about > MAX_TRIANGLES:
         enough = at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES))))
@@ -119,7 +120,7 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
             [_curve(loop) for loop in standing], np.zeros(len(wall.vertices), dtype=bool), [Issue(NOTE, "FIRST_LAYER", text)]
         )
     corner = wall.vertices[wall.triangles]
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    normal = doubled_areas(corner)
     flat = np.abs(normal[:, 2]) > UPRIGHT * np.linalg.norm(normal, axis=1)
     if (flat & (corner[:, :, 2] < lowest + FLOOR * height).all(axis=1)).any():
         ground = PlaneGround(lowest + ABOVE * height)

@@ -14,6 +14,7 @@ import Part
 from freecad_am.core.types import Array, Index
 
 from ...core.geometry.mesh.collapsed import collapsed
+from ...core.geometry.mesh.facets import doubled_areas
 from ...core.geometry.mesh.refined import Edges, count_halved, flipped, refined
 from ...core.geometry.walls.patch import Patch
 from ...core.geometry.walls.patch_wall import PatchWall
@@ -79,7 +80,7 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
 def facing(patch: Patch, corners: Array) -> Patch:
     """The patch with its normals on the side from which the triangles (m, 3, 3) are counter-clockwise."""
     corners = corners[:: max(1, len(corners) // ASKED)]
-    facets = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    facets = doubled_areas(corners)
     normals = patch.at(patch.inverse(corners.mean(axis=1)))[1]
     return replace(patch, sign=patch.sign if dot(facets, normals).sum() > 0.0 else -patch.sign)
 

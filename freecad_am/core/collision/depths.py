@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..geometry.mesh.facets import doubled_areas
 from ..geometry.mesh.solid import spread
 from ..geometry.obstacles import Body
 from ..geometry.walls.part_depths import Surface
@@ -61,7 +62,7 @@ def grain(corners: Array, least: float) -> float:
     """The longest side, mm, no less than `least`, that divides triangles (m, 3, 3) into no more than some MOST parts beside
     themselves: a face may be a million times as large as the wall that is looked at."""
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
-    across = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    across = np.linalg.norm(doubled_areas(corners), axis=1)
     heights = across / np.maximum(sides, 1e-300)
     longest = max(least, 1e-9)
     while ((1.0 + 2.0 * sides / longest) * (1.0 + 2.0 * heights / longest) - 1.0).sum() > MAX_PARTS:

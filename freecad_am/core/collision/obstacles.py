@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.columns import columns, dots, lengths
+from ..geometry.mesh.facets import doubled_areas
 from ..types import Array, Index, Mask
 from . import own_layer, separation, slabs, tree
 from .frustum import Frustum
@@ -61,7 +62,7 @@ class Obstacles:
         low, high = (np.array(bound.reduce(each)) for bound in (np.minimum, np.maximum))
         self._levels = self._boxes(low, high)
         if corners.shape[1] == 3:
-            normal = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
+            normal = doubled_areas(self.corners)
             size = lengths(normal)
             self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..types import Array
 from .columns import dots
 from .developable import Developable
+from .mesh.facets import doubled_areas
 
 PLACES = 10_000  # of the solid's surface, if its triangles were squares
 
@@ -21,7 +22,7 @@ PLACES = 10_000  # of the solid's surface, if its triangles were squares
 def volume_beyond(surface: Developable, vertices: Array, triangles: NDArray[np.int64]) -> float:
     """Volume, mm3, of a closed mesh (n, 3), (m, 3) in the frame of a hub, outside of that; good to about 1e-4 of it."""
     corner = vertices[triangles]
-    area = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2.0
+    area = doubled_areas(corner) / 2.0
     longest = float(np.sqrt(np.linalg.norm(area, axis=1).sum() / PLACES))
     volume = 0.0
     while len(corner):  # in halves, until no side is longer

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
+from ..geometry.mesh.facets import doubled_areas
 from ..geometry.on_hub import SolidsOnHub
 from ..geometry.walls.patch_wall import PatchWall
 from ..geometry.walls.surface import dot
@@ -68,7 +69,7 @@ def _of_surface(wall: SurfaceWall) -> Planned:
     sense = _outward(grid[middle], _normals(surface.derivatives(up[middle], around)))
     triangles = triangles.reshape(-1, 3)
     corners = grid.reshape(-1, 3)[triangles]
-    turned = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    turned = doubled_areas(corners)
     where = corners.mean(axis=1)
     own = _normals(surface.derivatives(*surface.inverse(where)))
     if float(dot(turned, own).sum()) * sense < 0.0:

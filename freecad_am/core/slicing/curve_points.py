@@ -73,7 +73,8 @@ def chord_errors(curve: SpaceCurve, w: Array) -> Array:
     places = w[:-1, None] + np.diff(w)[:, None] * BETWEEN
     points = curve.at(places.ravel())[0].reshape(*places.shape, 3)
     offset = points - ends[:-1, None]
-    share = np.clip(dot(offset, chord[:, None]) / np.maximum(dot(chord, chord), 1e-300)[:, None], 0.0, 1.0)
+    square = np.maximum(dot(chord, chord), 1e-300)[:, None]
+    share = np.clip(dot(offset, chord[:, None]) / square, 0.0, 1.0)
     distance: Array = np.linalg.norm(offset - share[..., None] * chord[:, None], axis=-1).max(axis=1)
     return distance
 

@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
 from ..geometry.formatting import at_least, count
+from ..geometry.mesh.facets import doubled_areas
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import SolidsOnHub
 from ..issues import NOTE, InputError, Issue
@@ -119,7 +120,7 @@ def _on_sheet(sheet: PatchWall, high: float, chord_error: float) -> float:
     sides = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
     turned = np.linalg.norm(way - np.roll(way, 1, axis=1), axis=2)
     dense = np.sqrt(turned / np.maximum(sides, 1e-300) / (2.0 * chord_error)).mean(axis=1)
-    area = 0.5 * np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    area = 0.5 * np.linalg.norm(doubled_areas(corner), axis=1)
     extent = float(np.ptp(corner, axis=(0, 1)).max())
     return float((area * np.maximum(dense, 2.0 / extent)).sum())
 
@@ -227,7 +228,7 @@ def _of_tube(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
 def _of_patches(wall: PatchWall, strategy: SurfaceParameters) -> Size:
     kept = ~wall.behind[wall.triangles].any(axis=1)
     corner = wall.vertices[wall.triangles[kept]]
-    area = 0.5 * float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum())
+    area = 0.5 * float(np.linalg.norm(doubled_areas(corner), axis=1).sum())
     vertices = wall.vertices[~wall.behind]
     start = cKDTree(np.vstack([one.points for one in wall.first]))
     away = np.max(start.query(vertices[:: max(1, len(vertices) // ASKED)])[0], initial=0.0)

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..geometry.mesh.facets import doubled_areas
 from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base
@@ -119,7 +120,7 @@ def _away(search: Search, points: Array) -> Array:
 def _search(body: Body, height: float) -> Search | None:
     """A body prepared for points a layer height apart; None without triangles that have an area."""
     corner = body.corners()
-    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    area = np.linalg.norm(doubled_areas(corner), axis=1)
     if not (area > 1e-10).any():
         return None
     return SolidMesh(body.vertices, body.triangles).searched(height)

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...types import Array, Index, Mask
 from ..walls.surface import dot
+from .facets import doubled_areas
 from .refined import Edges
 
 ROUNDS = 4
@@ -98,12 +99,13 @@ def _allowed(vertices: Array, triangles: Index, edges: Edges, target: Index, lon
     spot = np.minimum(np.searchsorted(keys, asked), len(keys) - 1)
     common = np.bincount(each, weights=(keys[spot] == asked), minlength=len(vertices))
     pair = np.sort(np.stack([chosen, target[chosen]], axis=1), axis=1)
-    number = np.searchsorted(edges.ends[:, 0] * base + edges.ends[:, 1], pair[:, 0] * base + pair[:, 1])
+    known, wanted = (ends[:, 0] * base + ends[:, 1] for ends in (edges.ends, pair))
+    number = np.searchsorted(known, wanted)
     allowed[chosen[common[chosen] != edges.count[number]]] = False
     return allowed
 
 
 def _normals(corners: Array) -> Array:
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal = doubled_areas(corners)
     unit: Array = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     return unit

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...types import Array, Index, Mask
 from ..walls.surface import dot
+from .facets import doubled_areas
 from .near_triangles import near_pairs
 
 
@@ -38,7 +39,7 @@ def crossings(vertices: Array, triangles: Index, least: float) -> Crossings:
 def _planes(corners: Array) -> Array:
     """Unit normals and distances from the origin (m, 4) of the planes of triangles (m, 3, 3), nothing for those without an
     area."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = doubled_areas(corners)
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     units = np.where(length > 1e-12, normals / np.maximum(length, 1e-300), 0.0)
     planes: Array = np.c_[units, dot(units, corners[:, 0])]

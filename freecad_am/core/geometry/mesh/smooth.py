@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from ...types import Array, Index
 from ..walls.surface import dot
+from .facets import doubled_areas
 
 NEAREST = 28  # samples that count at a place
 REACH = 2.2  # typical distances of samples; farther ones do not count
@@ -37,7 +38,7 @@ class SmoothMesh:
         """Unit normals (n, 3) and areas (n,) of the samples, those of their triangles."""
         corner = self.samples[self.triangles]
         normal, area = np.zeros_like(self.samples), np.zeros(len(self.samples))
-        double = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        double = doubled_areas(corner)
         size = np.linalg.norm(double, axis=1)
         unit = double / np.maximum(size, 1e-300)[:, None]
         for k in range(3):

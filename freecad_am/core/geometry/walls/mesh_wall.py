@@ -16,6 +16,7 @@ from ...types import Array, Index, Mask
 from ..formatting import deviation, place
 from ..mesh.collapsed import collapsed
 from ..mesh.crossing import crossings
+from ..mesh.facets import doubled_areas
 from ..mesh.refined import Edges, flipped, refined
 from ..mesh.repair import WELDS, connected_triangles, mended_issues
 from ..mesh.smooth import SmoothMesh
@@ -153,7 +154,7 @@ def _areas(vertices: Array, triangles: Index, edge: float = np.inf) -> Index:
     """The smooth area (m,) that each triangle belongs to. edge: mm; triangles larger than that are one area only where they
     are nearly of one plane."""
     corner = vertices[triangles]
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    normal = doubled_areas(corner)
     size = np.linalg.norm(normal, axis=1)
     normal /= np.maximum(size, 1e-300)[:, None]
     large = size > edge * np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)  # the least of its heights

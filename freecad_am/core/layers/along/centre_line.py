@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
 from ...geometry.angles import TURN
+from ...geometry.mesh.facets import doubled_areas
 from ...geometry.mesh.refined import Edges
 from ...geometry.mesh.solid import SolidMesh
 from ...geometry.obstacles import Body
@@ -107,7 +108,7 @@ class _Solid:
     def end(self, last: Section) -> _Plane | None:
         """The flat face in which the solid ends after a section; None where there is none."""
         corner = self.vertices[self.triangles]
-        doubled = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        doubled = doubled_areas(corner)
         size = np.linalg.norm(doubled, axis=1)
         near = np.linalg.norm(corner - last.middle, axis=2).max(axis=1) < 2.0 * last.reach
         ahead = (((corner.mean(axis=1) - last.middle) * last.normal).sum(axis=1) > 0.0) & near & (size > 0.0)

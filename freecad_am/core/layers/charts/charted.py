@@ -95,7 +95,8 @@ class Charted:
 def axes(normals: Array) -> tuple[Array, Array]:
     """The part's X (n, 3) as it runs where a layer has these unit normals (n, 3), its Y where it looks along X; and to the
     left of it."""
-    along = np.where((np.abs(normals[:, 0]) < STEEP)[:, None], np.eye(3)[0], np.eye(3)[1])
+    steep: Array = np.abs(normals[:, :1]) < STEEP
+    along = np.where(steep, np.eye(3)[0], np.eye(3)[1])
     first = along - (along * normals).sum(axis=1)[:, None] * normals
     first /= np.linalg.norm(first, axis=1, keepdims=True)
     return first, np.cross(normals, first)

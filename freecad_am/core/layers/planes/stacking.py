@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...collision.inside import inside_of
 from ...geometry.columns import columns
+from ...geometry.mesh.facets import doubled_areas
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ...geometry.plane import Plane
@@ -75,7 +76,7 @@ def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Ar
     """Corners (m, 3, 3), unit normals (m, 3) and areas (m,) of all triangles with an area; what of them another body covers,
     within a slit of so many mm, does not count: touching bodies are one. None: each body is one by itself."""
     corners = np.concatenate([body.corners() for body in bodies])
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal = doubled_areas(corners)
     doubled = np.linalg.norm(normal, axis=1)
     some = doubled > 1e-12
     corners, normal, area = corners[some], normal[some] / doubled[some, None], 0.5 * doubled[some]

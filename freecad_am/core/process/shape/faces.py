@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.columns import dots
+from ...geometry.mesh.facets import doubled_areas
 from ...geometry.mesh.solid import spread
 from ...types import Array, Index, Mask
 
@@ -43,7 +44,7 @@ def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
     """Places evenly spread over triangles (m, 3) of vertices (k, 3) mm, which are counter-clockwise seen from outside; with
     BOTH they enclose nothing."""
     corners = vertices[triangles]
-    vectors = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    vectors = doubled_areas(corners)
     twice = np.linalg.norm(vectors, axis=1)
     kept = twice > 1e-12 * max(float(twice.max(initial=0.0)), 1e-300)
     corners, vectors, twice = corners[kept], vectors[kept], twice[kept]

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...geometry.formatting import place
+from ...geometry.mesh.facets import doubled_areas
 from ...geometry.mesh.solid import Search, SolidMesh, spread
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group
@@ -48,7 +49,7 @@ def _deepest(one: Body, other: Body, box: tuple[Array, Array], bases: Sequence[B
     # faces in a side of the box count: below them may be inside of the other
     corners = corners[((corners.min(axis=1) <= box[1]) & (corners.max(axis=1) >= box[0])).all(axis=1)]
     points, of = spread(corners, STEP)
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal = doubled_areas(corners)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     # surfaces that are the same tell nothing: what lies below them does
     points = np.vstack([corners.reshape(-1, 3), points, points - 2.0 * deep * normal[of]])

@@ -47,8 +47,8 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
     """
     centre, normal = np.zeros(3), np.array([0.0, 0.0, 1.0])
     if frame is not None:
-        centre = wall.frame[:3, :3].T @ (frame[:3, 3] - wall.frame[:3, 3])
-        normal = wall.frame[:3, :3].T @ frame[:3, 2]
+        turn, apart = wall.frame[:3, :3].T, frame[:3, 3] - wall.frame[:3, 3]
+        centre, normal = turn @ apart, turn @ frame[:3, 2]
     if diameter <= 0.0:
         return Platform(0.0)
     off, height, radius = float(np.hypot(centre[0], centre[1])), float(centre[2]), 0.5 * diameter
