@@ -227,6 +227,11 @@ class Program:
     schedule_output: int = 2
 
     @property
+    def holds_part(self) -> bool:
+        """Whether the robot holds the part, under a tool that stands."""
+        return self.setup == "part-on-robot"
+
+    @property
     def own_axes(self) -> int:
         """How many axes the machine has without those beside it."""
         return len(self.continuous) - len(self.external_kinds)

@@ -40,7 +40,7 @@ class Post(Protocol):
         self, motion: str, setup: str, external: tuple[str, ...] = (), carried: tuple[float, ...] | None = None
     ) -> None:
         """Raises InputError, saying why, when this motion of this set-up cannot be said to the controller, with external
-        axes of these kinds, as programs have them, or on a rotary table, whose `carried` frame is None on others."""
+        axes of these kinds, as programs have them, and what the flange carries, None where that is not known yet."""
 
     def read(self, files: dict[str, bytes]) -> ReadMoves:
         """The moves found in the files, in the order of execution; raises InputError UNREADABLE_PROGRAM."""

@@ -148,7 +148,7 @@ def _own_remarks(program: Program) -> Iterator[str]:
         yield f"eax_{letter} is the track in mm, which moves the base frame of the robot"
     if program.on_positioner:
         yield f"{text.WORK_OBJECT} is on the face of {program.unit}, and seen from its user frame"
-    if program.setup == "part-on-robot":
+    if program.holds_part:
         yield f"{text.TOOL} is the nozzle, which stands; {text.WORK_OBJECT} is what the robot holds"
     yield f"set the load of {text.TOOL}: mass and centre of gravity of what the robot carries"
     if program.dry_run:
@@ -179,7 +179,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
 def _module(
     program: Program, words: numbers.Words, name: str, routine: str, remarks: list[str], pieces: Sequence[Piece]
 ) -> bytes:
-    held = program.setup == "part-on-robot"
+    held = program.holds_part
     station, carried = numbers.pose(program.station), numbers.pose(program.carried)
     lines = ["    ConfL\\Off;", "    SingArea\\Off;", *text.activated(program.unit)]
     used: set[str] = set()

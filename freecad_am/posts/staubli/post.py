@@ -132,7 +132,7 @@ _CALL = "process.between_layers.call"
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
-    if program.motion == "cartesian" and program.setup == "part-on-robot":
+    if program.motion == "cartesian" and program.holds_part:
         yield "pTarget is the deposition point, tCarried the program origin on the flange"
         yield "each tPath is the point of the part that comes to pTarget, seen from the program origin"
     if program.dry_run:
@@ -170,7 +170,7 @@ def _application(
             libraries[block.program] = f"Disk://{block.program}/{block.program}.pjx"
     if program.motion == "cartesian":
         arrays["fStation"] = ("frame", _single(program.station, 'fatherId="world[0]"'))
-    if program.motion == "cartesian" and program.setup == "part-on-robot":
+    if program.motion == "cartesian" and program.holds_part:
         arrays["pTarget"] = ("pointRx", _single(None, _POINT))
     arrays["tCarried"] = ("tool", _single(program.carried, _TOOL))
     return _files(program, folder, name, lines, arrays, libraries)
@@ -210,7 +210,7 @@ def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]
     else:
         assert moves.position is not None and moves.rotation is not None
         places = numbers.frames(moves.position[rows], moves.rotation[rows])
-        if program.setup == "part-on-robot":
+        if program.holds_part:
             pattern, array, kind = "movel(pTarget,tPath[{point}],mPath[{speed}])", "tPath", "tool"
             values = text.frames(places, _GAUGE)
         else:

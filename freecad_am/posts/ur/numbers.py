@@ -48,7 +48,7 @@ class Words:
 def _ways(program: Program) -> tuple[Array | None, Array]:
     """The tool point, and (n,) mm that it goes on each move of a bead."""
     moves = program.moves
-    if program.setup != "part-on-robot":  # the tip is the tool
+    if not program.holds_part:  # the tip is the tool
         return None, np.concatenate([run.speed * run.duration for run in moves])
     flange = np.concatenate([run.flange for run in moves if run.flange is not None])
     at = flange[:, :3, :3] @ TOOL_POINTS.T + flange[:, :3, 3:]

@@ -139,7 +139,7 @@ def _refuse(program: Program) -> None:
     refuse_schedules(program, LAST_REGISTER, LAST_SCHEDULE)
     refuse_continuous(program)
     refuse_without_positions(program)
-    if program.setup == "part-on-robot" and any(run.flange is None for run in program.moves):
+    if program.holds_part and any(run.flange is None for run in program.moves):
         raise InputError("NO_POSITIONS", "program", "the program does not tell where the flange is, which blends count on")
     if not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
@@ -157,7 +157,7 @@ def _refuse(program: Program) -> None:
 
 
 def _own_remarks(program: Program, names: Sequence[str]) -> Iterator[str]:
-    if program.setup == "part-on-robot":
+    if program.holds_part:
         yield "the tool centre point is one that the part carries: blend radii count on its way, nothing else does"
     if names:
         yield f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts"
