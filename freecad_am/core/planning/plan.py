@@ -125,7 +125,7 @@ def _in_branches(
     if together:
         (paths, issues), level = _bettered(task, toolpath, beads, places, (paths, issues), progress)
     issues = [*tilted, *issues, *notes]
-    if cell.machine.free and task.arm.followed:
+    if cell.robot.arm is not None and cell.robot.arm.followed:
         issues = [*issues, Issue(
             NOTE, "FOLLOWED", "several solutions of this arm bear the same configuration; along each bead the one it begins "
             "with is followed",

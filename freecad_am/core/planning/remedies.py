@@ -148,27 +148,26 @@ def _some(toolpath: Toolpath, failed: Sequence[int]) -> Toolpath:
 
 
 def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[Tried]:
-    codes, arrangement = {issue.code for issue in issues if issue.level == ERROR}, of_setup(job.settings.setup)
+    codes, free = {issue.code for issue in issues if issue.level == ERROR}, of_setup(job.settings.setup).free > 0
     usual = CellParameters()
     left_out = job.settings.deposition_point == usual.deposition_point and job.settings.machine != usual.machine
-    if left_out and arrangement.free:
+    if left_out and free:
         yield from _points(job)
     if "SPEED" in codes and job.process.bead_model == "none":
         yield from _slower(job, path)
     if all(code.startswith("RAPID") for code in codes):
         yield from _retracts(job)
-    if arrangement.free and codes != {external_remedies.NOT_LEVEL}:  # which no turn about the tool mends
+    if free and codes != {external_remedies.NOT_LEVEL}:  # which no turn about the tool mends
         yield from _branches(job)
         yield from _rotations(job)
     if job.fixed is not None:
         fixed = dataclasses.replace(job, toolpath=job.fixed.make, remedy=job.fixed.remedy)
         yield fixed
-        if arrangement.free and job.settings.branch != "auto":
+        if free and job.settings.branch != "auto":
             yield _with_cell(fixed, f"{fixed.remedy} and `cell.branch: auto`", branch="auto")
-    if not left_out and arrangement.free:
+    if not left_out and free:
         yield from _points(job)
-    if arrangement.free:
-        yield from _external_axes(job, codes)
+    yield from _external_axes(job, codes)
 
 
 def _with_cell(job: Tried, remedy: str, **values: object) -> Tried:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..geometry import frames
 from ..kinematics.cell import Cell
+from ..kinematics.inverse.five_axis import TURNING, FiveAxis
 from ..types import Array
 from .table_links import standing_link
 
@@ -61,12 +62,8 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     """
     place, chain = np.asarray(point, float), cell.machine.chain
     if not cell.machine.free:
-        slides = np.flatnonzero(chain.sliding)
-        zero = np.zeros(chain.axes)
-        away = cell.deposition_point(chain.forward(zero)[None])[0] - _seen(cell, zero, place)
-        ways = np.stack([_seen(cell, np.eye(chain.axes)[axis], place) - _seen(cell, zero, place) for axis in slides], axis=1)
-        zero[slides] = np.linalg.lstsq(ways, away, rcond=None)[0]
-        return zero
+        on_flange, _ = cell.on_flange(place[None], cell.mount[None, :3, 2])
+        return np.asarray(FiveAxis(chain).placed(np.zeros((1, TURNING)), on_flange, cell.station)[0])
     arm = cell.robot.arm
     assert arm is not None  # a cell has no other robots
     rotations = np.linspace(0.0, 2.0 * np.pi, _ROTATIONS, endpoint=False)
@@ -80,9 +77,3 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     margin = np.nan_to_num(cell.limits.smallest(found).margin, nan=-np.inf)
     best = int(np.argmax(margin))
     return np.asarray(found[best]) if np.isfinite(margin[best]) else np.zeros(chain.axes)
-
-
-def _seen(cell: Cell, joints: Array, point: Array) -> Array:
-    """A point of the part (3,) in base_link."""
-    part = cell.machine.chain.forward(joints) @ cell.carried @ frames.inverse(cell.mount)
-    return np.asarray(part[:3, :3] @ point + part[:3, 3])
