@@ -208,7 +208,7 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
     wrong = [key for key in given_keys if key not in known]
     if wrong or "source" not in given_keys:
         text = ", ".join(wrong) or "no source"
-        raise InputError("BAD_VALUE", "then", f"{text}: give source, and any of {', '.join(known[1:])}")
+        raise InputError("BAD_VALUE", "then", "{}: give source, and any of {}", text, ", ".join(known[1:]))
     links = {
         "Substrate": given_keys.get("substrate"), "Further": list(given_keys.get("further", ())),
         "BaseFaces": given_keys.get("base_faces", ()),

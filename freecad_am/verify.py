@@ -15,7 +15,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from .core.issues import ERROR, Issue
+from .core.issues import ERROR, Issue, Text
 from .core.kinematics.cell import Cell
 from .core.motion import Motion
 from .core.program import Program
@@ -56,7 +56,7 @@ def verify(
     """
     read, rows = post.read(files), np.flatnonzero(motion.moves)
     if len(read.deposit) != len(rows):
-        message = f"the text has {len(read.deposit)} moves, planned are {len(rows)}"
+        message = Text("the text has {} moves, planned are {}", len(read.deposit), len(rows))
         return Verification((Issue(ERROR, "VERIFY_COUNT", message),), np.inf, np.inf, np.inf, ())
     planned = Planned(motion, rows)
     issues = event_issues(planned, program, read) + way_issues(cell, planned, program, read)
@@ -81,7 +81,7 @@ def _verify_joints(
     del flange  # of all that is looked at the largest
     issues += points.joint_issues(cell, planned, read, continuous) + points.point_issues(planned, path)
     strayed, off = between.beads_between(cell, planned, shown, path, chord_error)
-    issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
+    issues += planned.issue("VERIFY_BETWEEN", off, Text(STRAYS, strayed))
     text = text_path.text_joints(cell, planned.joints, shown, half, path, None)
     return _concluded(cell, planned, read, path, text, strayed, second, issues)
 
@@ -108,7 +108,7 @@ def _verify_poses(
     # a tool that stays the same goes straight from point to point, and so does one that stands seen from a part that is held
     if read.tool is not None and not read.held and len(planned.ends):
         strayed, off = between.tools_between(cell, planned, asked, tools, poses, chord_error)
-        issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
+        issues += planned.issue("VERIFY_BETWEEN", off, Text(STRAYS, strayed))
     text = text_path.text_joints(cell, planned.joints, read.joints, text_path.digits(cell, read), poses, asked)
     second = points.second_opinion(cell, planned, joints, flange)
     return _concluded(cell, planned, read, poses, text, strayed, second, issues)
@@ -145,7 +145,7 @@ def _concluded(
 ) -> Verification:
     """What is looked at whatever the text is told in, rapids and limits; what the second solver said, and who solved."""
     wandered, off = between.rapids_between(cell, planned, text, path, read.linear)
-    issues += planned.issue("VERIFY_BETWEEN", off, WANDERS.format(wandered))
+    issues += planned.issue("VERIFY_BETWEEN", off, Text(WANDERS, wandered))
     issues += points.limit_issues(cell, planned, text)
     solver_issues, solvers = second
     at_points = float(np.linalg.norm(path.position - planned.position, axis=1).max())

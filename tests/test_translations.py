@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every text of the window can be translated, the French one is complete and current, and messages are recognised."""
+"""Every text of the window can be translated, the French one is complete and current, and messages are told by theirs."""
 
 import ast
 import gc
-import json
 import math
 import re
 import sys
@@ -15,12 +14,13 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.geometry.mesh.repair import repaired
-from freecad_am.core.issues import AmError, Issue
+from freecad_am.core.issues import AmError, Issue, Text
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.gui.texts.field_names import as_in_panels
-from freecad_am.gui.texts.phrases import Phrases, Template
+from freecad_am.gui.texts.in_language import in_language, names_first
+from freecad_am.objects.results.findings import message_of
 from freecad_am.objects.work import progress
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -49,11 +49,6 @@ def french():
     return ts_file.contexts(FOLDER / "RoboticAM_fr.ts")
 
 
-@pytest.fixture(scope="module")
-def phrases():
-    return Phrases(json.loads((FOLDER / "messages.json").read_text(encoding="utf-8")))
-
-
 # ---- what is shipped
 
 
@@ -63,7 +58,6 @@ def test_all_texts_are_collected(collected, french):
     for context in texts.keys() | french.keys():
         now, shipped = set(texts.get(context, ())), set(french.get(context, ()))
         assert now == shipped, f"{context}: new {sorted(now - shipped)}, gone {sorted(shipped - now)}; {UPDATE}"
-    assert (FOLDER / "messages.json").read_text(encoding="utf-8") == collected.recognised(), UPDATE
 
 
 def test_french_is_complete(french):
@@ -162,17 +156,7 @@ def test_texts_shown_as_they_are_written_are_found():
     assert [line for line, _ in shown_bare(ast.parse(text + 'd.setText("{} mm".format(1))'))] == [1, 2, 4]
 
 
-# ---- messages are recognised by their templates
-
-
-def test_each_template_recognises_its_own_texts(phrases):
-    for one in phrases.templates:
-        values = {at: f"Ab{at}" for at in one.fields}
-        text = one.text.format(*(f"Ab{at}" for at in range(1 + max(one.fields))))
-        found = phrases.find(text)
-        assert found is not None and (found[0].text, found[1]) == (one.text, values), text
-    for text in phrases.plain:
-        assert phrases.find(text)[1] == {}
+# ---- messages are told by their templates
 
 
 def upper(template: str) -> str:
@@ -182,26 +166,25 @@ def upper(template: str) -> str:
 
 
 def test_figures_and_names_stay_as_they_are():
-    phrases = Phrases(
-        ["{0} is a mesh; use {1}", "a number such as {0}", "it has {0} faces", "wall", "{{x}} is not a key {0}"])
-    told = phrases.translated("Box 2 is a mesh; use a number such as 1.50", upper)
-    assert told == "Box 2 IS A MESH; USE A NUMBER SUCH AS 1.50"
-    assert phrases.translated("Cone: it has 12 faces", upper) == "Cone: IT HAS 12 FACES"
-    assert phrases.translated("wall", upper) == "WALL"
-    assert phrases.translated("{x} is not a key y", upper) == "{x} IS NOT A KEY y"
-    assert phrases.translated("of none of these", upper) == "of none of these"
-    phrases = Phrases(["{0} is not a {1}", "cell", "joint", "; up to {0} mm off"], ["cell"])
-    assert phrases.translated("<joint> is not a joint", upper) == "<joint> IS NOT A joint"  # a word of a file
-    assert phrases.translated("Box is not a cell", upper) == "Box IS NOT A CELL"
-    assert phrases.translated("Box; up to 2.5 mm off", upper) == "Box; UP TO 2.5 MM OFF"
+    remedy = Text("a number such as {:.2f}", 1.5)
+    assert in_language(Text("{} is a mesh; use {}", "Box", remedy), upper) == "Box IS A MESH; USE A NUMBER SUCH AS 1.50"
+    assert in_language(Text("{}: {}", "Cone", Text("it has {} faces", 12)), upper) == "Cone: IT HAS 12 FACES"
+    assert in_language("it has no faces", upper) == "IT HAS NO FACES"
+    assert in_language("{x} is not a key", upper) == "{x} IS NOT A KEY"
+    assert in_language(Text("{!r} is no key, {{}} is", "a b"), upper) == "'A B' IS NO KEY, {} IS"
+    assert in_language(Text("{} is not a {}", "<joint>", "joint"), upper) == "<joint> IS NOT A joint"  # a word of a file
+    assert in_language(Text("{} is not a {}", "Box", "cell"), upper) == "Box IS NOT A CELL"
+    assert in_language(Text("{} fits", "Box") + Text("; up to {} mm off", 2.5), upper) == "Box FITS; UP TO 2.5 MM OFF"
+    assert in_language("", upper) == "" and in_language(" to it ", upper) == " TO IT "
 
 
 def test_a_message_that_begins_with_a_name_is_known():
-    phrases = Phrases(["{0} is a mesh; use {1}", "it has {0} faces", "{0}; use {1}", "cell", "{0} is not a wall"], ["cell"])
-    for text in ("tube-on-pipe is a mesh; use a shape", "tube-on-pipe: it has 12 faces", "pipe is not a wall; use another"):
-        assert phrases.names_first(text), text
-    for text in ("it has 12 faces", "cell is a mesh; use a shape", "it has 12 faces; use another", "of none of these", ""):
-        assert not phrases.names_first(text), text
+    known = Text("it has {} faces", 12)
+    cut = Text("{} is cut", "pipe")
+    for text in (Text("{} is a mesh", "pipe"), Text("{}: {}", "pipe", known), Text("{}; use {}", cut, known)):
+        assert names_first(text), text
+    for text in (known, Text("{} is a mesh; use a shape", "cell"), Text("{}; use another", known), "of none of these", ""):
+        assert not names_first(text), text
 
 
 @pytest.mark.parametrize(
@@ -220,44 +203,10 @@ def test_messages_call_parameters_as_the_panels_do(text, told):
     assert as_in_panels(text, str) == told
 
 
-def test_parameters_in_messages_are_those_of_a_panel(phrases):
+def test_parameters_in_messages_are_those_of_a_panel(collected):
     """Whatever name of a job file a message has, the window knows how its panel calls it, but those of a job file alone."""
-    told = {match[0] for text in [*phrases.plain, *(one.text for one in phrases.templates)]
-            for match in NAMED.finditer(as_in_panels(text, str))}
+    told = {match[0] for text in collected.messages for match in NAMED.finditer(as_in_panels(text, str))}
     assert told <= {"strategy.wait", "part.faces", "part.scale"}
-
-
-def test_the_template_that_says_more_is_meant():
-    phrases = Phrases(["{0} is not {1}", "{0} is not a number", "{0} is not a number; give {1}"])
-    assert phrases.find("'a' is not a number; give 1")[0].text == "{0} is not a number; give {1}"
-    assert phrases.find("'a' is not a number")[0].text == "{0} is not a number"
-    assert Template("{0} is not {1}").values("a number") is None
-
-
-class Counted(Phrases):
-    """Phrases that count how often a text is looked up."""
-
-    count = 0
-
-    def find(self, text):
-        self.count += 1
-        assert self.count < 1000, "the work doubles with each break"
-        return super().find(text)
-
-
-@pytest.mark.parametrize("mark", [": ", "; ", ". ", "; a: b. "], ids=["colon", "semicolon", "stop", "mixed"])
-@pytest.mark.parametrize("last", ["of none of these", "no such file"], ids=["foreign", "ours"])
-def test_the_work_does_not_double_with_each_break(mark, last):
-    phrases = Counted(["no such file", ". no such file", "it has {0} faces"])
-    before = "".join(f"Part {at}{mark}" for at in range(40))
-    told = "NO SUCH FILE" if last == "no such file" else last
-    assert phrases.translated(before + last, upper) == before + told
-    assert phrases.count > 40
-
-
-def test_each_part_of_a_long_text_is_translated():
-    phrases = Counted(["no such file", "it has {0} faces"])
-    assert phrases.translated("; ".join(["no such file"] * 41), upper) == "; ".join(["NO SUCH FILE"] * 41)
 
 
 MISTAKES = {
@@ -270,10 +219,11 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES.keys())
-def test_errors_of_the_core_are_recognised(mistake, phrases):
+def test_errors_of_the_core_are_known(mistake, french):
     with pytest.raises(AmError) as caught:
         mistake()
-    assert phrases.find(caught.value.message) is not None, caught.value.message
+    message = caught.value.message
+    assert (message.template if isinstance(message, Text) else message) in french["RoboticAM"]
 
 
 def test_what_was_mended_of_a_mesh_is_told_in_french(told):
@@ -289,18 +239,18 @@ def test_what_was_mended_of_a_mesh_is_told_in_french(told):
     assert not re.search(r"\b(?:were|across|triangles? .* to|holes)\b", text), text
 
 
-def test_the_place_of_a_finding_is_recognised(phrases):
-    where = Issue("error", "X", "it is there", 3, 1, 4).where
-    assert phrases.find(where)[0].text == "layer {0} bead {1} point {2}"
+def test_the_place_of_a_finding_is_told(told):
+    assert told(Issue("error", "X", "it is there", 3, 1, 4).where) == "couche 3 cordon 1 point 4"
+    assert told(Issue("error", "X", "it is there", 3, None, 4).where) == "couche 3 point 4"
 
 
 # ---- what stages say
 
 
 @pytest.fixture
-def told(phrases, french):
+def told(french):
     """What a panel shows in French of a message."""
-    return lambda text: phrases.translated(text, lambda source: french["RoboticAM"].get(source, source))
+    return lambda text: in_language(text, lambda source: french["RoboticAM"].get(source, source))
 
 
 @pytest.fixture
@@ -315,10 +265,10 @@ def stages(doc):
 
 def test_what_became_stale_is_told_in_french(stages, told):
     stages.feature.LayerHeight = 3
-    assert told(stages.feature.Message) == f"LayerHeight a changé{NO_BREAK}; recalculez"
-    assert told(stages.toolpath.Message) == f"Feature a changé{NO_BREAK}; recalculez"
+    assert told(message_of(stages.feature)) == f"LayerHeight a changé{NO_BREAK}; recalculez"
+    assert told(message_of(stages.toolpath)) == f"Feature a changé{NO_BREAK}; recalculez"
     stages.toolpath.Proxy.execute(stages.toolpath)
-    assert told(stages.toolpath.Message) == f"attend Feature{NO_BREAK}; recalculez"
+    assert told(message_of(stages.toolpath)) == f"attend Feature{NO_BREAK}; recalculez"
 
 
 def test_work_that_was_cancelled_or_overtaken_is_told_in_french(stages, told, monkeypatch):
@@ -331,7 +281,7 @@ def test_work_that_was_cancelled_or_overtaken_is_told_in_french(stages, told, mo
     monkeypatch.setattr(cell.Proxy, "prepare", cancelled)
     with pytest.raises(progress.Cancelled):
         cell.Proxy.renew(cell)
-    assert told(cell.Message) == f"annulé{NO_BREAK}; recalculez"
+    assert told(message_of(cell)) == f"annulé{NO_BREAK}; recalculez"
 
     def overtaken(obj):
         work = prepare(obj)
@@ -340,28 +290,12 @@ def test_work_that_was_cancelled_or_overtaken_is_told_in_french(stages, told, mo
 
     monkeypatch.setattr(cell.Proxy, "prepare", overtaken)
     cell.Proxy.renew(cell)
-    assert told(cell.Message) == f"une entrée a changé pendant le calcul{NO_BREAK}; recalculez"
+    assert told(message_of(cell)) == f"une entrée a changé pendant le calcul{NO_BREAK}; recalculez"
 
 
 def test_a_missing_input_is_told_in_french(stages, told):
     stages.toolpath.Feature = None
-    assert told(stages.toolpath.Message) == f"Feature manque{NO_BREAK}; choisissez l'élément à déposer"
+    assert told(message_of(stages.toolpath)) == f"Feature manque{NO_BREAK}; choisissez l'élément à déposer"
     for link in (link for stage in collect.STAGES for link in stage.links if link.required):
-        help_ = f"{link.help[0].lower()}{link.help[1:].rstrip('.')}"
-        text = told(f"{link.name} is missing; choose {help_}")
-        assert text.startswith(f"{link.name} manque") and help_ not in text
-
-
-def written_out(text: ast.expr) -> str:
-    """A literal text, with a name for each thing put in; '' for what is not a literal."""
-    parts = text.values if isinstance(text, ast.JoinedStr) else [text]
-    words = [part.value if isinstance(part, ast.Constant) else "Ab" for part in parts]
-    return "".join(words) if isinstance(text, (ast.Constant, ast.JoinedStr)) else ""
-
-
-def test_each_message_that_stages_are_given_is_recognised(phrases):
-    tree = ast.parse((ROOT / "freecad_am" / "objects" / "stage.py").read_text(encoding="utf-8"))
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and collect.called(node) == "say"]
-    texts = list(filter(None, (written_out(call.args[2]) for call in calls)))
-    assert len(texts) >= 3 and "waits for Ab; recompute" in texts
-    assert [text for text in texts if phrases.find(text) is None] == []
+        text = told(Text("{} is missing; choose {}", link.name, link.wanted))
+        assert text.startswith(f"{link.name} manque") and link.wanted not in text

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from freecad_am.core.geometry.file_content import MB, content
-from freecad_am.core.issues import ERROR, NOTE, InputError, Issue
+from freecad_am.core.issues import ERROR, NOTE, InputError, Issue, Text
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import jacobian
 from freecad_am.core.kinematics.cell import Cell
@@ -83,7 +83,7 @@ def check(programs: Sequence[str], cell_file: str, post: str | None, folder: str
     motion = driven.driven(cell, without_moves(cell, settings, catalogue.controller(name), "check"), read)
     promises = _promises(motion, cell, known)
     issues = [
-        Issue(ERROR, code, f"{one.promise} - it does not: {one.figure}", *(one.place or (None, None, None)))
+        Issue(ERROR, code, Text("{} - it does not: {}", one.promise, one.figure), *(one.place or (None, None, None)))
         for code, one in zip(CODES, promises, strict=True) if one.ok is False
     ]
     if not motion.deposit.any():
@@ -112,17 +112,17 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
     if not found:
         raise InputError("NO_FILE", where, "the folder holds no program; name its files, or the folder they are in")
     if len(found) > MOST_FILES:
-        raise InputError("BAD_FILE", where, f"the folder holds more than {MOST_FILES} files; name those of the program")
+        raise InputError("BAD_FILE", where, "the folder holds more than {} files; name those of the program", MOST_FILES)
     read, remaining = {}, LARGEST_MB * MB
     for name, path in sorted(found.items()):
         try:
             read[name] = content(path, LARGEST_MB, "BAD_FILE", name)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
-            raise InputError("NO_FILE", name, f"it cannot be read ({reason}); name the program's files") from None
+            raise InputError("NO_FILE", name, "it cannot be read ({}); name the program's files", reason) from None
         remaining -= len(read[name])
         if remaining < 0:
-            raise InputError("BAD_FILE", where, f"its files are larger than {LARGEST_MB} MB together; is that the program?")
+            raise InputError("BAD_FILE", where, "its files are larger than {} MB together; is that the program?", LARGEST_MB)
     return read
 
 

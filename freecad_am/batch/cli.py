@@ -74,13 +74,13 @@ def _run(argv: list[str], session: Any) -> int:
     for word in argv:
         if not word.isascii() and word != word.encode("utf-8", "replace").decode("utf-8"):
             shown = word.encode("utf-8", "backslashreplace").decode("utf-8")
-            raise InputError("USAGE", "command line", f"{shown!r} holds bytes that are not UTF-8; use a name in UTF-8")
+            raise InputError("USAGE", "command line", "{!r} holds bytes that are not UTF-8; use a name in UTF-8", shown)
     if command not in COMMANDS:
         import difflib
 
         near = difflib.get_close_matches(command, (*COMMANDS, "demo", "test", "bench"), n=1)
         hint = f"did you mean {near[0]}?" if near else f"use one of {', '.join(COMMANDS)}"
-        raise InputError("USAGE", "command line", f"there is no command {command!r}; {hint}")
+        raise InputError("USAGE", "command line", "there is no command {!r}; {}", command, hint)
     parser = _parser(command)
     if "-h" in words or "--help" in words:
         session.out(parser.format_help())
@@ -119,7 +119,7 @@ def _parser(command: str) -> Any:
 
     class Parser(argparse.ArgumentParser):
         def error(self, message: str) -> Any:
-            raise InputError("USAGE", f"freecad-am {command}", f"{message}; try freecad-am {command} --help")
+            raise InputError("USAGE", f"freecad-am {command}", "{}; try freecad-am {} --help", message, command)
 
     parser = Parser(prog=f"freecad-am {command}", allow_abbrev=False, add_help=False)
     if command == "machines":
@@ -253,15 +253,15 @@ def _machines(options: Any, session: Any) -> int:
     from freecad_am.core.issues import InputError
 
     if options.form is None and options.machine is not None:
-        text = f"in what form is {options.machine!r} to be written? Use --urdf, --dh or --modified-dh"
-        raise InputError("USAGE", "freecad-am machines", text)
+        raise InputError("USAGE", "freecad-am machines", "in what form is {!r} to be written? Use --urdf, --dh or "
+                         "--modified-dh", options.machine)
     if options.form is not None and options.machine is None:
-        raise InputError("USAGE", "freecad-am machines", f"--{options.form} of what machine? Give its name")
+        raise InputError("USAGE", "freecad-am machines", "--{} of what machine? Give its name", options.form)
     wanted = (options.maker, options.reach, options.payload, options.post)
     filtered = any(one is not None for one in wanted)
     if filtered and options.machine is not None:
-        raise InputError("USAGE", "freecad-am machines", f"--maker, --reach, --payload and --post choose from the list; "
-                         f"leave {options.machine!r} out, or them")
+        raise InputError("USAGE", "freecad-am machines", "--maker, --reach, --payload and --post choose from the list; "
+                         "leave {!r} out, or them", options.machine)
     if options.machine is not None:
         session.out(machines.written(options.machine, options.form))
     else:

@@ -16,7 +16,7 @@ import uuid
 from collections.abc import Iterator
 from typing import Any
 
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, Text, Word
 
 from . import versions
 from .console import Session
@@ -116,7 +116,7 @@ class Cluster:
 
         workers = sorted(self._workers())
         if not workers:
-            raise InputError(CODE, WHERE, f"{self._address} has no workers; start some with: dask worker {self._address}")
+            raise InputError(CODE, WHERE, "{} has no workers; start some with: dask worker {}", self._address, self._address)
         asked = {worker: self._client.submit(
             self._module.ready, self._token, self._settings, self._package, workers=[worker], pure=False,
             key=f"freecad-am-ready-{number}-{self._token}",
@@ -125,7 +125,7 @@ class Cluster:
             wait(list(asked.values()), timeout=READY)
         for worker, future in asked.items():
             if future.status == "error":
-                raise InputError(CODE, worker, f"this worker cannot plan: {_why(future)}; install FreeCAD there, or end it")
+                raise InputError(CODE, worker, "this worker cannot plan: {}; install FreeCAD there, or end it", _why(future))
             if future.status == "finished":
                 self._tell(worker, future.result())
 
@@ -149,8 +149,8 @@ class Cluster:
             if future.status == "error" and type(future.exception()).__name__ == "KilledWorker":
                 message = "each worker that planned it was lost; look into their memory, and plan this row alone"
                 return {"exit": 1, "message": message, "lines": [f"error[LOST] row: {message}"]}
-            raise InputError(CODE, WHERE, f"{self._address} gave up row {row.number}: {_why(future)}; rows that were done "
-                             "are whole: --resume plans the others")
+            raise InputError(CODE, WHERE, "{} gave up row {}: {}; rows that were done are whole: --resume plans the others",
+                             self._address, row.number, _why(future))
         result: dict[str, Any] = future.result()
         self._tell(result.pop("worker"), result.pop("versions"))
         found = result.pop("files")
@@ -175,7 +175,8 @@ class Cluster:
 
     def _gone(self) -> InputError:
         what = "it has no workers any more" if self._client.status == "running" else "it does not answer any more"
-        return InputError(CODE, WHERE, f"{self._address}: {what}; rows that were done are whole: --resume plans the others")
+        return InputError(CODE, WHERE, "{}: {}; rows that were done are whole: --resume plans the others", self._address,
+                          Word(what))
 
     def _close(self) -> None:
         with contextlib.suppress(Exception):
@@ -189,14 +190,14 @@ def _connected(address: str) -> Any:
     try:
         from distributed import Client
     except ImportError as error:
-        raise InputError("NO_DASK", WHERE, f"rows are planned on a cluster by Dask, which is not there ({error}); install "
-                         "python3-distributed, or leave the option out") from None
+        raise InputError("NO_DASK", WHERE, "rows are planned on a cluster by Dask, which is not there ({}); install "
+                         "python3-distributed, or leave the option out", error) from None
     try:
         return Client(address, timeout=ANSWER)  # which `wait` goes by
     except Exception as error:  # of sockets, of names, of messages that are not understood
         why = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(CODE, WHERE, f"no scheduler answers at {address!r} ({why}); start one with: dask scheduler, give "
-                         "its address such as tcp://host:8786, and use the same version of Dask everywhere") from None
+        raise InputError(CODE, WHERE, "no scheduler answers at {!r} ({}); start one with: dask scheduler, give its address "
+                         "such as tcp://host:8786, and use the same version of Dask everywhere", address, why) from None
 
 
 def _refuse_versions(address: str, client: Any) -> None:
@@ -206,8 +207,8 @@ def _refuse_versions(address: str, client: Any) -> None:
     for where, there in (("scheduler", found["scheduler"]), *sorted(found["workers"].items())):
         theirs = (there or {}).get("packages", {}).get("distributed")
         if theirs != ours:
-            raise InputError(CODE, WHERE, f"{address}: {where} has distributed {theirs}, this command {ours}; install the "
-                             "same version everywhere")
+            raise InputError(CODE, WHERE, "{}: {} has distributed {}, this command {}; install the same version everywhere",
+                             address, where, theirs, ours)
 
 
 def _sent_module(client: Any) -> Any:
@@ -242,5 +243,5 @@ def _first_done(futures: list[Any]) -> list[Any]:
 
 def _why(future: Any) -> str:
     if future.status != "error":
-        return f"it was {future.status}"
+        return Text("it was {}", future.status)
     return " ".join(str(future.exception()).split()) or type(future.exception()).__name__

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, Text, Word
 
 from . import paths
 from .outputs import folder as outputs
@@ -54,13 +54,13 @@ def _chosen(document: Any, label: str, names: tuple[str, ...], kinds: tuple[str,
     of_kinds = [api.stages_of(document, kind) for kind in kinds]
     every = [obj for objects in of_kinds for obj in objects]
     if not every:
-        raise InputError(code, label, f"the document has no {kinds[0]}s; make one with the workbench")
+        raise InputError(code, label, "the document has no {}s; make one with the workbench", kinds[0])
     known = ", ".join(obj.Label for obj in every)
     chosen = []
     for name in names:
         found = [obj for obj in every if obj.Name == name] or [obj for obj in every if obj.Label == name]
         if len(found) != 1:
-            raise InputError("NO_OBJECT", label, f"{len(found)} {kinds[0]}s are called {name!r}; there are {known}")
+            raise InputError("NO_OBJECT", label, "{} {}s are called {!r}; there are {}", len(found), kinds[0], name, known)
         chosen += found
     return chosen or next(objects for objects in of_kinds if objects)
 
@@ -74,9 +74,9 @@ def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: A
         session.progress(f"computing {obj.Label} ...")
         api.recompute(obj)
         session.check()
-        name = f"{outputs.WIRES}/{obj.Label.replace(os.sep, '-')}.{kind}"
+        name = Text("{}/{}.{}", outputs.WIRES, obj.Label.replace(os.sep, "-"), kind)
         if name in written:
-            raise InputError("SAME_NAME", obj.Label, f"two paths write {name}; give one another label")
+            raise InputError("SAME_NAME", obj.Label, "two paths write {}; give one another label", Word(name))
         written.add(name)
         api.export_wires(obj, files.path(name), rapids=True)
 
@@ -93,5 +93,5 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
         session.issues(api.issues(program))
         for name, content in api.result(program).files.items():
             if files.setdefault(name, content) != content:
-                raise InputError("SAME_NAME", program.Label, f"two programs write {name}; give one another name")
+                raise InputError("SAME_NAME", program.Label, "two programs write {}; give one another name", name)
     return files

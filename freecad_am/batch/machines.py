@@ -59,7 +59,7 @@ def _mass(text: str) -> float:
     except ValueError:
         mass = math.nan
     if not 0.0 <= mass < math.inf:
-        raise InputError("BAD_VALUE", "--payload", f"{text!r} is not a mass; give kilograms such as 20 kg")
+        raise InputError("BAD_VALUE", "--payload", "{!r} is not a mass; give kilograms such as 20 kg", text)
     return mass
 
 

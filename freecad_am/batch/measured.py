@@ -7,7 +7,7 @@ import json
 import os
 from typing import Any
 
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, Text, Word
 
 from . import paths
 from .outputs import folder as outputs
@@ -51,7 +51,7 @@ def _values(settings: tuple[str, ...]) -> dict[str, str]:
     for text in settings:
         key, sign, value = text.partition("=")
         if not sign or key.strip() in _KEPT:
-            raise InputError("USAGE", "freecad-am inspect", f"{text!r} is not a setting; give such as --set tolerance=0.3")
+            raise InputError("USAGE", "freecad-am inspect", "{!r} is not a setting; give such as --set tolerance=0.3", text)
         found[key.strip()] = value.strip()
     return found
 
@@ -110,8 +110,9 @@ def _of_document(path: str, name: str) -> tuple[Any, Any]:
     found = known if not name else [one for one in known if one.Name == name] or [one for one in known if one.Label == name]
     if len(found) != 1:
         FreeCAD.closeDocument(document.Name)
-        text = f"{len(found)} objects are called {name!r}" if name else f"it has {len(found)} features; choose with --object"
-        raise InputError("NO_OBJECT", label, f"{text}; name what was measured")
+        text = Text("{} objects are called {!r}", len(found),
+                    name) if name else Text("it has {} features; choose with --object", len(found))
+        raise InputError("NO_OBJECT", label, "{}; name what was measured", Word(text))
     return document, found[0]
 
 

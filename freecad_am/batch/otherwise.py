@@ -7,7 +7,7 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-from freecad_am.core.issues import ERROR, NOTE, Issue, has_errors
+from freecad_am.core.issues import ERROR, NOTE, Issue, Text, has_errors
 
 from .job.features import UPRIGHT, leans
 from .job.job import Job
@@ -68,12 +68,11 @@ def _with_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None]
         dataclasses.replace(one, build_direction=dataclasses.replace(one.build_direction, mode=UPRIGHT))
         if leans(one, one.strategy) else one for one in stages.job.features
     )
-    keys = text.message.split("`")[1::2]
-    what = " and ".join(f"`{key}`" for key in keys)
+    what = text.message.values[0]
     other = plan(dataclasses.replace(job, features=features), "")
     feasible = not has_errors(other.issues)
     close(other)
-    note = Issue(NOTE, REMEDY, f"with {what} this job is feasible; tried, not applied") if feasible else Issue(
-        NOTE, NO_REMEDY, f"with {what} the nozzle is clear, but the job is not feasible, which was tried")
+    note = Issue(NOTE, REMEDY, Text("with {} this job is feasible; tried, not applied", what)) if feasible else Issue(
+        NOTE, NO_REMEDY, Text("with {} the nozzle is clear, but the job is not feasible, which was tried", what))
     stages.issues = [note if issue is text else issue for issue in stages.issues]
     return stages

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from typing import Any, NamedTuple
 
-from freecad_am.core.issues import ERROR, NOTE, InputError, Issue, has_errors
+from freecad_am.core.issues import ERROR, NOTE, InputError, Issue, Text, Word, has_errors
 from freecad_am.core.one_thread import one_thread
 
 from . import paths
@@ -70,18 +70,20 @@ def _written(job: Job, stages: Any, files: outputs.Outputs, session: Any) -> Res
     files.write(PAGE, [place_page.render(job.name, found)])
     files.publish({name for name in (TABLE, PAGE) if os.path.isfile(os.path.join(files.folder, name))})
     count, serve = len(found.poses), sum(one.feasible for one in found.judged)
-    looked = f"{found.points} of {found.of} points"
+    looked = Text("{} of {} points", found.points, found.of)
     if found.best is None:
         most = max(one.share for one in found.judged)
         wrong = found.judged[max(range(count), key=lambda k: found.judged[k].share)]
-        text = (f"none of {count} poses serves, as far as {looked} tell: at most {100.0 * most:.3g} % of them are within "
-                f"reach and limits ({wrong.code}); give a larger box in place, or another cell.branch")
+        text = Text("none of {} poses serves, as far as {} tell: at most {:.3g} % of them are within reach and limits ({}); "
+                    "give a larger box in place, or another cell.branch", count, Word(looked), 100.0 * most, wrong.code)
         if serve:
-            text = (f"none of the {len(found.proven)} best of {serve} poses is feasible with all points, though some points "
-                    "of each are; raise place.points or place.proven")
+            text = Text("none of the {} best of {} poses is feasible with all points, though some points of each are; raise "
+                        "place.points or place.proven", len(found.proven), serve)
         return Result("", [*stages.issues, Issue(ERROR, "NO_PLACE", text)], 3)
     best = found.of_pose(found.best)
-    note = Issue(NOTE, "PLACED", f"{serve} of {count} poses are feasible, as far as {looked} tell; the best one was planned "
-                 f"with all points: margin {100.0 * best.margin:.3g} %, {best.time:.0f} s; {TABLE} and {PAGE} are in "
-                 f"{files.folder}")
+    note = Issue(
+        NOTE, "PLACED", Text("{} of {} poses are feasible, as far as {} tell; the best one was planned with all points: "
+            "margin {:.3g} %, {:.0f} s; {} and {} are in {}", serve, count, Word(looked), 100.0 * best.margin, best.time,
+            TABLE, PAGE, files.folder)
+    )
     return Result(table.key(found, found.best), [*stages.issues, note], 0)

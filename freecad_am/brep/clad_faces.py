@@ -18,7 +18,7 @@ from ..core.geometry.mesh.refined import Edges
 from ..core.geometry.walls.clad_faces import CladFaces
 from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.geometry.walls.surface import dot
-from ..core.issues import WARNING, InputError, Issue
+from ..core.issues import WARNING, InputError, Issue, Text, Word
 from .kernel.limits import reported
 from .walls.checks import CREASE, smallest_radii
 from .walls.patch_wall import sound
@@ -41,8 +41,8 @@ def clad_faces(
         known = faces_by_name(shape, names, label)
         if not names and shape.Solids:
             raise InputError(
-                "NO_FACES", label, f"it is a solid with {len(known)} face(s), and none is chosen; name those to "
-                "cover: part.faces of a job, or select them",
+                "NO_FACES", label, "it is a solid with {} face(s), and none is chosen; name those to cover: part.faces of a "
+                "job, or select them", len(known),
             )
         named = [(name, known[name]) for name in dict.fromkeys(names or known)]
         _refuse_several(shape, named, back, label)
@@ -65,13 +65,13 @@ def _refuse_several(shape: Any, named: Sequence[tuple[str, Any]], back: bool, la
         one = next(iter(owners))
         other = next(name for name, number in owners.items() if number != owners[one])
         raise InputError(
-            "SEVERAL_BODIES", label, f"{one} and {other} are faces of different solids; cover each solid as a feature of "
-            "its own, or fuse them first",
+            "SEVERAL_BODIES", label, "{} and {} are faces of different solids; cover each solid as a feature of its own, or "
+            "fuse them first", one, other,
         )
     if back and owners:
         raise InputError(
-            "BACK_OF_SOLID", "strategy.side", f"behind {next(iter(owners))} is the material of {label}; use front, which "
-            "is outside of it",
+            "BACK_OF_SOLID", "strategy.side", "behind {} is the material of {}; use front, which is outside of it",
+            next(iter(owners)), label,
         )
 
 
@@ -88,8 +88,8 @@ def _smooth(wall: PatchWall, height: float, label: str) -> tuple[tuple[PatchWall
     if (edges.count > 2).any():
         at = wall.vertices[edges.ends[int(np.argmax(edges.count > 2))]].mean(axis=0)
         raise InputError(
-            "BRANCHING_FACES", label, f"more than two faces meet in one edge at {place(at)}; leave one of them out, or "
-            "cover it as a feature of its own",
+            "BRANCHING_FACES", label, "more than two faces meet in one edge at {}; leave one of them out, or cover it as a "
+            "feature of its own", place(at),
         )
     two = np.flatnonzero(edges.count == 2)
     pair = edges.faces[two]
@@ -145,8 +145,8 @@ def _crease_issues(
         one, other = (wall.faces[k] for k in wall.patch[pair[at]])
         what = "into one another" if hollow else "apart, with a wedge left open between them"
         found.append(Issue(
-            WARNING, "CREASE", f"{one} and {other} meet at an angle of {np.degrees(mine[at]):.3g} deg at "
-            f"{place(wall.vertices[ends[at]].mean(axis=0))}: layers above the first grow {what}, up to {height:.3g} mm "
-            "above the faces; round the edge, or cover the faces one after the other",
+            WARNING, "CREASE", Text("{} and {} meet at an angle of {:.3g} deg at {}: layers above the first grow {}, up to "
+                "{:.3g} mm above the faces; round the edge, or cover the faces one after the other", one, other,
+                np.degrees(mine[at]), place(wall.vertices[ends[at]].mean(axis=0)), Word(what), height),
         ))
     return tuple(found)

@@ -30,8 +30,8 @@ def curves_of(shape: Any, edges: Sequence[str], faces: Sequence[str], chord_erro
         wrong = [name for name in names if name not in there]
         if wrong:
             raise InputError(
-                f"UNKNOWN_{kind.upper()}", label, f"it has no {', '.join(wrong)}, but {len(there)} {kind.lower()}(s); name "
-                f"others, from {kind}1 on",
+                f"UNKNOWN_{kind.upper()}", label, "it has no {}, but {} {}(s); name others, from {}1 on", ", ".join(wrong),
+                len(there), kind.lower(), kind,
             )
     chosen = [edge for edge in ([known[name] for name in dict.fromkeys(edges)] or shape.Edges) if edge.Length > SHORTEST]
     if not chosen:
@@ -69,8 +69,8 @@ def _normals(points: Array, faces: Sequence[Any], label: str) -> Array:
         nearest = int(np.argmin(apart))
         if apart[nearest] > ON_FACE:
             raise InputError(
-                "OFF_FACE", label, f"a curve is {apart[nearest]:.3g} mm off the faces whose normals it is to have, at "
-                f"{place(point)}; choose the faces that it lies on, or give strategy.direction",
+                "OFF_FACE", label, "a curve is {:.3g} mm off the faces whose normals it is to have, at {}; choose the faces "
+                "that it lies on, or give strategy.direction", apart[nearest], place(point),
             )
         face = faces[nearest]
         found[k] = tuple(face.normalAt(*face.Surface.parameter(FreeCAD.Vector(*point))))

@@ -94,8 +94,8 @@ def _meshed(solid: Any, source: Any, chord_error: float, label: str, mend: float
         if widest <= mend:
             raise
         raise InputError(
-            unsound.code, label, f"{unsound.message}; up to strategy.mend, {mend:g} mm, what is open is closed, and the "
-            f"widest place is {widest:.4g} mm across",
+            unsound.code, label, "{}; up to strategy.mend, {:g} mm, what is open is closed, and the widest place is {:.4g} "
+            "mm across", unsound.message, mend, widest,
         ) from None
     if not touching:
         mesh.refuse_crossing(label, CROSSED * chord_error)

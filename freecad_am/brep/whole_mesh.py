@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.geometry.mesh.solid import SolidMesh
-from ..core.issues import WARNING, Issue
+from ..core.issues import WARNING, Issue, Text
 from .kernel.process import in_kernel_process
 from .shapes.fine_mesh import fine
 from .shapes.tessellate import Tessellation
@@ -28,8 +28,6 @@ def whole(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Iss
             return made, ()
         found.append((volume, made))
     volume, made = min(found, key=lambda one: abs(one[0] - exact))
-    message = (
-        f"{label}: its triangles enclose {1e-3 * volume:.4g} cm3 and its faces {1e-3 * exact:.4g} cm3; check and export the "
-        "part again, or deposit it from a mesh"
-    )
+    message = Text("{}: its triangles enclose {:.4g} cm3 and its faces {:.4g} cm3; check and export the part again, or "
+                   "deposit it from a mesh", label, 1e-3 * volume, 1e-3 * exact)
     return made, (Issue(WARNING, "MESH_VOLUME", message),)

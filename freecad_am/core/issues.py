@@ -7,11 +7,80 @@ that cannot be understood is an `InputError`. Nothing else leaves this package f
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
+from string import Formatter
 from typing import Any
 
 ERROR, WARNING, NOTE = "error", "warning", "note"
+
+
+class Text(str):
+    """A sentence in English that knows how it was made, so that it can be said in another language.
+
+    `Text("it has {} faces of {:.3g} mm", count, width)` is that sentence to everyone who reads it. `template` has places by
+    number, '{0} faces of {1} mm', and `values` what stands there, as it is written; a value that is a Text keeps its own
+    parts. Without values the text is taken as it stands, braces too.
+    """
+
+    __slots__ = ("template", "values")
+    template: str
+    values: tuple[str, ...]
+
+    def __new__(cls, text: str, *values: object) -> Text:
+        parts: list[str] = []
+        kept: list[str] = []
+        for literal, value in _pieces(text, values) if values else [(text, None)]:
+            parts.append(literal.replace("{", "{{").replace("}", "}}"))
+            if value is not None:
+                parts.append(f"{{{len(kept)}}}")
+                kept.append(value)
+        template = "".join(parts)
+        made = super().__new__(cls, template.format(*kept))
+        made.template, made.values = template, tuple(kept)
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Text, (self.template, *self.values) if self.values else (str(self),))
+
+    def __add__(self, other: str) -> Text:
+        return Text("{}{}", self, other)
+
+    def __radd__(self, other: str) -> Text:
+        return Text("{}{}", other, self)
+
+    @staticmethod
+    def joined(between: str, texts: Iterable[str]) -> str:
+        """Several in a row: pairs of '{0}, {1}', however many there are; '' for none."""
+        some, pair = list(texts), f"{{}}{between}{{}}"
+        while len(some) > 1:
+            some = [Text(pair, *some[k : k + 2]) if k + 1 < len(some) else some[k] for k in range(0, len(some), 2)]
+        return some[0] if some else ""
+
+
+@dataclass(frozen=True)
+class Word:
+    """A word or part of a sentence that is chosen, such as a plural: of the template, not a value that is put into it."""
+
+    text: str
+
+
+def _pieces(text: str, values: tuple[object, ...]) -> Iterator[tuple[str, str | None]]:
+    """What stands before each place of a text, and what is put there; None after the last one."""
+    given = iter(values)
+    for literal, place, form, conversion in Formatter().parse(text):
+        if place is None:
+            yield literal, None
+            continue
+        value = values[int(place)] if place else next(given)
+        if isinstance(value, Word):
+            yield literal, None
+            inner = value.text
+            yield from _pieces(inner.template, inner.values) if isinstance(inner, Text) else [(inner, None)]
+        elif isinstance(value, Text) and not form and not conversion:
+            yield literal, value
+        else:
+            yield literal, format(repr(value) if conversion == "r" else value, form or "")
 
 
 @dataclass(frozen=True)
@@ -32,8 +101,9 @@ class Issue:
     @property
     def where(self) -> str:
         """The place in words, '' when there is none."""
-        named = (("layer", self.layer), ("bead", self.bead), ("point", self.point))
-        return " ".join(f"{word} {index}" for word, index in named if index is not None)
+        named = (("layer {}", self.layer), ("bead {}", self.bead), ("point {}", self.point))
+        known = [(word, index) for word, index in named if index is not None]
+        return Text(" ".join(word for word, _ in known), *(index for _, index in known)) if known else ""
 
 
 def has_errors(issues: tuple[Issue, ...] | list[Issue]) -> bool:
@@ -46,11 +116,13 @@ class AmError(Exception):
 
     exit_status = 1
 
-    def __init__(self, code: str, where: str, message: str) -> None:
-        super().__init__(f"{where}: {message}")
+    def __init__(self, code: str, where: str, message: str, *values: object) -> None:
+        """values: what is put into the message, see Text."""
         self.code = code
         self.where = where
-        self.message = message
+        self.message = Text(message, *values) if values else message
+        self.sentence = Text("{}: {}", where, self.message)
+        super().__init__(self.sentence)
 
     def line(self) -> str:
         """The single line printed to stderr: error[CODE] where: what, and what to do."""
@@ -65,8 +137,10 @@ class InputError(AmError):
 
     exit_status = 2
 
-    def __init__(self, code: str, where: str, message: str, mended_by: Mapping[str, Any] | None = None) -> None:
-        super().__init__(code, where, message)
+    def __init__(
+        self, code: str, where: str, message: str, *values: object, mended_by: Mapping[str, Any] | None = None
+    ) -> None:
+        super().__init__(code, where, message, *values)
         self.mended_by = dict(mended_by or {})
 
 
@@ -75,6 +149,6 @@ class InfeasibleError(AmError):
 
     exit_status = 3
 
-    def __init__(self, code: str, where: str, message: str, issues: tuple[Issue, ...] = ()) -> None:
-        super().__init__(code, where, message)
+    def __init__(self, code: str, where: str, message: str, *values: object, issues: tuple[Issue, ...] = ()) -> None:
+        super().__init__(code, where, message, *values)
         self.issues = issues

@@ -86,14 +86,14 @@ def _whole(path: str, write: Callable[[str], None]) -> str:
     """Let a file be written beside, and put it in its place; the path."""
     folder = os.path.dirname(os.path.abspath(path))
     if not os.path.isdir(folder):
-        raise InputError("NO_FOLDER", path, f"there is no folder {folder}; make it, or choose another")
+        raise InputError("NO_FOLDER", path, "there is no folder {}; make it, or choose another", folder)
     try:
         with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as temporary:
             unfinished = os.path.join(temporary, f"file{os.path.splitext(path)[1].lower()}")
             write(unfinished)
             os.replace(unfinished, path)
     except OSError as error:
-        raise InputError("NOT_WRITABLE", path, f"{error.strerror or error}; choose a file you can write") from None
+        raise InputError("NOT_WRITABLE", path, "{}; choose a file you can write", error.strerror or error) from None
     return path
 
 
@@ -106,7 +106,7 @@ def add_trajectory(obj: Any, tolerance: float, turn: float) -> Any:
     """The lines of a stage as a trajectory of the Robot workbench, in its document: within `tolerance` mm and `turn` rad."""
     for name, value in (("tolerance", tolerance), ("turn", turn)):
         if not value > 0.0:
-            raise InputError("OUT_OF_RANGE", name, f"{value:g} is not above 0")
+            raise InputError("OUT_OF_RANGE", name, "{:g} is not above 0", value)
     return robot_trajectory.add(obj.Document, lines_of(obj), f"{obj.Label} (trajectory)", tolerance, turn)
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..core.issues import InputError
+from ..core.issues import InputError, Text
 from ..core.one_thread import one_thread
 from ..posts import written
 from .steps import checked_stage, one_step
@@ -26,7 +26,7 @@ def export(program: Any, folder: str) -> list[str]:
     try:
         return written.write(folder, files)
     except OSError as error:
-        message = f"{error.strerror or error}; choose a folder you can write to"
+        message = Text("{}; choose a folder you can write to", error.strerror or error)
         raise InputError("NOT_WRITABLE", error.filename or folder, message) from None
 
 

@@ -199,5 +199,5 @@ def _named_faces(owner: Taken, names: Sequence[str], where: str) -> list[tuple[s
     wrong = [name for name in short if name not in known]
     if wrong or not short:
         text = ", ".join(wrong) or owner.label
-        raise InputError("BAD_FACES", where, f"{text} is not a face of {owner.label}; choose faces of the hub")
+        raise InputError("BAD_FACES", where, "{} is not a face of {}; choose faces of the hub", text, owner.label)
     return [known[name] for name in short]

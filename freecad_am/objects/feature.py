@@ -96,7 +96,8 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
         along = App.Vector(1, 0, 0) if target.TypeId == "App::Line" else App.Vector(0, 0, 1)
         return placement.Base, placement.Rotation.multVec(along)
     raise InputError(
-        "BAD_AXIS", f"{obj.Label}.Axis", f"{target.Label} {name} is not a straight line; choose a straight edge or an axis"
+        "BAD_AXIS", f"{obj.Label}.Axis", "{} {} is not a straight line; choose a straight edge or an axis", target.Label,
+        name
     )
 
 
@@ -109,5 +110,5 @@ def source_of(obj: Any) -> tuple[Any, tuple[str, ...]]:
     wrong = [name for name in faces if not name.rsplit(".", maxsplit=1)[-1].startswith("Face")]
     if wrong:
         named = ", ".join(wrong)
-        raise InputError("BAD_FACES", f"{obj.Label}.Source", f"{named} is not a face; choose faces or the whole shape")
+        raise InputError("BAD_FACES", f"{obj.Label}.Source", "{} is not a face; choose faces or the whole shape", named)
     return source, tuple(name.rsplit(".", maxsplit=1)[-1] for name in faces)

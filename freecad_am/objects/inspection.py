@@ -15,7 +15,7 @@ from ..core.geometry.file_content import digest
 from ..core.geometry.located import is_there
 from ..core.inspection import inspect, point_file, surfaces, table
 from ..core.inspection.planned import Planned, of_triangles
-from ..core.issues import InputError
+from ..core.issues import InputError, Text
 from ..core.parameters.inspection import InspectionParameters
 from ..core.parameters.process import ProcessParameters
 from .fields.properties import HIDDEN, OUTPUT
@@ -96,7 +96,7 @@ class Inspection(Stage):
         stage = stage_of(obj.Planned)
         if stage is None:
             return {}
-        kind = stage.kind if stage.kind in KINDS else " or ".join(KINDS)
+        kind = stage.kind if stage.kind in KINDS else Text.joined(" or ", KINDS)
         return {"Planned": checked(obj, Link("Planned", kind, self.links[0].help))}
 
     def _linked_stages(self, obj: Any) -> list[Any]:
@@ -129,7 +129,7 @@ def _digest(path: str, where: str) -> str:
         return digest(path, point_file.LARGEST, "BAD_FILE", where)
     except (OSError, ValueError) as error:
         why = (getattr(error, "strerror", None) or str(error)).lower()
-        raise InputError("NO_FILE", where, f"{path} cannot be read ({why}); choose the file again") from None
+        raise InputError("NO_FILE", where, "{} cannot be read ({}); choose the file again", path, why) from None
 
 
 def _stage_surface(target: Any) -> Callable[[], Planned]:
@@ -164,7 +164,7 @@ def _figures(found: inspect.Inspected) -> tuple[tuple[str, Any], ...]:
         ("Points", spread.count), ("Mean", spread.mean), ("Deviation", spread.deviation), ("Least", spread.least),
         ("Most", spread.most), ("WithinTolerance", 100.0 * spread.within),
         ("Sphericity", "" if found.ball is None else f"{found.ball.zone.zone:.4f} mm"),
-        ("Circularity", [f"{one.height:g} mm: {one.zone.zone:.4f} mm" for one in found.circles]),
+        ("Circularity", [Text("{:g} mm: {:.4f} mm", one.height, one.zone.zone) for one in found.circles]),
     )
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.issues import NOTE, AmError, InputError, Issue
+from ..core.issues import NOTE, AmError, InputError, Issue, Text
 from ..core.kinematics import cell as cells
 from ..core.kinematics.machines.machine import UNKNOWN_REMARK
 from ..core.motion import Motion
@@ -71,7 +71,7 @@ def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters
     for link in ("Toolpath", "Cell"):
         linked = getattr(path, link)
         if linked is None or not linked.Key:
-            raise InputError("NO_INPUT", path.Label, f"its {link.lower()} is missing; choose one and recompute")
+            raise InputError("NO_INPUT", path.Label, "its {} is missing; choose one and recompute", link.lower())
     planned, toolpath, cell = (one.Proxy.value(one) for one in (path, path.Toolpath, path.Cell))
     return planned, toolpath, cell
 
@@ -170,8 +170,9 @@ def _moved(cell: cells.Cell) -> list[Issue]:
     residual, six = cell.offset.residual, cell.offset.six()
     left, pose = (", ".join(f"{value:.{digits}g}" for value in values) for values, digits in ((residual, 3), (six, 7)))
     return [Issue(
-        NOTE, "WORK_OFFSET", f"by {len(residual)} touched points the part's coordinates are at [{pose}] mm and deg in the "
-        f"robot's base; left at the points: {left} mm, {float(np.sqrt((residual**2).mean())):.3g} mm in the mean of squares",
+        NOTE, "WORK_OFFSET", Text("by {} touched points the part's coordinates are at [{}] mm and deg in the robot's base; "
+            "left at the points: {} mm, {:.3g} mm in the mean of squares", len(residual), pose, left,
+            float(np.sqrt((residual**2).mean()))),
     )]
 
 
@@ -180,14 +181,16 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
     if not cell.obstacles or cell.arm_clearance is not None or not cell.arrangement.links_known:
         return []
     names = ", ".join(one.name for one in cell.obstacles)
-    return [Issue(NOTE, "OBSTACLES_NOT_KEPT", f"{names}: looked at for the nozzle, and for links and part in simulation and "
-                  "preflight alone; give cell.arm_clearance so that these are kept clear of it while planning")]
+    return [Issue(
+        NOTE, "OBSTACLES_NOT_KEPT", Text("{}: looked at for the nozzle, and for links and part in simulation and preflight "
+            "alone; give cell.arm_clearance so that these are kept clear of it while planning", names)
+    )]
 
 
 def _drawn_plain(cell: cells.Cell) -> list[Issue]:
     """A note on what the URDF of a robot tells that was left out, such as meshes that cannot be drawn."""
     notes = cell.robot.remarks if cell.robot.controller_remark == UNKNOWN_REMARK else ()
-    return [Issue(NOTE, "URDF_LOOKS", f"{cell.robot.title}: {'; '.join(notes)}")] if notes else []
+    return [Issue(NOTE, "URDF_LOOKS", Text("{}: {}", cell.robot.title, Text.joined("; ", notes)))] if notes else []
 
 
 def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:

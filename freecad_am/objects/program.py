@@ -17,12 +17,13 @@ from ..core.parameters.program import ProgramParameters
 from ..core.planning.beads import moving_tool, steps
 from ..core.planning.program import beads as program_beads
 from ..core.planning.program import build as programs
-from ..core.program import Program as Text
+from ..core.program import Program as ProgramText
 from ..core.toolpath import Toolpath
 from ..posts import catalogue, refusals
 from . import user_machines
 from .checks import controllers
 from .joint_path import Planned
+from .results.findings import message_of
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
 from .work import progress
@@ -56,7 +57,7 @@ class Posted:
     cell: cells.Cell
     toolpath: Toolpath
     motion: Motion
-    program: Text
+    program: ProgramText
     files: dict[str, bytes]
 
 
@@ -159,7 +160,7 @@ def _written(job: Job, label: str) -> Outcome:
     )
     if has_errors(checked.issues):
         raise InfeasibleError(
-            "NOT_VERIFIED", label, "reading the program back does not give the planned path", tuple(checked.issues),
+            "NOT_VERIFIED", label, "reading the program back does not give the planned path", issues=tuple(checked.issues),
         )
     return Outcome(Written(made.files, checked), tuple(checked.issues), (("Files", sorted(made.files)),))
 
@@ -181,5 +182,5 @@ def files_of(obj: Any) -> dict[str, bytes]:
         )
     files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.Key else {}
     if obj.Status != "up to date" or not files:
-        raise InputError("NO_PROGRAM", obj.Label, f"no program fits its inputs ({obj.Message or obj.Status})")
+        raise InputError("NO_PROGRAM", obj.Label, "no program fits its inputs ({})", message_of(obj) or obj.Status)
     return files

@@ -10,7 +10,7 @@ from ..brep.guide import edges_of
 from ..brep.hub import bodies_of
 from ..brep.start_faces import triangles_of_faces
 from ..core.geometry.obstacles import Body
-from ..core.issues import InputError, Issue
+from ..core.issues import InputError, Issue, Text
 from ..core.layers.along.guided import guided
 from ..core.layers.planes.stacking import stacked
 from ..core.parameters.build_direction import BuildDirectionParameters
@@ -61,10 +61,10 @@ class SolidFeature(Stage):
         ground = () if obj.Substrate is None else (taken(obj.Substrate),)
         fixtures, label = fixtures_of(obj), objects[0].label
         guide = _picked(obj, "Guide", strategy, ("along",), (
-            f"layers: {strategy.layers} have no guide; use layers: along, or leave the guide out"
+            Text("layers: {} have no guide; use layers: along, or leave the guide out", strategy.layers)
         ))
         start = _picked(obj, "StartFaces", strategy, ("geodesic", "offset"), (
-            f"layers: {strategy.layers} have no start faces; use layers: geodesic or offset, or leave the faces out"
+            Text("layers: {} have no start faces; use layers: geodesic or offset, or leave the faces out", strategy.layers)
         ))
 
         def work() -> Outcome:
@@ -115,5 +115,5 @@ def _picked(
         raise InputError("NOT_FOR_FAMILY", f"{obj.Label}.{name}", refusal)
     owner, names = getattr(obj, name)
     if getattr(owner, "Mesh", None) is not None:
-        raise InputError("NO_SHAPE", f"{obj.Label}.{name}", f"{owner.Label} is a mesh, which has no edges or faces")
+        raise InputError("NO_SHAPE", f"{obj.Label}.{name}", "{} is a mesh, which has no edges or faces", owner.Label)
     return global_shape(owner), tuple(one.rsplit(".", maxsplit=1)[-1] for one in names if one), owner.Label

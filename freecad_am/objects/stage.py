@@ -18,14 +18,14 @@ from typing import Any, ClassVar
 
 import FreeCAD as App
 
-from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, has_errors
+from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, Text, Word, has_errors
 from ..core.one_thread import one_thread
 from . import staleness
 from .fields import expressions, properties
 from .fields.link_targets import broken_link, is_there
 from .fields.properties import HIDDEN, OUTPUT, READ_ONLY
 from .results import store
-from .results.findings import as_text, first_message, issues_of, say
+from .results.findings import first_message, issues_of, message_of, say, store_issues
 from .results.stored import Stored
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
@@ -87,6 +87,7 @@ class Stage(Stored):
             add(type_name, name, _RESULT, help, READ_ONLY | OUTPUT)
         hidden = HIDDEN | OUTPUT
         add("App::PropertyString", "Issues", _RESULT, "Findings, as JSON.", hidden)
+        add("App::PropertyString", "Texts", _RESULT, "Template and values of message and findings, as JSON.", hidden)
         add("App::PropertyString", "Key", _RESULT, "Fingerprint of the inputs the result was made from.", hidden)
         add("App::PropertyFloat", "Seconds", _RESULT, "How long computing took.", hidden)
         add("App::PropertyFloatList", "ResultData", _RESULT, "Arrays of the result.", hidden)
@@ -128,12 +129,12 @@ class Stage(Stored):
             raise
         except InfeasibleError as error:
             with self._own_changes():
-                obj.Issues = as_text(error.issues or (Issue(ERROR, error.code, error.message),))
-                say(obj, INFEASIBLE, str(error))
+                store_issues(obj, error.issues or (Issue(ERROR, error.code, error.message),))
+                say(obj, INFEASIBLE, error.sentence)
             raise
         except BaseException as error:
             with self._own_changes():
-                say(obj, FAILED, str(error) if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
+                say(obj, FAILED, error.sentence if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
             raise
         return self.value(obj)
 
@@ -180,8 +181,7 @@ class Stage(Stored):
     def linked(self, obj: Any) -> dict[str, Any]:
         """The linked stages by property name, lists of them where a link has many, checked: of the right kind, and
         computed."""
-        missing = self.missing(obj)
-        if missing:
+        if missing := self.missing(obj):
             raise InputError("NO_INPUT", obj.Label, missing)
         return {link.name: checked(obj, link) for link in self.links if link.kind}
 
@@ -189,15 +189,15 @@ class Stage(Stored):
         """What to do about a required input that is not there, '' when all are."""
         for link in self.links:
             if link.required and not getattr(obj, link.name):
-                return f"{link.name} is missing; choose {link.help[0].lower()}{link.help[1:].rstrip('.')}"
-            broken = broken_link(getattr(obj, link.name))
-            if broken:
-                return f"{broken} links to nothing, what it showed is gone or was not loaded; choose another {link.name}"
+                return Text("{} is missing; choose {}", link.name, link.wanted)
+            if broken := broken_link(getattr(obj, link.name)):
+                return Text("{} links to nothing, what it showed is gone or was not loaded; choose another {}", broken,
+                            link.name)
         return expressions.broken(obj)
 
     def _store(self, obj: Any, outcome: Outcome, floats: list[float], text: str, key: str, seconds: float) -> None:
         obj.ResultData, obj.ResultLayout, obj.Seconds = floats, text, seconds
-        obj.Issues = as_text(outcome.issues)
+        store_issues(obj, outcome.issues)
         for name, figure in outcome.figures:
             setattr(obj, name, figure)
         self._kept = (key, outcome.value)
@@ -206,7 +206,7 @@ class Stage(Stored):
     def say_failed(self, obj: Any, error: AmError) -> None:
         """Say why it will fail, before what it waits for is computed."""
         with self._own_changes():
-            say(obj, FAILED, str(error))
+            say(obj, FAILED, error.sentence)
 
     # ---- called by FreeCAD
 
@@ -218,7 +218,7 @@ class Stage(Stored):
         stale = next((linked.Label for linked in self._linked_stages(obj) if linked.Status == STALE), "")
         if stale:
             with self._own_changes():
-                say(obj, STALE, f"waits for {stale}; recompute")
+                say(obj, STALE, Text("waits for {}; recompute", stale))
             return
         try:
             self.renew(obj)
@@ -245,8 +245,7 @@ class Stage(Stored):
         """Migrate an old document, show a document that was made without a window, and tell what a copy lacks."""
         with self._own_changes():
             self.complete(obj)
-            missing = self.missing(obj)
-            if missing:
+            if missing := self.missing(obj):
                 say(obj, FAILED, missing)
         hooks.attach(obj)
 
@@ -291,10 +290,11 @@ def _checked(obj: Any, link: Link, linked: Any) -> Any:
     stage = stage_of(linked)
     if stage is None or stage.kind != link.kind:
         article = "an" if link.kind[0] in "aeiou" else "a"
-        raise InputError("BAD_INPUT", f"{obj.Label}.{link.name}", f"{linked.Label} is not {article} {link.kind}; choose one")
+        raise InputError("BAD_INPUT", f"{obj.Label}.{link.name}", "{} is not {} {}; choose one", linked.Label, Word(article),
+                         link.kind)
     if linked.Status == INFEASIBLE:
-        why = f"{linked.Label} cannot be carried out: {linked.Message}"
-        raise InfeasibleError("INPUT_INFEASIBLE", obj.Label, why, issues_of(linked))
+        why = Text("{} cannot be carried out: {}", linked.Label, message_of(linked))
+        raise InfeasibleError("INPUT_INFEASIBLE", obj.Label, why, issues=issues_of(linked))
     if linked.Status == FAILED or not linked.Key:
-        raise InputError("INPUT_FAILED", obj.Label, f"waits for {linked.Label}: {linked.Message or 'recompute it'}")
+        raise InputError("INPUT_FAILED", obj.Label, "waits for {}: {}", linked.Label, message_of(linked) or "recompute it")
     return linked

@@ -32,6 +32,11 @@ class Link:
         return words[0].upper() + words[1:]
 
     @property
+    def wanted(self) -> str:
+        """Its help within a sentence: 'the cell that runs it'."""
+        return self.help[0].lower() + self.help[1:].rstrip(".")
+
+    @property
     def key(self) -> str:
         """Its name as a macro keyword: joint_path for JointPath."""
         return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in self.name).lstrip("_")

@@ -7,13 +7,16 @@ from typing import Any
 
 import FreeCAD as App
 
+from ..core.issues import Text
+from .results.findings import say
+
 UP_TO_DATE, STALE, FAILED, INFEASIBLE = "up to date", "stale", "failed", "infeasible"
 STATUSES = (UP_TO_DATE, STALE, FAILED, INFEASIBLE)
 
 # properties that are not inputs
 RESULTS = frozenset({
-    "Status", "Message", "Issues", "Key", "Seconds", "ResultData", "ResultLayout", "SchemaVersion", "Proxy", "Label",
-    "Label2", "Visibility",
+    "Status", "Message", "Issues", "Texts", "Key", "Seconds", "ResultData", "ResultLayout", "SchemaVersion", "Proxy",
+    "Label", "Label2", "Visibility",
 })
 
 _observer: _Observer | None = None
@@ -62,7 +65,6 @@ def _mark_followers(obj: Any) -> None:
 def _mark(obj: Any, cause: str) -> None:
     obj.Proxy.changes += 1
     missing = obj.Proxy.missing(obj)
-    status, message = (FAILED, missing) if missing else (STALE, f"{cause} changed; recompute")
+    status, message = (FAILED, missing) if missing else (STALE, Text("{} changed; recompute", cause))
     if obj.Status != status or (missing and obj.Message != missing):
-        obj.Status = status
-        obj.Message = message
+        say(obj, status, message)

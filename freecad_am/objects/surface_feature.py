@@ -88,6 +88,6 @@ def _start_edges(obj: Any) -> tuple[str, ...]:
     if wrong or not names or owner != obj.Source[0]:
         text = ", ".join(wrong) or owner.Label
         raise InputError(
-            "BAD_EDGES", f"{obj.Label}.StartEdges", f"{text} is not an edge of {obj.Source[0].Label}; choose edges of it"
+            "BAD_EDGES", f"{obj.Label}.StartEdges", "{} is not an edge of {}; choose edges of it", text, obj.Source[0].Label
         )
     return names

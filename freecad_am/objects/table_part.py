@@ -15,7 +15,7 @@ import Part
 from ..core.geometry.curves import ada3dp, curve_table, gcode
 from ..core.geometry.curves.bead_curves import POINT_FILES, BeadCurve
 from ..core.geometry.file_content import content
-from ..core.issues import InputError
+from ..core.issues import InputError, Word
 
 CSV, GCODE, ADA = "csv", "gcode", "ada3dp"
 _PROPERTY, _FORM = "Table", "TableForm"
@@ -61,9 +61,9 @@ def _read(path: str, name: str, form: str) -> Points:
         return Points(form, base64.encodebytes(data).decode() if form == ADA else data.decode())
     except UnicodeDecodeError:
         what = "G-code" if form == GCODE else "a table of points as CSV"
-        raise InputError("BAD_FILE", name, f"it is not text; give {what}") from None
+        raise InputError("BAD_FILE", name, "it is not text; give {}", Word(what)) from None
     except OSError as error:
-        raise InputError("NO_FILE", name, f"it cannot be read: {error.strerror}") from None
+        raise InputError("NO_FILE", name, "it cannot be read: {}", error.strerror) from None
 
 
 def points_of(source: Any) -> Points | None:

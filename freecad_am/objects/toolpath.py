@@ -8,7 +8,7 @@ import json
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from ..core.issues import InputError
+from ..core.issues import InputError, Text
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.process import OF_FEATURE, ProcessParameters
 from ..core.parameters.scan import ScanParameters
@@ -141,8 +141,8 @@ class Toolpath(Stage):
                 own = None
             if not isinstance(own, dict) or not set(own) <= set(OF_FEATURE):
                 raise InputError(
-                    "BAD_VALUE", f"{obj.Label}.FeatureProcess", f"{text!r} is not understood; give a JSON mapping with keys "
-                    f"of {', '.join(OF_FEATURE)}"
+                    "BAD_VALUE", f"{obj.Label}.FeatureProcess", "{!r} is not understood; give a JSON mapping with keys of "
+                    "{}", text, ", ".join(OF_FEATURE)
                 )
             found.append(rows.build(ProcessParameters, {**rows.flat(process), **own}) if own else process)
         return found
@@ -169,7 +169,8 @@ class Toolpath(Stage):
             made = [_upright(one) if turn else one for one, turn in zip(made, turned, strict=True)]
             members = [member(one, given, features) for one, given in zip(features, made, strict=True)]
             names, order = [tuple(one.Name for one in _sources(feature)) for feature in features], obj.Sequence
-            text = " and ".join(f"`features[{k}].build_direction.mode: fixed`" for k, turn in enumerate(turned) if turn)
+            fixed = (f"`features[{k}].build_direction.mode: fixed`" for k, turn in enumerate(turned) if turn)
+            text = Text.joined(" and ", fixed)
             return Fixed(text, lambda: planned_in_sequence(members, order, names))
         shape, feature = shapes[0], features[0]
         wall, strategy = shape.reader(feature), shape.parameters(feature, strategy_of(shape))

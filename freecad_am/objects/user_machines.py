@@ -42,14 +42,14 @@ def save(name: str, text: str) -> str:
     folder = os.path.join(App.getUserAppDataDir(), FOLDER)
     path = os.path.join(folder, f"{name}.json")
     if os.path.exists(path) or (machine.BUILT_IN / f"{name}.json").exists():
-        raise InputError("NOT_WRITTEN", "id", f"there is a machine {name!r} already; choose another name")
+        raise InputError("NOT_WRITTEN", "id", "there is a machine {!r} already; choose another name", name)
     try:
         os.makedirs(folder, exist_ok=True)
         with open(f"{path}.new", "w", encoding="utf-8") as file:
             file.write(text)
         os.replace(f"{path}.new", path)
     except OSError as error:
-        raise InputError("NOT_WRITTEN", path, f"it cannot be written: {error.strerror or error}") from None
+        raise InputError("NOT_WRITTEN", path, "it cannot be written: {}", error.strerror or error) from None
     return path
 
 

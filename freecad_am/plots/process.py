@@ -9,6 +9,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
+from ..core.issues import Text, Word
 from ..core.layers.planes.slabs import outline
 from ..core.process.model import predicted
 from .chart import LINE, MARKED, OUTLINE, STEP, Bars, Chart, Curve, Quantity
@@ -64,9 +65,9 @@ def distances(values: Array, asked: float, band: float | None = None, name: str 
     pad = max(0.15 * (high - low), 0.002 * asked)
     edges = np.linspace(low - pad, high + pad, BINS + 1)
     share = np.histogram(values, edges)[0] * (100.0 / max(len(values), 1))
-    title = f"{name}: distance" if name else "Distance"
+    title = Text("{}: distance", name) if name else "Distance"
     return Chart(
-        f"{title} to the layer before (asked: {asked:g} mm)", Quantity("local distance", "mm"),
+        Text("{} to the layer before (asked: {:g} mm)", Word(title), asked), Quantity("local distance", "mm"),
         Quantity("share of the points", "%"), bars=Bars("share", edges, share),
         band=None if band is None else (asked * (1.0 - band), asked * (1.0 + band)),
         upright=((asked, "layer height"),),
@@ -133,7 +134,8 @@ def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     return (
         Chart("Volume by layer", layer, Quantity("volume", "cm³"),
               (Curve("part", x, part, "soft", MARKED), Curve("deposited", x, deposited, 0, MARKED))),
-        Chart(f"Deposited of the part: {whole:.4g} %", layer, Quantity("share", "%"), (Curve("share", x, share, 0, MARKED),),
+        Chart(Text("Deposited of the part: {:.4g} %", whole), layer, Quantity("share", "%"), (Curve("share", x, share, 0,
+            MARKED),),
               marks=((100.0, ""),)),
     )
 
@@ -157,7 +159,7 @@ def section(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     ]
     loops = outline(source.group, plane + source.cut_at * height)
     curves += [Curve("" if k else "part", *loop.T, "ink", OUTLINE) for k, loop in enumerate(loops)]
-    return (Chart(f"Section of layer {number}", Quantity("x", "mm"), Quantity("y", "mm"), tuple(curves), plane=True),)
+    return (Chart(Text("Section of layer {}", number), Quantity("x", "mm"), Quantity("y", "mm"), tuple(curves), plane=True),)
 
 
 def _histogram(title: str, x: Quantity, values: Array, length: Array) -> Chart:

@@ -50,7 +50,7 @@ def load(name: str) -> Post:
     """The post of that name, imported when it is first asked for. Raises InputError UNKNOWN_POST."""
     if name not in NAMES:
         known = ", ".join(NAMES)
-        raise InputError("UNKNOWN_POST", "program.post", f"{name!r} is not known; use one of {known}, or none")
+        raise InputError("UNKNOWN_POST", "program.post", "{!r} is not known; use one of {}, or none", name, known)
     post: Any = importlib.import_module(f".{name}.post", __package__)
     found: Post = post
     return found

@@ -8,7 +8,7 @@ import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from ..core.issues import InputError
+from ..core.issues import InputError, Text
 
 # names that files cannot have on the computers programs pass through
 DEVICES = frozenset(("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))))
@@ -40,9 +40,9 @@ class Naming:
         if re.search(r"[^A-Za-z0-9_]", shown):
             raise self.refused(name, where, "it may hold only the letters A to Z, digits and underscores")
         if not re.match(self.start, shown):
-            raise self.refused(name, where, f"it must start with {self.starts}")
+            raise self.refused(name, where, Text("it must start with {}", self.starts))
         if len(shown) > self.longest:
-            raise self.refused(name, where, f"it has more than {self.longest} characters")
+            raise self.refused(name, where, Text("it has more than {} characters", self.longest))
         if self._taken(shown):
             raise self.refused(name, where, "it is a reserved word")
         return shown
@@ -54,7 +54,7 @@ class Naming:
             proposal = f"{self.prefix}{proposal}".rstrip("_")
         proposal = proposal[: self.longest - self.spare].rstrip("_")
         return InputError(
-            "PROGRAM_NAME", where, f"{name!r} cannot be {self.what} on the controller: {why}; use {proposal!r}"
+            "PROGRAM_NAME", where, "{!r} cannot be {} on the controller: {}; use {!r}", name, self.what, why, proposal
         )
 
     def parts(self, name: str, count: int) -> list[str]:
@@ -63,7 +63,7 @@ class Naming:
         names = [f"{name}{number:0{digits}d}" for number in range(1, count + 1)]
         if len(names[0]) > self.longest:
             raise self.refused(
-                name, "name", f"with the {digits} digits of its parts it has more than {self.longest} characters"
+                name, "name", Text("with the {} digits of its parts it has more than {} characters", digits, self.longest)
             )
         return names
 

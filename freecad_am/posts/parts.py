@@ -7,7 +7,7 @@ import dataclasses
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 
-from ..core.issues import InputError
+from ..core.issues import InputError, Text
 from ..core.program import DEPOSIT, RAPID, RETRACT, Block, DepositOff, DepositOn, LayerStart, Moves, Program
 
 
@@ -109,9 +109,9 @@ def continued(
         runs = [piece for piece in group if isinstance(piece, Run)]
         if any(run.moves.kind == DEPOSIT and (run.moves.layer, run.moves.bead) in woven for run in runs):
             raise InputError(
-                "BEAD_TOO_LONG", "program.max_points", f"{place(runs[-1].moves)} is woven and has {sum(map(len, runs))}"
-                " points with its approach, and whether a weave goes on in another program was not confirmed; allow more"
-                " points in one, or a larger chord error",
+                "BEAD_TOO_LONG", "program.max_points", "{} is woven and has {} points with its approach, and whether a "
+                "weave goes on in another program was not confirmed; allow more points in one, or a larger chord error",
+                place(runs[-1].moves), sum(map(len, runs)),
             )
         events = sum(len(piece) for piece in group if isinstance(piece, list))
         most = min(most_points, most_lines - events - len(going_on) - len(resumed))
@@ -146,8 +146,8 @@ def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[
     points = size(group)[0]
     raise InputError(
         "BEAD_TOO_LONG", "program.max_points",
-        f"{place(moves)} has {points} points with its approach, and loading another part within a bead would stop the robot"
-        f" while it deposits; use at least {points + 1}",
+        "{} has {} points with its approach, and loading another part within a bead would stop the robot while it deposits; "
+        "use at least {}", place(moves), points, points + 1,
     )
 
 
@@ -158,4 +158,4 @@ def lines_of(pieces: Sequence[Piece], motion: Callable[[Run], list[str]]) -> lis
 
 def place(moves: Moves) -> str:
     """Where a run of moves is, for messages."""
-    return f"layer {moves.layer} bead {moves.bead}"
+    return Text("layer {} bead {}", moves.layer, moves.bead)

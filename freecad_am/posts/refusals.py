@@ -10,7 +10,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ..core.issues import InputError
+from ..core.issues import InputError, Text
 from ..core.program import LINEAR_MOVE, Call, DepositOn, Moves, Program, Schedule, WaitBelow, Weave
 from .parts import place
 
@@ -25,7 +25,7 @@ def refuse_wire(program: Program, no_wire: str) -> None:
 
 def wire_refused(no_wire: str) -> InputError:
     """The error for a controller that cannot be told the speed of the wire along a bead."""
-    return InputError("NO_WIRE_OUTPUT", "process.wire.feed_mode", f"{no_wire}; use constant, or another controller")
+    return InputError("NO_WIRE_OUTPUT", "process.wire.feed_mode", "{}; use constant, or another controller", no_wire)
 
 
 def refuse_cooling(program: Program, last: int, why: str = "") -> None:
@@ -34,13 +34,13 @@ def refuse_cooling(program: Program, last: int, why: str = "") -> None:
     waits = [block for block in program.blocks if isinstance(block, WaitBelow)]
     if waits and why:
         raise InputError(
-            "NO_ANALOGUE_INPUT", "process.cooling.below", f"{why}; use process.between_layers.input, strategy.wait, or "
-            "another controller",
+            "NO_ANALOGUE_INPUT", "process.cooling.below", "{}; use process.between_layers.input, strategy.wait, or another "
+            "controller", why,
         )
     if any(block.number > last for block in waits):
         raise InputError(
             "ANALOGUE_INPUT", "process.cooling.input",
-            f"the controller's program reads analogue inputs 1 to {last}, not {waits[0].number}; use one of these",
+            "the controller's program reads analogue inputs 1 to {}, not {}; use one of these", last, waits[0].number,
         )
 
 
@@ -58,14 +58,14 @@ def refuse_schedules(program: Program, last: int, most: int, most_of_arc: int = 
     if numbers and not 1 <= program.schedule_output <= last:
         raise InputError(
             "SCHEDULE", "program.schedule.output",
-            f"the number of a schedule is set on one of 1 to {last}, not {program.schedule_output}; use one of these",
+            "the number of a schedule is set on one of 1 to {}, not {}; use one of these", last, program.schedule_output,
         )
     named = [block.schedule for block in program.blocks if isinstance(block, DepositOn) and block.schedule is not None]
     largest, most = (max(named), most_of_arc or most) if named else (max(numbers, default=0), most)
     if largest > most:
         raise InputError(
-            "SCHEDULE", "process.schedule", f"the controller is told schedules up to {most}, not {largest}; use another "
-            "number, there or in process.classes",
+            "SCHEDULE", "process.schedule", "the controller is told schedules up to {}, not {}; use another number, there "
+            "or in process.classes", most, largest,
         )
 
 
@@ -75,7 +75,7 @@ def refuse_weave(program: Program, most: int) -> None:
     if numbers and program.motion != "cartesian":
         raise weave_refused(JOINT_WEAVE, "program.motion")
     if max(numbers, default=0) > most:
-        raise weave_refused(f"the controller has weaves 1 to {most}, not {max(numbers)}")
+        raise weave_refused(Text("the controller has weaves 1 to {}, not {}", most, max(numbers)))
 
 
 JOINT_WEAVE = "the controller swings the torch about linear moves, so far as is known, and these are joint moves"
@@ -84,14 +84,14 @@ JOINT_WEAVE = "the controller swings the torch about linear moves, so far as is 
 def weave_refused(why: str, where: str = "process.weave") -> InputError:
     """The error for a weave that cannot be told."""
     return InputError(
-        "WEAVE", where, f"{why}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot; elsewhere use "
-        "0 in process.weave and process.classes",
+        "WEAVE", where, "{}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot; elsewhere use 0 in "
+        "process.weave and process.classes", why,
     )
 
 
 def schedule_refused(by: str, why: str) -> InputError:
     """The error for a controller that cannot be told schedules in this way."""
-    return InputError("SCHEDULE", "program.schedule.by", f"{by}: {why}; use another way, or another controller")
+    return InputError("SCHEDULE", "program.schedule.by", "{}: {}; use another way, or another controller", by, why)
 
 
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:
@@ -100,7 +100,7 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
     if not sum(len(run) for run in moves):
         raise InputError("NOTHING_TO_WRITE", "program", "the program holds no moves; check where it starts")
     if any(run.joints.shape[1] != axes for run in moves) or len(program.continuous) != axes:
-        raise InputError("UNSUPPORTED_AXES", "program.post", f"the post {post} writes {axes} axes; use another post")
+        raise InputError("UNSUPPORTED_AXES", "program.post", "the post {} writes {} axes; use another post", post, axes)
     if not all(np.isfinite(run.joints).all() for run in moves):
         raise InputError("UNREACHABLE", "program", "some points have no joint values; a program needs all of them")
 
@@ -114,11 +114,13 @@ def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
     if end > last:
         raise InputError(
             "UNSUPPORTED_AXES", "program.axes.first",
-            f"the axes beside the robot would end with number {end}, and the controller has {last}; use a smaller first one",
+            "the axes beside the robot would end with number {}, and the controller has {}; use a smaller first one", end,
+            last,
         )
     if not re.fullmatch(unit, program.unit) and (program.on_positioner or program.unit):
         raise InputError(
-            "UNSUPPORTED_AXES", "program.axes.unit", f"{program.unit!r} is not a positioner of this controller; give {form}"
+            "UNSUPPORTED_AXES", "program.axes.unit", "{!r} is not a positioner of this controller; give {}", program.unit,
+            form
         )
 
 
@@ -126,7 +128,7 @@ def refuse_named_track(program: Program, what: str) -> None:
     """Raises InputError UNSUPPORTED_AXES where a track that has no name is given one: it is `what`."""
     if program.unit and program.on_track and not program.on_positioner:
         raise InputError(
-            "UNSUPPORTED_AXES", "program.axes.unit", f"a track has no name of its own here, it is {what}; leave unit out",
+            "UNSUPPORTED_AXES", "program.axes.unit", "a track has no name of its own here, it is {}; leave unit out", what,
         )
 
 
@@ -136,8 +138,8 @@ def refuse_continuous(program: Program) -> None:
         axis = program.continuous.index(True) + 1
         raise InputError(
             "ENDLESS_AXIS", "cell.limits",
-            f"axis {axis} has no limits, but joint values of this controller count every turn up to a limit; use limits that"
-            f" have one for axis {axis}",
+            "axis {} has no limits, but joint values of this controller count every turn up to a limit; use limits that "
+            "have one for axis {}", axis, axis,
         )
 
 
@@ -167,7 +169,7 @@ def refuse_calls_of_own(program: Program, names: set[str], program_name: Callabl
         if isinstance(block, Call) and program_name(block.program, block.where).upper() in own:
             raise InputError(
                 "PROGRAM_NAME", block.where,
-                f"{block.program!r} is a program of this very job; call another one, or rename the job",
+                "{!r} is a program of this very job; call another one, or rename the job", block.program,
             )
 
 
@@ -177,6 +179,6 @@ def speeds_within(moves: Moves, least: float, most: float) -> Array:
     if not fits.all():
         raise InputError(
             "MOVE_SPEED", place(moves),
-            f"{moves.speed[~fits][0]:.4g} mm/s cannot be written; use a speed between {least} and {most:.0f} mm/s",
+            "{:.4g} mm/s cannot be written; use a speed between {} and {:.0f} mm/s", moves.speed[~fits][0], least, most,
         )
     return moves.speed

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..core.issues import ERROR, Issue
+from ..core.issues import ERROR, Issue, Text
 from ..core.program import (
     Block,
     Call,
@@ -67,7 +67,7 @@ def _compared(
         return []
     first = alike.index(False) if False in alike else len(alike)
     row = min((events[first].row for events in (found, due) if first < len(events)), default=0)
-    return [Issue(ERROR, code, f"{message}; {off} of {max(len(found), len(due))} events", *planned.place(row))]
+    return [Issue(ERROR, code, Text("{}; {} of {} events", message, off, max(len(found), len(due))), *planned.place(row))]
 
 
 def _alike(program: Program, found: Event, due: Event) -> bool:

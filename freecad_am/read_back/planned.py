@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from freecad_am.core.types import Mask
 
-from ..core.issues import ERROR, Issue
+from ..core.issues import ERROR, Issue, Text
 from ..core.motion import Motion
 
 # what rounding in the computation itself may amount to: mm, and of unit vectors
@@ -34,7 +34,7 @@ class Planned:
         if not wrong.any():
             return []
         count, first = int(wrong.sum()), int(np.argmax(wrong))
-        return [Issue(ERROR, code, f"{message}; {count} of {len(wrong)} moves", *self.place(first))]
+        return [Issue(ERROR, code, Text("{}; {} of {} moves", message, count, len(wrong)), *self.place(first))]
 
     def place(self, move: int) -> tuple[int, int, int]:
         """Layer, bead and point of a move; of the last one for what follows it."""

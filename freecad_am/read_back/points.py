@@ -8,7 +8,7 @@ import numpy as np
 from freecad_am.core.types import Array, Mask
 
 from ..core.geometry.columns import lengths
-from ..core.issues import NOTE, Issue
+from ..core.issues import NOTE, Issue, Text
 from ..core.kinematics.cell import Cell
 from ..core.read_moves import ReadMoves
 from ..kdl import chain as kdl_chain
@@ -28,7 +28,8 @@ def joint_issues(cell: Cell, planned: Planned, read: ReadMoves, continuous: Mask
     found = []
     for axis in np.flatnonzero(wrong.any(axis=0)):
         most = np.abs(apart[:, axis]).max() / cell.machine.unit_values[axis]
-        message = f"axis {cell.machine.axes[axis]} is up to {most:.3g} {cell.machine.units[axis]} from the planned value"
+        message = Text("axis {} is up to {:.3g} {} from the planned value", cell.machine.axes[axis], most,
+                       cell.machine.units[axis])
         found += planned.issue("VERIFY_JOINT", wrong[:, axis], message)
     return found
 
@@ -48,16 +49,16 @@ def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
         return []
     unit = cell.machine.units[label] if label < limits.axes else "deg"
     shown = worst / (cell.machine.unit_values[label] if label < limits.axes else np.radians(1.0))
-    message = f"the text takes {limits.labels[label]} up to {shown:.3g} {unit} beyond its limit"
+    message = Text("the text takes {} up to {:.3g} {} beyond its limit", limits.labels[label], shown, unit)
     return planned.issue("VERIFY_LIMIT", wrong, message)
 
 
 def point_issues(planned: Planned, path: Path) -> list[Issue]:
     off = lengths(path.position - planned.position)
     tilted = lengths(path.tool - planned.tool)
-    message = f"the text leads up to {off.max():.3g} mm away from the planned point, more than its digits explain"
+    message = Text("the text leads up to {:.3g} mm away from the planned point, more than its digits explain", off.max())
     found = planned.issue("VERIFY_POINT", ~(off <= path.bound), message)
-    message = f"the tool is tilted by up to {np.degrees(tilted.max()):.3g} deg, more than the digits explain"
+    message = Text("the tool is tilted by up to {:.3g} deg, more than the digits explain", np.degrees(tilted.max()))
     return found + planned.issue("VERIFY_TOOL", ~(tilted <= path.tool_bound), message)
 
 

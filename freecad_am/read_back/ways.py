@@ -8,7 +8,7 @@ import numpy as np
 
 from freecad_am.core.types import Array, Mask
 
-from ..core.issues import ERROR, Issue
+from ..core.issues import ERROR, Issue, Text
 from ..core.kinematics.cell import Cell
 from ..core.kinematics.inverse import opw
 from ..core.program import LINEAR_MOVE, Program
@@ -98,12 +98,12 @@ def _frame_issues(cell: Cell, planned: Planned, program: Program, read: ReadMove
         wrong |= checked & (read.user_frame != program.user_frame)
     if read.tool_frame is not None:
         wrong |= read.tool_frame != program.tool_frame
-    message = f"the text selects another frame or tool than {program.user_frame} and {program.tool_frame}"
+    message = Text("the text selects another frame or tool than {} and {}", program.user_frame, program.tool_frame)
     issues = planned.issue("VERIFY_FRAME", wrong, message)
     if program.external_kinds and (read.unit, read.first_external) != (program.unit, program.first_external):
         issues.append(Issue(
-            ERROR, "VERIFY_FRAME", f"the text moves {read.unit or 'no positioner'} from axis {read.first_external} on, the"
-            f" program {program.unit} from axis {program.first_external} on",
+            ERROR, "VERIFY_FRAME", Text("the text moves {} from axis {} on, the program {} from axis {} on",
+                read.unit or "no positioner", read.first_external, program.unit, program.first_external),
         ))
     return issues
 

@@ -20,7 +20,7 @@ from freecad_am.objects import user_machines
 from freecad_am.objects.checks import preflight
 from freecad_am.objects.job_group import is_group
 from freecad_am.objects.joint_path import planned_of
-from freecad_am.objects.results.findings import issues_of
+from freecad_am.objects.results.findings import issues_of, message_of
 from freecad_am.objects.stage import stage_of
 from freecad_am.objects.staleness import FAILED, STALE
 from freecad_am.objects.toolpath import features_of, strategy_of
@@ -44,8 +44,8 @@ def reported(obj: Any) -> Callable[[], str]:
     stages = [one for one in (*features, toolpath, path, program) if one is not None]
     for one in stages:
         if one.Status in (STALE, FAILED):
-            why = one.Message or one.Status
-            raise InputError("NO_RESULT", one.Label, f"no result fits its inputs ({why}); recompute it first")
+            why = message_of(one) or one.Status
+            raise InputError("NO_RESULT", one.Label, "no result fits its inputs ({}); recompute it first", why)
     settings = None if program is None else program.Proxy.parameters(program, ProgramParameters)
     read = None if program is None else preflight.read_back_of(program)
     promised = preflight.prepared(toolpath, path, settings, read, () if program is None else issues_of(program))

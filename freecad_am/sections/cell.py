@@ -90,8 +90,8 @@ def _machine(value: Any, path: str, key: str = "cell.machine") -> Any:
         meant = urdf_reference.reference(texts["file"])
         if meant is None or len(texts["file"]) != len(meant.file):
             raise InputError(
-                "BAD_VALUE", f"{key}.file", f"{texts['file']} is no URDF, which alone has links; write machine: "
-                "{file: robot.urdf, base: base_link, tip: tool0}, or the path of a machine file without braces",
+                "BAD_VALUE", f"{key}.file", "{} is no URDF, which alone has links; write machine: {{file: robot.urdf, base: "
+                "base_link, tip: tool0}}, or the path of a machine file without braces", texts["file"],
             )
         return str(urdf_reference.Reference(absolute(meant.file, path), texts.get("base"), texts.get("tip")))
     if not isinstance(value, str):
@@ -140,7 +140,7 @@ def _shape(value: Any, path: str) -> str:
         value, key = value.get("file"), f"{key}.file"
     file = absolute(fields.text(value, key).strip(), path)
     if not is_there(file):
-        raise InputError("NO_FILE", key, f"there is no file {file}; paths are relative to the job file")
+        raise InputError("NO_FILE", key, "there is no file {}; paths are relative to the job file", file)
     return file
 
 
@@ -162,7 +162,7 @@ def _touched(value: Any) -> str:
 def _point(value: Any, key: str) -> touched.Point:
     """Three lengths of a job file."""
     if not isinstance(value, list) or len(value) != 3:
-        raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is not a point; give [x, y, z]")
+        raise InputError("BAD_VALUE", key, "{} is not a point; give [x, y, z]", quantity.shown(value))
     x, y, z = (quantity.read(number, f.LENGTH, key) for number in value)
     return x, y, z
 
@@ -172,7 +172,7 @@ def _pose(value: Any, key: str) -> external.Pose:
     if (shown := fields.as_shown(value, key)) is not None:
         return shown
     if not isinstance(value, list) or len(value) != 6:
-        raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is not a pose; give [x, y, z, RX, RY, RZ]")
+        raise InputError("BAD_VALUE", key, "{} is not a pose; give [x, y, z, RX, RY, RZ]", quantity.shown(value))
     kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
     x, y, z, a, b, c = (quantity.read(number, kind, key) for number, kind in zip(value, kinds, strict=True))
     return x, y, z, a, b, c
@@ -194,12 +194,12 @@ def _obstacle(value: Any, key: str, number: int, path: str) -> obstacles.Obstacl
     if section.get("file") is not None:
         file = absolute(fields.text(section["file"], f"{key}.file").strip(), path)
         if not is_there(file):
-            raise InputError("NO_FILE", f"{key}.file", f"there is no file {file}; paths are relative to the job file")
+            raise InputError("NO_FILE", f"{key}.file", "there is no file {}; paths are relative to the job file", file)
     edges = section.get("box")
     if edges is not None:
         if not isinstance(edges, list) or len(edges) != 3:
-            raise InputError("BAD_VALUE", f"{key}.box", f"{quantity.shown(edges)} is not a box; give its edges along x, y "
-                             "and z such as [1200, 800, 30]")
+            raise InputError("BAD_VALUE", f"{key}.box", "{} is not a box; give its edges along x, y and z such as [1200, "
+                             "800, 30]", quantity.shown(edges))
         width, depth, height = (quantity.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
         size = (width, depth, height)
     name = section.get("name")

@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterable
 from typing import Any, TypeVar
 
-from ..core.issues import InputError
+from ..core.issues import InputError, Text, Word
 from ..core.parameters import field as f
 from ..core.parameters import pendant
 from . import quantity
@@ -39,7 +39,7 @@ def build(factory: type[Parameters], values: Any, prefix: str, also: Iterable[st
 def mapping(values: Any, prefix: str) -> dict[str, Any]:
     """`values` if it is a mapping. Raises InputError BAD_VALUE otherwise."""
     if not isinstance(values, dict):
-        raise InputError("BAD_VALUE", prefix, f"{quantity.shown(values)} is not a section; write keys below {prefix}:")
+        raise InputError("BAD_VALUE", prefix, "{} is not a section; write keys below {}:", quantity.shown(values), prefix)
     return values
 
 
@@ -56,14 +56,14 @@ def unknown_key(dotted: str, key: str, known: tuple[str, ...]) -> InputError:
     import difflib
 
     near = difflib.get_close_matches(key.lower().replace("-", "_"), known, n=1)
-    hint = f"did you mean {near[0]}?" if near else f"known here: {', '.join(known)}"
-    return InputError("UNKNOWN_KEY", dotted, f"there is no key {key!r}; {hint}")
+    hint = Text("did you mean {}?", near[0]) if near else Text("known here: {}", ", ".join(known))
+    return InputError("UNKNOWN_KEY", dotted, "there is no key {!r}; {}", key, Word(hint))
 
 
 def text(value: Any, key: str) -> str:
     """`value` if it is a text that is not empty. Raises InputError BAD_VALUE otherwise."""
     if not isinstance(value, str) or not value.strip():
-        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not a text")
+        raise InputError("BAD_VALUE", key, "{} is not a text", _shown(value))
     return value
 
 
@@ -82,7 +82,7 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
     if spec.kind == f.POSE or spec.kind in f.END_OF:
         wanted = "[x, y, z, RX, RY, RZ]" if spec.kind == f.POSE else "[smallest, largest]"
         also = "".join(f" or {word}" for word in spec.words)
-        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not a list; give {wanted}{also}")
+        raise InputError("BAD_VALUE", key, "{} is not a list; give {}{}", _shown(value), Word(wanted), also)
     if spec.kind in quantity.WANTED:
         return _number(value, spec, key)
     return _plain(spec, value, key)
@@ -103,9 +103,9 @@ def _plain(spec: f.Spec, value: Any, key: str) -> Any:
     if spec.kind == f.CHOICE and value not in spec.choices:
         raise _unknown_choice(key, value, spec.choices)
     if spec.kind == f.FLAG and not isinstance(value, bool):
-        raise InputError("BAD_VALUE", key, f"{_shown(value)} is neither true nor false; give one of them")
+        raise InputError("BAD_VALUE", key, "{} is neither true nor false; give one of them", _shown(value))
     if spec.kind == f.COUNT and (isinstance(value, bool) or not isinstance(value, int)):
-        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not a whole number; give one such as 3")
+        raise InputError("BAD_VALUE", key, "{} is not a whole number; give one such as 3", _shown(value))
     if spec.kind == f.TEXT:
         return text(value, key)
     return value
@@ -115,39 +115,40 @@ def _unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputErro
     import difflib
 
     near = difflib.get_close_matches(str(value).lower().replace("_", "-"), choices, n=1)
-    hint = f"did you mean {near[0]}? " if near else ""
-    return InputError("BAD_VALUE", key, f"{_shown(value)} is not known; {hint}use one of {', '.join(choices)}")
+    hint = Text("did you mean {}? ", near[0]) if near else ""
+    return InputError("BAD_VALUE", key, "{} is not known; {}use one of {}", _shown(value), Word(hint), ", ".join(choices))
 
 
 def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: str) -> Any:
     if _is_pose(spec, field):
         if len(value) != 6:
-            raise InputError("BAD_VALUE", key, f"a pose has six numbers x y z RX RY RZ, not {len(value)}")
+            raise InputError("BAD_VALUE", key, "a pose has six numbers x y z RX RY RZ, not {}", len(value))
         kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
         return tuple(_finite(number, kind, key) for number, kind in zip(value, kinds))
     if spec.kind in f.END_OF:
         if len(value) != 2:
             what = "angles" if spec.kind == f.ANGLE_RANGE else "percentages"
-            raise InputError("BAD_VALUE", key, f"a range has two {what}, not {len(value)}")
+            raise InputError("BAD_VALUE", key, "a range has two {}, not {}", Word(what), len(value))
         return tuple(_finite(number, f.END_OF[spec.kind], key) for number in value)
     if spec.kind == f.TEXT and "tuple" in str(field.type):
         return tuple(text(word, key) for word in value)
-    raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is a list; give one value")
+    raise InputError("BAD_VALUE", key, "{} is a list; give one value", quantity.shown(value))
 
 
 def _number(value: Any, spec: f.Spec, key: str) -> float:
     if isinstance(value, str) and spec.words and not any(sign.isdigit() for sign in value):
         words = " or ".join(spec.words)
-        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not known; give {words} or {quantity.WANTED[spec.kind][1]}")
+        raise InputError("BAD_VALUE", key, "{} is not known; give {} or {}", _shown(value), words,
+                         quantity.WANTED[spec.kind][1])
     return _finite(value, spec.kind, key)
 
 
 def _finite(value: Any, kind: str, key: str) -> float:
     if value == {}:
-        raise InputError("BAD_VALUE", key, f"there is no value; give {quantity.WANTED[kind][1]}")
+        raise InputError("BAD_VALUE", key, "there is no value; give {}", quantity.WANTED[kind][1])
     number = quantity.read(value, kind, key)
     if abs(number) > _BOUND:
-        raise InputError("BAD_VALUE", key, f"{_shown(value)} is too large; give {quantity.WANTED[kind][1]}")
+        raise InputError("BAD_VALUE", key, "{} is too large; give {}", _shown(value), quantity.WANTED[kind][1])
     return number
 
 

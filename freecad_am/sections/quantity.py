@@ -55,16 +55,16 @@ def read(value: Any, kind: str, key: str) -> float:
     """
     wanted, example = WANTED[kind]
     if isinstance(value, bool) or value is None or not isinstance(value, (int, float, str)):
-        raise InputError("BAD_VALUE", key, f"{shown(value)} is not a quantity; give {example}")
+        raise InputError("BAD_VALUE", key, "{} is not a quantity; give {}", shown(value), example)
     if isinstance(value, str):
         number, dimension = _read_text(value, kind, key)
     else:
         number, dimension = float(value), None
     if math.isnan(number):
-        raise InputError("BAD_VALUE", key, f"{shown(value)} is not a number; give {example}")
+        raise InputError("BAD_VALUE", key, "{} is not a number; give {}", shown(value), example)
     if dimension is not None and dimension != wanted:
         found = DIMENSION_NAMES.get(dimension, "of another dimension")
-        raise InputError("BAD_UNIT", key, f"{shown(value)} is {found}; give {example}")
+        raise InputError("BAD_UNIT", key, "{} is {}; give {}", shown(value), found, example)
     return number * f.TO_INNER.get(kind, 1.0)
 
 
@@ -82,7 +82,7 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
     text = text.strip()
     if "," in text:
         raise InputError(
-            "BAD_VALUE", key, f"{shown(text)} has a comma; write decimals with a point, such as {text.replace(',', '.')}"
+            "BAD_VALUE", key, "{} has a comma; write decimals with a point, such as {}", shown(text), text.replace(",", ".")
         )
     infinite = _INFINITE.fullmatch(text)
     if infinite:
@@ -92,10 +92,10 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
         return _read_with_freecad(text, key, example)
     number, over, under, percent = float(simple[1]), simple[2], simple[3], simple[4]
     if not math.isfinite(number):
-        raise InputError("BAD_VALUE", key, f"{shown(text)} is too large; give {example}")
+        raise InputError("BAD_VALUE", key, "{} is too large; give {}", shown(text), example)
     if percent:
         if kind != f.RATIO:
-            raise InputError("BAD_UNIT", key, f"{shown(text)} is a percentage; give {example}")
+            raise InputError("BAD_UNIT", key, "{} is a percentage; give {}", shown(text), example)
         return number, None
     if over is None:
         return number, None
@@ -111,9 +111,9 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
 
 def _read_with_freecad(text: str, key: str, example: str) -> tuple[float, Dimension | None]:
     """The same by FreeCAD's own parser, for expressions and rare units."""
-    wrong = InputError("BAD_UNIT", key, f"{shown(text)} is not a quantity with a known unit; give {example}")
+    wrong = InputError("BAD_UNIT", key, "{} is not a quantity with a known unit; give {}", shown(text), example)
     if not text:
-        raise InputError("BAD_VALUE", key, f"there is no value; give {example}")
+        raise InputError("BAD_VALUE", key, "there is no value; give {}", example)
     if _FOREIGN.search(text):  # FreeCAD passes over signs it does not know, which changes the meaning
         raise wrong
     try:

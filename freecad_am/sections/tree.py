@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..core.geometry.file_content import content
-from ..core.issues import InputError
+from ..core.issues import InputError, Text
 
 _INTEGER = re.compile(r"[-+]?\d{1,18}", re.ASCII)
 _FLOAT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
@@ -60,14 +60,14 @@ def read(path: str, kind: str = "a job", least: str = "part: {file: ...}", keys:
     try:
         node = yaml.compose(text, Loader=loader)
     except yaml.YAMLError as error:
-        raise InputError("BAD_FILE", label, f"this is not YAML: {_one_line(error)}") from None
+        raise InputError("BAD_FILE", label, "this is not YAML: {}", _one_line(error)) from None
     except RecursionError:
-        raise InputError("BAD_FILE", label, f"this is nested too deeply to be {kind}") from None
+        raise InputError("BAD_FILE", label, "this is nested too deeply to be {}", kind) from None
     if node is None:
-        raise InputError("EMPTY_FILE", label, f"the file is empty; {kind} needs at least {least}")
+        raise InputError("EMPTY_FILE", label, "the file is empty; {} needs at least {}", kind, least)
     tree = Tree(label, {})
     if not isinstance(node, yaml.MappingNode):
-        raise InputError("BAD_FILE", label, f"{kind} is a mapping of keys such as {keys}")
+        raise InputError("BAD_FILE", label, "{} is a mapping of keys such as {}", kind, keys)
     tree.values = _Reader(yaml, tree).mapping(node, "")
     return tree
 
@@ -80,7 +80,7 @@ def scalar(text: str, where: str) -> Any:
     try:
         node = yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except yaml.YAMLError as error:
-        raise InputError("BAD_VALUE", where, f"{text!r} is not understood: {_one_line(error)}") from None
+        raise InputError("BAD_VALUE", where, "{!r} is not understood: {}", text, _one_line(error)) from None
     return None if node is None else _Reader(yaml, tree).value(node, "")
 
 
@@ -91,20 +91,20 @@ def text_of(path: str, label: str) -> str:
     except FileNotFoundError:
         raise InputError("NO_FILE", path, "there is no such file; check the path") from None
     except OSError as error:
-        raise InputError("NO_FILE", path, f"the file cannot be read: {error.strerror}") from None
+        raise InputError("NO_FILE", path, "the file cannot be read: {}", error.strerror) from None
     except ValueError as error:
-        raise InputError("NO_FILE", path, f"there can be no such file ({error}); check the path") from None
+        raise InputError("NO_FILE", path, "there can be no such file ({}); check the path", error) from None
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
-        raise InputError("BAD_FILE", label, f"the text is not UTF-8 (line {line}); save it as UTF-8") from None
+        raise InputError("BAD_FILE", label, "the text is not UTF-8 (line {}); save it as UTF-8", line) from None
 
 
 def _one_line(error: Any) -> str:
     problem = getattr(error, "problem", None) or str(error).splitlines()[0]
     mark = getattr(error, "problem_mark", None)
-    return problem if mark is None else f"{problem} (line {mark.line + 1}, column {mark.column + 1})"
+    return problem if mark is None else Text("{} (line {}, column {})", problem, mark.line + 1, mark.column + 1)
 
 
 class _Reader:
@@ -121,14 +121,14 @@ class _Reader:
         for key_node, value_node in node.value:
             line = key_node.start_mark.line + 1
             if not isinstance(key_node, self.yaml.ScalarNode):
-                raise InputError("BAD_FILE", self.tree.where(prefix), f"a key must be a word (line {line})")
+                raise InputError("BAD_FILE", self.tree.where(prefix), "a key must be a word (line {})", line)
             key = key_node.value
             dotted = f"{prefix}.{key}" if prefix else key
             if key in values:
                 first = self.tree.lines[dotted]
                 raise InputError(
                     "DUPLICATE_KEY", self.tree.where(dotted),
-                    f"the key stands twice (lines {first} and {line}); remove one",
+                    "the key stands twice (lines {} and {}); remove one", first, line,
                 )
             self.tree.lines[dotted] = line
             values[key] = self.value(value_node, dotted)

@@ -899,6 +899,11 @@
         <translation>Température en degrés Celsius ; transmise telle quelle.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Template and values of message and findings, as JSON.</source>
+        <translation>Modèles et valeurs du message et des constats, en JSON.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>The cell that runs it.</source>
         <translation>La cellule qui l&apos;exécute.</translation>
@@ -6442,11 +6447,6 @@
         <translation>Réduire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/remedies.py"/>
-        <source>`cell.deposition_point: [{0}]`</source>
-        <translation>`cell.deposition_point: [{0}]`</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
         <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
         <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
@@ -6510,6 +6510,11 @@
         <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>a curved layer cannot be laid flat without distortion: beads are up to {0} % nearer together or farther apart than the bead spacing</source>
         <translation>une couche courbe ne se met pas à plat sans distorsion : des cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que le pas des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
+        <source>a front splits in {0} at layer {1}</source>
+        <translation>un front se divise en {0} à la couche {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -6982,6 +6987,11 @@
         <translation>angle</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>angle range</source>
+        <translation>plage d&apos;angles</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>another analogue input is read than the one that is waited for</source>
         <translation>une autre entrée analogique est lue que celle qui est attendue</translation>
@@ -7077,14 +7087,9 @@
         <translation>en ({0}) la face a une arête en son sein, de {1} deg ; arrondissez-la, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>at least {0}</source>
         <translation>au moins {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>at least {0} and at most {1}</source>
-        <translation>au moins {0} et au plus {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -7415,11 +7420,6 @@
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>build directions of {0} layers, keeping the nozzle clear</source>
         <translation>directions de dépôt de {0} couches, en tenant la buse éloignée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
-        <source>build_direction.max_turn ({0} deg/mm)</source>
-        <translation>build_direction.max_turn ({0} deg/mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -7962,11 +7962,6 @@
         <translation>avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
-        <source>front splits in {0}</source>
-        <translation>front se divise en {0}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>front-down-flip</source>
         <translation>avant-bas-retourné</translation>
@@ -7985,11 +7980,6 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>front-up-noflip</source>
         <translation>avant-haut-non retourné</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
-        <source>fronts split in {0} each</source>
-        <translation>fronts se divisent chacun en {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/quantity.py"/>
@@ -9217,6 +9207,11 @@
         <translation>la couche {0} de {1} se trouverait à {2} mm au-dessus des faces, aussi loin que va un creux en {3}, et s&apos;y replierait ; déposez au plus {4} couche(s), ou laissez de côté ce qui est si creux</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/issues.py"/>
+        <source>layer {0} point {1}</source>
+        <translation>couche {0} point {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/reading.py"/>
         <source>layer {}</source>
         <translation>couche {}</translation>
@@ -9532,14 +9527,9 @@
         <translation>plus de deux faces se rejoignent sur une arête en {0} ; laissez-en une de côté, ou recouvrez-la comme un élément à part</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>more than {0}</source>
         <translation>plus de {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>more than {0} and at most {1}</source>
-        <translation>plus de {0} et au plus {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/backstop.py"/>
@@ -10630,11 +10620,6 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>spread</source>
         <translation>répartis</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
-        <source>spread along the bead, by up to {0} deg, to turn no faster than build_direction.max_turn</source>
-        <translation>étalés le long du cordon, jusqu&apos;à {0} deg, pour ne pas tourner plus vite que build_direction.max_turn</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -12213,8 +12198,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
-        <source>tool axes are {0}</source>
-        <translation>les axes de l&apos;outil sont {0}</translation>
+        <source>tool axes are spread along the bead, by up to {0} deg, to turn no faster than build_direction.max_turn</source>
+        <translation>les axes de l&apos;outil sont étalés le long du cordon, jusqu&apos;à {0} deg, pour ne pas tourner plus vite que build_direction.max_turn</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
+        <source>tool axes are turned back by up to {0} deg to stay within build_direction.max_tilt</source>
+        <translation>les axes de l&apos;outil sont ramenés jusqu&apos;à {0} deg pour rester dans build_direction.max_tilt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -12285,11 +12275,6 @@
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>turn rate</source>
         <translation>rotation par longueur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
-        <source>turned back by up to {0} deg to stay within build_direction.max_tilt</source>
-        <translation>ramenés jusqu&apos;à {0} deg pour rester dans build_direction.max_tilt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -12584,7 +12569,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
         <source>write such as: contour: travel_speed 8, schedule 3; fill: lead 5</source>
-        <translation>x</translation>
+        <translation>écrivez par exemple `contour: travel_speed 8, schedule 3; fill: lead 5`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
@@ -12632,6 +12617,21 @@
         <translation>{0} ont toutes une paroi ; nommez les faces de celle à déposer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>{0} and `cell.branch: auto`</source>
+        <translation>{0} et `cell.branch: auto`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>{0} and `cell.branch: {1}`</source>
+        <translation>{0} et `cell.branch: {1}`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>{0} and {1}</source>
+        <translation>{0} et {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/clad_faces.py"/>
         <source>{0} and {1} are faces of different solids; cover each solid as a feature of its own, or fuse them first</source>
         <translation>{0} et {1} sont des faces de solides différents ; recouvrez chaque solide comme un élément à part, ou fusionnez-les d&apos;abord</translation>
@@ -12670,11 +12670,6 @@
         <location filename="../../freecad_am/core/planning/external/rule.py"/>
         <source>{0} are polynomials per bead, the method {1} has none; use method: {2}, or external_axes: {3}</source>
         <translation>{0} : ce sont des polynômes par cordon, la méthode {1} n&apos;en a pas ; utiliser method : {2}, ou external_axes : {3}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
-        <source>{0} at layer {1}</source>
-        <translation>{0} à la couche {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
@@ -12843,8 +12838,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
-        <source>{0} fronts merge</source>
-        <translation>{0} fronts se rejoignent</translation>
+        <source>{0} fronts merge at layer {1}</source>
+        <translation>{0} fronts se rejoignent à la couche {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
+        <source>{0} fronts merge, in {1} places, at layer {2}</source>
+        <translation>{0} fronts se rejoignent, en {1} endroits, à la couche {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
+        <source>{0} fronts split in {1} each at layer {2}</source>
+        <translation>{0} fronts se divisent chacun en {1} à la couche {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/expressions.py"/>
@@ -13877,6 +13882,11 @@
         <translation>{0} ou CNT{1} n&apos;est pas compris ici</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>{0} or {1}</source>
+        <translation>{0} ou {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
         <source>{0} pairs of points; give three or more</source>
         <translation>{0} paires de points ; donnez-en trois ou plus</translation>
@@ -13940,6 +13950,11 @@
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>{0} reaches {1} mm below the platform, at {2}</source>
         <translation>{0} descend à {1} mm au-dessous du plateau, en {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <source>{0} row {1}</source>
+        <translation>{0} ligne {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
@@ -14015,6 +14030,11 @@
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>{0} that stands on the flange</source>
         <translation>{0} qui est sur la bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} to {1}</source>
+        <translation>{0} à {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
@@ -14102,6 +14122,11 @@
         <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg, empilé suivant {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/model/bead_model.py"/>
+        <source>{0}, and {1}</source>
+        <translation>{0}, et {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg</translation>
@@ -14170,11 +14195,6 @@
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0}, and {1} of its surface hangs over by more than 45 deg; curved layers need a flat face that it stands on, which it has not; stacked along {2} it would be {3}</source>
         <translation>{0}, et {1} de sa surface sont en porte-à-faux de plus de 45 deg ; des couches courbes demandent une face plane sur laquelle elle repose, qu&apos;elle n&apos;a pas ; empilée suivant {2} ce serait {3}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
-        <source>{0}, in {1} places,</source>
-        <translation>{0}, en {1} endroits,</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -14250,6 +14270,11 @@
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
         <source>{0}: where facets meet at an angle the wall runs smoothly, up to {1} mm off them, at {2}</source>
         <translation>{0} : là où des facettes se rencontrent sous un angle la paroi est lissée, jusqu&apos;à {1} mm de celles-ci, en {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/issues.py"/>
+        <source>{0}: {1}</source>
+        <translation>{0} : {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -14340,6 +14365,11 @@
         <location filename="../../freecad_am/posts/abb/modules.py"/>
         <source>{0}; write the program anew</source>
         <translation>{0} ; écrivez le programme de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
+        <source>{0}; {1}</source>
+        <translation>{0} ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>

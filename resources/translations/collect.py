@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Collects all texts that the window shows, and brings the translations up to date with them.
 
-`python3 resources/translations/collect.py` writes messages.json, the templates by which
-messages are recognised, and RoboticAM_fr.ts with the translations there are; what is new has none and is listed. With
-`--release` lrelease makes RoboticAM_fr.qm of it.
+`python3 resources/translations/collect.py` writes RoboticAM_fr.ts with the translations there are; what is new has none and
+is listed. With `--release` lrelease makes RoboticAM_fr.qm of it.
 """
 
 from __future__ import annotations
 
 import ast
-import json
-import re
 import subprocess
 import sys
-from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -54,12 +50,11 @@ SPEAKING = (
     "core", "objects", "brep", "posts", "interop", "plots", "report/of_document.py", "gui", "api.py", "macro", "kdl",
     "read_back", "verify.py",
 )
-FIGURE = re.compile(r"-?\d[\d.e-]*(?: (?:mm|deg|s|%)\S*)?")  # with its unit
 TITLES = ("core/inspection/table.py",)  # where single words are told too
 
 
 class Collected:
-    """All texts: those of the window, those among them that are recognised as messages, and helps of properties."""
+    """All texts: those of the window, messages, and helps of properties."""
 
     def __init__(self) -> None:
         self.code = Code([*files(*SPEAKING), ROOT / "InitGui.py"])
@@ -77,11 +72,13 @@ class Collected:
             self._of_words(row, "freecad_am/core/parameters/place.py")
         for word in (*staleness.STATUSES, issues.ERROR, issues.WARNING, issues.NOTE):
             self.messages.setdefault(word, "freecad_am/objects/staleness.py")
-        for text in ("layer {0}", "layer {0} bead {1}", "layer {0} bead {1} point {2}"):
+        for text in ("layer {0}", "layer {0} bead {1}", "layer {0} bead {1} point {2}", "layer {0} point {1}", "{0}: {1}"):
             self.messages.setdefault(text, "freecad_am/core/issues.py")
         for row in preferences.process_rows():
             self.messages.setdefault(preferences.label(row), "freecad_am/objects/fields/preferences.py")
-        for template, place in Templates(self.code, TITLES).found.items():
+        templates = Templates(self.code, TITLES)
+        self.lost = templates.lost
+        for template, place in templates.found.items():
             self.messages.setdefault(template, place)
 
     def _of_window(self, module: Module, place: str) -> None:
@@ -118,7 +115,7 @@ class Collected:
             self.messages.setdefault(link.help, place)
             self.properties.setdefault(link.help, place)
             if link.required:  # 'Cell is missing; choose the cell that runs it'
-                self.messages.setdefault(f"{link.help[0].lower()}{link.help[1:].rstrip('.')}", place)
+                self.messages.setdefault(link.wanted, place)
         for section in stage.sections:
             self.messages.setdefault(section.group, place)
             for row in rows(section.cls):
@@ -134,19 +131,12 @@ class Collected:
         nested = [group_of(row)] if len(row.path) > 1 else []
         for text in (row.label, row.spec.help, *row.spec.choices, *nested):
             self.messages.setdefault(text.replace("{", "{{").replace("}", "}}"), place)
-        if field.range_text(row.spec):
-            numbers = count()
-            self.messages.setdefault(FIGURE.sub(lambda _: f"{{{next(numbers)}}}", field.range_text(row.spec)), place)
 
     def texts(self) -> ts_file.Texts:
         """All of them by context, in a settled order."""
         window = {**self.messages, **self.window}
         found = {WINDOW: window, **self.commands, PROPERTY: self.properties}
         return {context: dict(sorted(some.items())) for context, some in sorted(found.items())}
-
-    def recognised(self) -> str:
-        """The file of the templates."""
-        return json.dumps(sorted(self.messages), ensure_ascii=False, indent=0) + "\n"
 
 
 def release(language: str) -> None:
@@ -157,7 +147,6 @@ def release(language: str) -> None:
 
 def main() -> int:
     found = Collected()
-    (HERE / "messages.json").write_text(found.recognised(), encoding="utf-8")
     missing = 0
     for language in LANGUAGES:
         path = HERE / f"RoboticAM_{language}.ts"

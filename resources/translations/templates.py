@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Templates of the messages that the code makes, read from its syntax trees.
+"""Texts that the code makes, read from its syntax trees: the templates that are written where a message is made,
+`Text("it has {} faces", n)`, one for each choice of words; and plain texts that become a message as they are.
 
-An f-string gives its text with the places {0}, {1} and so on; one with words that depend on a condition gives a template for
-each case. Followed are arguments that a function passes on to a message, values that functions return, local variables and
+For these are followed arguments that a function passes on to a message, values that functions return, local variables and
 constants.
 """
 
@@ -12,8 +12,9 @@ import ast
 import re
 from collections.abc import Iterator
 from functools import cache
-from itertools import product
+from itertools import count, product
 from string import Formatter
+from typing import Any
 
 from sources import ROOT, Code, Function, Module, assigned, called, calls_in, walked
 
@@ -26,13 +27,16 @@ MAKERS: dict[str, set[int]] = {
 }
 PROPERTY = "Message"  # of stages: what it is set to is told
 KEYWORDS = {"message", "where", "lacking", "text", "label", "short", "name"}
+ERRORS = ("AmError", "InputError", "InfeasibleError")
 _MOST_CASES = 16
 _DEPTH = 11
+UNITS = {"mm", "deg", "mm2", "cm3", "min", "kg"}
+_FORM = re.compile(r"\{\d*(![rs])?(:[^{} ]*)?\}")  # of a place in a template
 _WORD = re.compile(r"[^\W\d_]{2,}")
 # neither a text nor what holds some
 _OPAQUE = {"len", "round", "float", "int", "sum", "max", "min", "abs", "degrees", "repr", "type", "set", "range"}
 
-Part = str | ast.expr  # literal text, or what is put in
+Case = list[str | None]  # parts of a text, None for each place
 
 
 class Templates:
@@ -43,13 +47,21 @@ class Templates:
         self.code, self.titles = code, titles
         self.makers = {name: set(positions) for name, positions in MAKERS.items()}
         self.found: dict[str, str] = {}  # template: where it is first made
+        self.lost: set[str] = set()  # f-strings that reach a message, which forget what they were made of
         self._seen: set[tuple[int, int]] = set()
+        self._inlined: set[int] = set()  # texts that are words of others, and those that are told by themselves
+        self._told_by_flow: set[int] = set()
         while self._learn():
             pass
         for module in code.modules:
             for node, texts in self._telling(module):
                 for text in texts:
                     self._collect(text, module, module.around[id(node)], _DEPTH)
+        made = [(case, module, call) for module in code.modules for call in calls_in(module.tree)
+                for case in self._made(call, module)]
+        for case, module, call in made:
+            if id(call) in self._told_by_flow or id(call) not in self._inlined:
+                self._add(case, module, made=True)
 
     # ---- which functions pass on a message
 
@@ -63,10 +75,11 @@ class Templates:
 
     def _told(self, call: ast.Call) -> list[ast.expr]:
         """The arguments of a call that are told."""
-        positions = self.makers[called(call)]
-        return [argument for at, argument in enumerate(call.args) if at in positions] + [
-            keyword.value for keyword in call.keywords if keyword.arg in KEYWORDS
-        ]
+        if called(call) in ERRORS:  # with the values of the message
+            told = call.args[1:2] + call.args[3 if len(call.args) > 3 else 2:]
+        else:
+            told = [argument for at, argument in enumerate(call.args) if at in self.makers[called(call)]]
+        return told + [keyword.value for keyword in call.keywords if keyword.arg in KEYWORDS]
 
     def _learn(self) -> bool:
         """Add functions that put a parameter into a message; False when there are no more."""
@@ -95,12 +108,17 @@ class Templates:
         if node is None or depth == 0 or (id(node), depth) in self._seen:
             return
         self._seen.add((id(node), depth))
-        if isinstance(node, (ast.Constant, ast.JoinedStr, ast.BinOp)):
-            for case in self._cases(node, function):
-                self._add(case, module)
-                for part in case:
-                    if not isinstance(part, str):
-                        self._collect(part, module, function, depth - 1)
+        if isinstance(node, ast.Constant):
+            if isinstance(node.value, str):
+                parts = _parts(node.value) if _FORM.search(node.value) else [node.value]
+                self._add([part if isinstance(part, str) else None for part in parts], module)
+        elif isinstance(node, ast.JoinedStr):
+            literal = "".join(part.value if isinstance(part, ast.Constant) else "{0}" for part in node.values)
+            if says_something(literal):
+                self.lost.add(f"{module.path.relative_to(ROOT)}:{node.lineno} {literal}")
+        elif isinstance(node, ast.BinOp):
+            self._collect(node.left, module, function, depth - 1)
+            self._collect(node.right, module, function, depth - 1)
         elif isinstance(node, ast.Call):
             self._collect_call(node, module, function, depth)
         elif isinstance(node, ast.Name):
@@ -126,9 +144,11 @@ class Templates:
 
     def _collect_call(self, node: ast.Call, module: Module, function: Function | None, depth: int) -> None:
         name = called(node)
-        if name == "format" and isinstance(node.func, ast.Attribute) and isinstance(node.func.value, ast.Constant):
-            self._add(_formatted(node.func.value.value), module)
-            for argument in node.args:
+        if name == "Word":  # a part of a template
+            return
+        if name in ("Text", "joined"):
+            self._told_by_flow.add(id(node))
+            for argument in node.args[_is_made(node):]:  # that is found where it stands
                 self._collect(argument, module, function, depth - 1)
             return
         if name in _OPAQUE or name in self.makers:
@@ -164,58 +184,61 @@ class Templates:
                         if at < len(names) and other is not function and _is_list(other, names[at]):
                             yield where, other, names[at]
 
-    # ---- the cases of a text
+    # ---- texts that are made
 
-    def _cases(self, node: ast.expr, function: Function | None) -> list[list[Part]]:
-        """The texts that an expression can be, each as literal parts and what is put in between."""
+    def _made(self, call: ast.Call, module: Module) -> list[Case]:
+        """What a call makes, where it is written there: a Text, an error with a message, texts that are joined."""
+        texts = call.args[2:] if called(call) in ERRORS else call.args if called(call) == "Text" else []
+        if called(call) == "joined" and isinstance(call.args[0], ast.Constant):
+            return [[None, call.args[0].value, None]]
+        first = texts[:1] if len(texts) > 1 else []
+        return [
+            case for text in ast.walk(first[0]) if isinstance(text, ast.Constant) and isinstance(text.value, str)
+            for case in self._cases(text.value, texts[1:], module.around[id(call)])
+        ] if first else []
+
+    def _cases(self, text: str, values: list[ast.expr], function: Function | None) -> list[Case]:
+        """What a template can be, one for each choice of its words."""
+        found: list[Case] = [[]]
+        for part in _parts(text):
+            cases: list[Case] = [[part]]
+            if isinstance(part, int):
+                value = values[part]
+                chosen = isinstance(value, ast.Call) and called(value) == "Word"
+                cases = self._words(value.args[0], function) if chosen else [[None]]
+            found = [[*before, *case] for before, case in product(found, cases)]
+            if len(found) > _MOST_CASES:
+                raise ValueError(f"too many cases of {text}")
+        return found
+
+    def _words(self, node: ast.expr, function: Function | None) -> list[Case]:
+        """What a chosen word can be."""
         if isinstance(node, ast.Constant):
-            return [_formatted(node.value)] if isinstance(node.value, str) else []
-        if isinstance(node, ast.JoinedStr):
-            found: list[list[Part]] = [[]]
-            for part in node.values:
-                inner = part.value if isinstance(part, ast.FormattedValue) else part
-                plain = not isinstance(part, ast.FormattedValue) or (part.format_spec is None and part.conversion == -1)
-                cases = (self._words(inner, function) if plain else None) or [[inner]]
-                found = [[*before, *case] for before, case in product(found, cases)]
-                if len(found) > _MOST_CASES:
-                    raise ValueError(f"too many cases in {ast.unparse(node)}")
-            return found
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            left = self._words(node.left, function) or self._cases(node.left, function) or [[node.left]]
-            right = self._words(node.right, function) or self._cases(node.right, function) or [[node.right]]
-            return [[*one, *other] for one, other in product(left, right)]
-        return []
-
-    def _words(self, node: ast.expr, function: Function | None) -> list[list[Part]] | None:
-        """The cases of what is put in, where it is but words chosen by a condition; else None."""
-        if isinstance(node, (ast.Constant, ast.JoinedStr)):
-            return self._cases(node, function) or None
+            return [[node.value]]
+        if isinstance(node, ast.Call) and called(node) == "Text" and isinstance(node.args[0], ast.Constant):
+            self._inlined.add(id(node))
+            return self._cases(node.args[0].value, node.args[1:], function)
         if isinstance(node, ast.IfExp):
-            body, other = self._words(node.body, function), self._words(node.orelse, function)
-            return None if body is None or other is None else body + other
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult) and isinstance(node.left, ast.Constant):
-            return [[node.left.value], [""]] if isinstance(node.left.value, str) else None
-        if isinstance(node, ast.Name) and function is not None:
-            values = _values(node.id, function)
-            if values and node.id not in [one.arg for one in function.args.args]:
-                cases = [self._words(value, function) if not isinstance(value, ast.Name) else None for value in values]
-                if all(cases) and sum(map(len, filter(None, cases))) <= 4:
-                    return [case for some in cases if some for case in some]
-        return None
+            return self._words(node.body, function) + self._words(node.orelse, function)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+            return [*self._words(node.left, function), [""]]
+        if isinstance(node, ast.Name) and function is not None and _values(node.id, function):
+            return [case for value in _values(node.id, function) for case in self._words(value, function)]
+        raise ValueError(f"{ast.unparse(node)} is not a choice of words: pass it as a value, without Word")
 
-    def _add(self, case: list[Part], module: Module) -> None:
-        texts: list[str] = []
-        count = 0
-        for part in filter(None, case):
-            if isinstance(part, str):
-                texts.append(part.replace("{", "{{").replace("}", "}}"))
-            elif not texts or texts[-1] != f"{{{count - 1}}}":  # two places side by side cannot be told apart
-                texts.append(f"{{{count}}}")
-                count += 1
-        template = "".join(texts).strip()
+    def _add(self, case: Case, module: Module, made: bool = False) -> None:
+        numbers = count()
+        template = "".join(
+            f"{{{next(numbers)}}}" if part is None else part.replace("{", "{{").replace("}", "}}") for part in case
+        ).strip()
         title = str(module.path).endswith(self.titles) and template.isalpha()
-        if title or says_something(template):
+        if title or says_something(template, made):
             self.found.setdefault(template, module.path.relative_to(ROOT).as_posix())
+
+
+def _is_made(call: ast.Call) -> bool:
+    """Whether a call makes a Text of a template that is written there."""
+    return called(call) == "Text" and len(call.args) > 1 and isinstance(call.args[0], ast.Constant)
 
 
 @cache
@@ -227,14 +250,13 @@ def _tellers(tree: ast.AST) -> tuple[ast.Call | ast.Assign, ...]:
     )
 
 
-def _formatted(text: str) -> list[Part]:
-    """The parts of a constant, which may be meant for `format`."""
-    if not re.search(r"\{\w*(:[^{}]*)?\}", text):
-        return [text]
-    found: list[Part] = []
-    for literal, field, _, _ in Formatter().parse(text):
+def _parts(text: str) -> list[Any]:
+    """The literal parts of a text with places, and between them the numbers of the values put in."""
+    found: list[Any] = []
+    given = count()
+    for literal, place, _, _ in Formatter().parse(text):
         found += [literal] if literal else []
-        found += [ast.Name(field or "")] if field is not None else []
+        found += [] if place is None else [int(place) if place else next(given)]
     return found
 
 
@@ -268,6 +290,12 @@ def _is_list(function: Function, name: str) -> bool:
     return note is not None and ast.unparse(note) == "list[str]"
 
 
-def says_something(template: str) -> bool:
-    """Whether a text is several words, and not the name of something."""
-    return len(_WORD.findall(re.sub(r"\{\d+\}", " ", template))) >= 2 and " " in template.strip()
+def says_something(template: str, made: bool = False) -> bool:
+    """Whether a text is several words, and not the name of something; of one that is made one word is enough, or a sign
+    before which French has a space."""
+    literal = re.sub(r"\{\d+\}", " ", template)
+    words = _WORD.findall(literal)
+    if made:
+        rest = re.sub(r"`[^`]*`|\b[a-z_]+(?:\.[a-z_]+)+", " ", literal)  # without what is typed
+        return bool(set(_WORD.findall(rest)) - UNITS) or re.search(r"[:;?](?= |$)", rest) is not None
+    return len(words) >= 2 and " " in template.strip()

@@ -212,6 +212,13 @@ def test_a_quantity_is_read_whole_or_not_at_all(text):
         rows.quantity(text)
 
 
+@pytest.mark.parametrize("text", ["[", "2 mm [about"])
+def test_a_quantity_that_ends_within_a_comment_does_not_spoil_the_next_ones(text):
+    with pytest.raises((ValueError, OSError)):
+        rows.quantity(text)
+    assert rows.quantity("2 cm").getValueAs("mm").Value == pytest.approx(20.0)
+
+
 def test_an_angle_that_freecad_would_cut_is_refused(holder):
     properties.add(holder, ProcessParameters, "Group")
     with pytest.raises(InputError, match="720 deg is out of range"):

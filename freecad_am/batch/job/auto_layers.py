@@ -42,12 +42,12 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
     if found.get(SPACING) == WORD:
         height = quantity.read(found.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}")
         if not height > 0.0:
-            raise InputError("BAD_VALUE", f"strategy.{HEIGHT}", f"{height:g} mm is out of range; give more than 0 mm")
+            raise InputError("BAD_VALUE", f"strategy.{HEIGHT}", "{:g} mm is out of range; give more than 0 mm", height)
         spacing = process.wire.section * with_model(process, model) / speed / height
         if spacing > process.bead_width:
             raise InputError(
-                "BAD_VALUE", f"strategy.{SPACING}", f"layers of {height:.4g} mm take beads {spacing:.4g} mm apart to hold "
-                f"the wire fed, and beads are {process.bead_width:g} mm wide; make layers higher, or beads wider",
+                "BAD_VALUE", f"strategy.{SPACING}", "layers of {:.4g} mm take beads {:.4g} mm apart to hold the wire fed, "
+                "and beads are {:g} mm wide; make layers higher, or beads wider", height, spacing, process.bead_width,
             )
         found[SPACING] = f"{spacing!r} mm"
     return found

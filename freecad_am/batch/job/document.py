@@ -25,6 +25,6 @@ def save(document: Any, path: str) -> None:
     try:
         document.saveAs(path)
     except (OSError, RuntimeError) as error:
-        raise InputError("UNWRITABLE", path, f"the document cannot be saved ({error}); free the disk") from None
+        raise InputError("UNWRITABLE", path, "the document cannot be saved ({}); free the disk", error) from None
     if not os.path.isfile(path):
         raise InputError("UNWRITABLE", path, "the document cannot be saved; free the disk")

@@ -51,7 +51,7 @@ def refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -
     """InputError for a build direction that the family of layers does not know."""
     family = family_of(strategy)
     if build_direction.mode not in family.modes:
-        raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why.format(build_direction.mode))
+        raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why, build_direction.mode)
 
 
 def substrate_of(section: Any, strategy: Any, part: PartSource, path: str) -> PartSource | None:
@@ -63,7 +63,7 @@ def substrate_of(section: Any, strategy: Any, part: PartSource, path: str) -> Pa
     table = part.file.lower().endswith(tuple(POINT_FILES))
     if family.kind != "curves" and (part.edges or table):
         where, what = ("part.edges", "edges") if part.edges else ("part.file", "tables of points")
-        raise InputError("NOT_FOR_FAMILY", where, f"only strategy.kind curves lays {what} as beads; use it")
+        raise InputError("NOT_FOR_FAMILY", where, "only strategy.kind curves lays {} as beads; use it", what)
     if table and (part.edges or part.faces):
         raise InputError("NOT_FOR_FAMILY", "part.edges" if part.edges else "part.faces", "a table of points has no edges "
                          "and no faces; leave them out")
@@ -75,7 +75,7 @@ def substrate_of(section: Any, strategy: Any, part: PartSource, path: str) -> Pa
         found = part_of(fields.mapping(section, "substrate"), path, "substrate")
         if found.faces:
             raise InputError(
-                "NOT_YET", "substrate.faces", f"{', '.join(found.faces)!r} is not supported yet; use the whole solid"
+                "NOT_YET", "substrate.faces", "{!r} is not supported yet; use the whole solid", ", ".join(found.faces)
             )
         return found
     if section is not None and family.substrate == NONE:

@@ -165,7 +165,7 @@ def several(values: dict[str, Any], path: str, lines: tree.Tree) -> tuple[JobFea
         fields.known_keys(own, KEYS, here)
         name = fields.text(own["name"], f"{here}.name").strip() if own.get("name") is not None else f"feature {number + 1}"
         if name in [one.name for one in made]:
-            raise InputError("BAD_VALUE", f"{here}.name", f"{name!r} is the name of another feature; give each its own")
+            raise InputError("BAD_VALUE", f"{here}.name", "{!r} is the name of another feature; give each its own", name)
         try:
             made.append(one_feature(_with_defaults(own, values), name, path))
         except InputError as error:
@@ -184,11 +184,11 @@ def about_feature(error: InputError, number: int, name: str, lines: tree.Tree) -
     error = in_words_of_job(error, name)
     root = error.where.split(".")[0].split("[")[0]
     if root not in KEYS:
-        return InputError(error.code, error.where, f"feature {name}: {error.message}")
+        return InputError(error.code, error.where, "feature {}: {}", name, error.message)
     where = f"features[{number}].{error.where}"
     if error.where in lines.lines and where not in lines.lines:
         where = error.where
-    return InputError(error.code, where, f"feature {name}: {error.message}")
+    return InputError(error.code, where, "feature {}: {}", name, error.message)
 
 
 def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:

@@ -97,7 +97,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
     fields.known_keys(values, SECTIONS, "")
     version = values.get("version", 1)
     if version != 1 or isinstance(version, bool):
-        raise InputError("BAD_VERSION", "version", f"{quantity.shown(version)} is not understood; this program reads 1")
+        raise InputError("BAD_VERSION", "version", "{} is not understood; this program reads 1", quantity.shown(version))
     name = _name(values.get("name"), path)
     if values.get("features") is None:
         if values.get("sequence") is not None:
@@ -139,9 +139,9 @@ def _name(value: Any, path: str) -> str:
     name = fields.text(value, "name").strip()
     if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable():
         shown = quantity.shown(name)
-        raise InputError("BAD_NAME", "name", f"{shown} names files; use no slash, control sign or leading dot")
+        raise InputError("BAD_NAME", "name", "{} names files; use no slash, control sign or leading dot", shown)
     if len(name.encode()) > _LONGEST_NAME:
-        raise InputError("BAD_NAME", "name", f"the name is too long for a file; use at most {_LONGEST_NAME} letters")
+        raise InputError("BAD_NAME", "name", "the name is too long for a file; use at most {} letters", _LONGEST_NAME)
     return name
 
 

@@ -13,7 +13,7 @@ from freecad_am import api
 from freecad_am.brep.files.apart import apart
 from freecad_am.brep.shapes.chosen import solids_of
 from freecad_am.core.geometry.mesh.file_unit import MESHES
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, Text
 from freecad_am.objects.shapes import document_file
 
 from .part_source import PartSource
@@ -55,13 +55,14 @@ def _only_solids(obj: Any, part: PartSource, key: str) -> Any:
     if not part.solids:
         return obj
     if getattr(obj, "Mesh", None) is not None:
-        raise InputError("BAD_VALUE", f"{key}.solids", f"{obj.Label} is a mesh, which has no solids; leave them out")
+        raise InputError("BAD_VALUE", f"{key}.solids", "{} is a mesh, which has no solids; leave them out", obj.Label)
     solids = obj.Shape.Solids
     numbers = [int(name.removeprefix("Solid")) for name in part.solids]
     wrong = [name for name, number in zip(part.solids, numbers) if number > len(solids)]
     if wrong:
         raise InputError(
-            "BAD_VALUE", f"{key}.solids", f"{obj.Label} has {len(solids)} solid(s), and no {', '.join(wrong)}; name others"
+            "BAD_VALUE", f"{key}.solids", "{} has {} solid(s), and no {}; name others", obj.Label, len(solids),
+            ", ".join(wrong)
         )
     obj.Shape = solids_of(obj.Shape, numbers)
     obj.Label = f"{obj.Label} {', '.join(part.solids)}"
@@ -79,7 +80,7 @@ def _save_changed(part: PartSource, path: str, section: str) -> None:
         invalid = [obj.Label for obj in source.Objects if "Invalid" in obj.State]
         if invalid:
             names = ", ".join(invalid)
-            raise InputError("BAD_PART", f"{section}.set", f"with these values {names} cannot be built; change them")
+            raise InputError("BAD_PART", f"{section}.set", "with these values {} cannot be built; change them", names)
         source.saveAs(path)
     finally:
         App.closeDocument(source.Name)
@@ -93,7 +94,7 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
     found = [obj for obj in document.Objects if obj.Name == name] or document.getObjectsByLabel(name)
     if len(found) != 1:
         names = ", ".join(obj.Label for obj in document.Objects)
-        raise InputError("NO_OBJECT", place, f"{len(found)} objects are called {name!r}; there are {names}")
+        raise InputError("NO_OBJECT", place, "{} objects are called {!r}; there are {}", len(found), name, names)
     obj = found[0]
     try:
         if constraints:
@@ -107,9 +108,9 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
             setattr(obj, key, _typed(getattr(obj, key), text))
     except AttributeError:
         near = ", ".join(sorted(obj.PropertiesList))
-        raise InputError("BAD_VALUE", place, f"{name} has no property {key!r}; it has {near}") from None
+        raise InputError("BAD_VALUE", place, "{} has no property {!r}; it has {}", name, key, near) from None
     except (ValueError, TypeError, ArithmeticError, RuntimeError, IndexError, NameError):
-        message = f"{text!r} does not fit this property; give a value such as it has now"
+        message = Text("{!r} does not fit this property; give a value such as it has now", text)
         raise InputError("BAD_VALUE", place, message) from None
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from freecad_am.core.geometry.located import is_there
 from freecad_am.core.geometry.mesh.file_unit import MESHES, refuse_scale
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, Text
 from freecad_am.core.parameters import field as f
 from freecad_am.sections import fields, quantity
 from freecad_am.sections.paths import absolute
@@ -56,21 +56,21 @@ def part_of(section: dict[str, Any], path: str, key: str = "part") -> PartSource
     further = ("start_edges", "edges") if key == "part" else ()
     fields.known_keys(section, ("file", "object", "solids", "faces", "set", "scale", *further), key)
     if "file" not in section:
-        raise InputError("NO_PART", f"{key}.file", f"there is no file; write {key}: {{file: shape.step}}")
+        raise InputError("NO_PART", f"{key}.file", "there is no file; write {}: {{file: shape.step}}", key)
     file = absolute(fields.text(section["file"], f"{key}.file"), path)
     is_document = file.lower().endswith(".fcstd")
     for entry in ("object", "set"):
         if section.get(entry) is not None and not is_document:
-            message = f"only an FCStd part has objects, {os.path.basename(file)} has none"
+            message = Text("only an FCStd part has objects, {} has none", os.path.basename(file))
             raise InputError("BAD_VALUE", f"{key}.{entry}", message)
     if not is_there(file):
-        raise InputError("NO_FILE", f"{key}.file", f"there is no file {file}; paths are relative to the job file")
+        raise InputError("NO_FILE", f"{key}.file", "there is no file {}; paths are relative to the job file", file)
     name, solids = section.get("object"), _names(section.get("solids"), f"{key}.solids", _SOLID)
     if solids and (section.get("faces") or section.get("start_edges")):
         raise InputError("BAD_VALUE", f"{key}.solids", "faces and edges are those of the whole file; name "
                          "either solids or them")
     if solids and file.lower().endswith(MESHES):
-        message = f"{os.path.basename(file)} is a mesh, which has no solids; leave them out"
+        message = Text("{} is a mesh, which has no solids; leave them out", os.path.basename(file))
         raise InputError("BAD_VALUE", f"{key}.solids", message)
     return PartSource(
         file=file,
@@ -92,8 +92,8 @@ def guide_of(given: Any, part: dict[str, Any], path: str) -> PartSource | None:
         return None
     if not isinstance(given, dict):
         raise InputError(
-            "BAD_VALUE", key, f"{quantity.shown(given)} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, "
-            "{file: spine.step}, or auto",
+            "BAD_VALUE", key, "{} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, {{file: spine.step}}, or "
+            "auto", quantity.shown(given),
         )
     fields.known_keys(given, ("file", "object", "edges", "set"), key)
     own = {name: given[name] for name in ("file", "object", "set") if name in given}
@@ -122,7 +122,7 @@ def _names(value: Any, key: str, wanted: re.Pattern[str]) -> tuple[str, ...]:
     if not isinstance(names, list) or not all(isinstance(name, str) and wanted.fullmatch(name) for name in names):
         kind = wanted.pattern.partition("[")[0]
         raise InputError(
-            "BAD_VALUE", key, f"{quantity.shown(value)} names no {kind.lower()}s; write [{kind}1, {kind}2]"
+            "BAD_VALUE", key, "{} names no {}s; write [{}1, {}2]", quantity.shown(value), kind.lower(), kind, kind
         )
     return tuple(names)
 

@@ -47,10 +47,10 @@ def scan_of(given: dict[str, Any], strategy: Any, path: str) -> ScanSource | Non
         return None
     if "scan" not in given:
         key = next(iter(given))
-        raise InputError("BAD_VALUE", f"{PREFIX}.{key}", f"there is no scan; give its file as {PREFIX}.scan, or leave it")
+        raise InputError("BAD_VALUE", f"{PREFIX}.{key}", "there is no scan; give its file as {}.scan, or leave it", PREFIX)
     file = absolute(job_fields.text(given["scan"], f"{PREFIX}.scan"), path)
     if not is_there(file):
-        raise InputError("NO_FILE", f"{PREFIX}.scan", f"there is no file {file}; paths are relative to the job file")
+        raise InputError("NO_FILE", f"{PREFIX}.scan", "there is no file {}; paths are relative to the job file", file)
     for key, choices in (("scan_unit", (AUTO, *UNITS)), ("scan_fit", FITS)):
         if given.get(key, AUTO) not in choices:
             raise f.unknown_choice(f"{PREFIX}.{key}", given[key], choices)
@@ -64,14 +64,14 @@ def scan_of(given: dict[str, Any], strategy: Any, path: str) -> ScanSource | Non
         raise InputError(error.code, f"{PREFIX}.scan_pairs", error.message) from None
     if parameters.after_layer is not None and fit not in (AUTO, NONE):
         raise InputError(
-            "BAD_VALUE", f"{PREFIX}.scan_fit", f"{fit}: how far a part has grown is told by a scan in the part's own "
-            "coordinates alone; give none"
+            "BAD_VALUE", f"{PREFIX}.scan_fit", "{}: how far a part has grown is told by a scan in the part's own "
+            "coordinates alone; give none", fit
         )
     layers = getattr(strategy, "layers", "planes")
     kind = type(strategy).__name__.removesuffix("Parameters").lower()
     if kind not in ("solid", "surface") or layers != "planes":
         raise InputError(
-            "NOT_YET", f"{PREFIX}.scan", f"{kind if kind != 'solid' else f'layers: {layers}'} is not fitted to a scan yet; "
-            "solids in plane layers and walls on a substrate are: leave it out"
+            "NOT_YET", f"{PREFIX}.scan", "{} is not fitted to a scan yet; solids in plane layers and walls on a substrate "
+            "are: leave it out", kind if kind != "solid" else f"layers: {layers}"
         )
     return ScanSource(file, given.get("scan_unit", AUTO), fit, pairs, parameters)

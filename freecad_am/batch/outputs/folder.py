@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, Text
 from freecad_am.posts import earlier as earlier_posts
 
 from .. import supervised
@@ -85,7 +85,7 @@ class Outputs:
 
     def _unwritable(self, path: str, error: Exception) -> InputError:
         reason = getattr(error, "strerror", None) or str(error)
-        message = f"outputs cannot be written here ({reason}); free it or choose another folder with -o"
+        message = Text("outputs cannot be written here ({}); free it or choose another folder with -o", reason)
         return InputError("UNWRITABLE", path, message)
 
     def _make_folder(self) -> None:

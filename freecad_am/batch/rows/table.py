@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from freecad_am.core.geometry import located
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, Text
 from freecad_am.sections import tree
 
 from .. import run
@@ -61,14 +61,14 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
     try:
         lines = [[cell.strip() for cell in line] for line in csv.reader(io.StringIO(text, newline=""), strict=True)]
     except csv.Error as error:
-        raise InputError("BAD_FILE", label, f"this is not a table: {error}; separate cells by commas") from None
+        raise InputError("BAD_FILE", label, "this is not a table: {}; separate cells by commas", error) from None
     lines = [line for line in lines if any(line)]
     if len(lines) < 2:
         raise InputError("EMPTY_FILE", label, "there are no rows; give a line of job keys and a line per job below it")
     columns = lines[0]
     for column in columns:
         if not column or columns.count(column) > 1:
-            raise InputError("BAD_FILE", label, f"the column {column!r} is empty or stands twice; name each one once")
+            raise InputError("BAD_FILE", label, "the column {!r} is empty or stands twice; name each one once", column)
         if ";" in column or "\t" in column:
             raise InputError("BAD_FILE", label, "cells are not separated by commas; save the table with commas")
         if column.split(".")[0] not in job.SECTIONS:
@@ -76,7 +76,7 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
             raise InputError("UNKNOWN_KEY", f"{label}: {column}", message)
     for number, line in enumerate(lines[1:], 1):
         if len(line) != len(columns):
-            message = f"{len(line)} cells for {len(columns)} columns; quote cells with commas"
+            message = Text("{} cells for {} columns; quote cells with commas", len(line), len(columns))
             raise InputError("BAD_FILE", f"{label} row {number}", message)
     return columns, lines[1:]
 

@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 
 import FreeCAD
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text, Word
 from ..kernel import process as kernel_process
 from . import answers
 
@@ -51,7 +51,7 @@ def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, pati
     size = _size(path) / MB
     where = os.path.basename(os.fspath(path)) or os.fspath(path)
     if size > LARGEST:
-        message = f"the file is larger than {LARGEST} MB, the most that is read; is it the right one?"
+        message = Text("the file is larger than {} MB, the most that is read; is it the right one?", LARGEST)
         raise InputError("BAD_FILE", where, message)
     if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
         return read(path, *rest)
@@ -196,9 +196,9 @@ def _end_with_parent() -> None:
 
 def _refused(where: str, ended: int, used: float, seconds: float, memory: float) -> InputError:
     if ended == -signal.SIGXCPU:
-        why = f"it takes more than {seconds:.0f} s of the processor to read, the limit of a file of its size"
+        why = Text("it takes more than {:.0f} s of the processor to read, the limit of a file of its size", seconds)
     elif ended == NO_MEMORY or used > 0.8 * memory:
-        why = f"it takes more than {memory:.0f} MB of memory to read, the limit of a file of its size"
+        why = Text("it takes more than {:.0f} MB of memory to read, the limit of a file of its size", memory)
     else:
         why = "FreeCAD crashes on it"
-    return InputError("BAD_FILE", where, f"it is damaged: {why}; export it again")
+    return InputError("BAD_FILE", where, "it is damaged: {}; export it again", Word(why))

@@ -43,13 +43,13 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
             "a mesh has no exact surfaces; a part of revolution needs a boundary representation: STEP, IGES or BREP",
         )
     if suffix not in READABLE:
-        raise InputError("UNSUPPORTED_FILE", where, f"{suffix or 'no ending'} is not read; use {', '.join(READABLE)}")
+        raise InputError("UNSUPPORTED_FILE", where, "{} is not read; use {}", suffix or "no ending", ", ".join(READABLE))
     try:
         size = file.stat().st_size
         with file.open("rb") as stream:
             stream.read(1)
     except OSError as error:
-        raise InputError("BAD_FILE", where, f"it cannot be read: {error.strerror}") from error
+        raise InputError("BAD_FILE", where, "it cannot be read: {}", error.strerror) from error
     if size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
     return apart(_shape, file, where)
@@ -125,8 +125,8 @@ def _reach(box: Any) -> float:
 def _refuse_far(reach: float, where: str) -> None:
     if not reach <= FARTHEST:
         raise InputError(
-            "BAD_FILE", where, f"it reaches to {reach:.3g} mm, farther than {FARTHEST:.3g} mm; a coordinate is damaged, or "
-            "its unit is wrong; export the part again",
+            "BAD_FILE", where, "it reaches to {:.3g} mm, farther than {:.3g} mm; a coordinate is damaged, or its unit is "
+            "wrong; export the part again", reach, FARTHEST,
         )
 
 

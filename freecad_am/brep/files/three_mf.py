@@ -18,7 +18,7 @@ import numpy as np
 
 from freecad_am.core.types import Array, Index
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text, Word
 
 UNITS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
 MODEL = "3D/3dmodel.model"  # where it is when the zip does not say
@@ -57,9 +57,9 @@ def triangles(path: Path) -> tuple[Array, Index]:
         with zipfile.ZipFile(path) as archive:
             return _Package(archive, where).built()
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError) as error:
-        raise _bad(where, f"it is not a sound zip file ({error})") from None
+        raise _bad(where, Text("it is not a sound zip file ({})", error)) from None
     except expat.ExpatError as error:
-        raise _bad(where, f"its XML is damaged ({error})") from None
+        raise _bad(where, Text("its XML is damaged ({})", error)) from None
     except OverflowError:
         raise _bad(where, "a triangle in it has a point with a number of more than 64 bits") from None
 
@@ -97,7 +97,7 @@ class _Package:
             if found and found[0].lower() in names:
                 return names[found[0].lower()]
         if MODEL.lower() not in names:
-            raise _bad(self.where, f"there is no model in it ({MODEL})")
+            raise _bad(self.where, Text("there is no model in it ({})", MODEL))
         return names[MODEL.lower()]
 
     def _load(self, file: str) -> None:
@@ -120,7 +120,7 @@ class _Package:
         try:
             info = self.archive.getinfo(name)
         except KeyError:
-            raise _bad(self.where, f"{name} is missing in it") from None
+            raise _bad(self.where, Text("{} is missing in it", name)) from None
         if info.flag_bits & 1:
             raise InputError("UNSUPPORTED_FILE", self.where, "it is encrypted; export it without protection")
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
@@ -135,10 +135,10 @@ class _Package:
             while chunk := stream.read(CHUNK):
                 size += len(chunk)  # what the zip tells of itself need not be true
                 if size > LARGEST:
-                    raise InputError("UNSUPPORTED_FILE", self.where, f"{name} unpacks to more than {LARGEST >> 20} MB")
+                    raise InputError("UNSUPPORTED_FILE", self.where, "{} unpacks to more than {} MB", name, LARGEST >> 20)
                 parser.Parse(chunk, False)
                 if size - max(parser.CurrentByteIndex, 0) > LONGEST:  # it would be read again with each chunk
-                    raise _bad(self.where, f"an element of {name} is longer than {LONGEST >> 20} MB")
+                    raise _bad(self.where, Text("an element of {} is longer than {} MB", name, LONGEST >> 20))
             parser.Parse(b"", True)
 
     def _refuse_doctype(self, *_: object) -> None:
@@ -151,11 +151,11 @@ class _Package:
         made = self.objects.get(key)
         if made is None or key in within:
             text = "holds itself" if made else "is not in it"
-            raise _bad(self.where, f"object {key[1]} of {key[0]} {text}")
+            raise _bad(self.where, Text("object {} of {} {}", key[1], key[0], Word(text)))
         self.placed += 1
         if self.placed > MOST_PLACED or len(within) > DEEPEST:
-            text = f"{MOST_PLACED:,} objects, or objects nested {DEEPEST} times"
-            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {text}; simplify it")
+            text = Text("{:,} objects, or objects nested {} times", MOST_PLACED, DEEPEST)
+            raise InputError("UNSUPPORTED_FILE", self.where, "it builds more than {}; simplify it", Word(text))
         if made.kind in NOT_DEPOSITED:
             return
         for part, way in made.parts:
@@ -165,16 +165,17 @@ class _Package:
             return
         self.count += len(made.triangles)
         if self.count > MAX_TRIANGLES:
-            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {MAX_TRIANGLES:,} triangles; simplify it")
+            raise InputError("UNSUPPORTED_FILE", self.where, "it builds more than {:,} triangles; simplify it",
+                             MAX_TRIANGLES)
         own, some = np.array(made.points).reshape(-1, 3), np.array(made.triangles, dtype=np.intp)
         if some.min() < 0 or some.max() >= len(own):
-            raise _bad(self.where, f"object {key[1]} of {key[0]} has triangles with points that it has not")
+            raise _bad(self.where, Text("object {} of {} has triangles with points that it has not", key[1], key[0]))
         if self.points + len(own) > 3 * MAX_TRIANGLES:
             most = 3 * MAX_TRIANGLES
-            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {most:,} points; simplify it")
+            raise InputError("UNSUPPORTED_FILE", self.where, "it builds more than {:,} points; simplify it", most)
         turned = np.linalg.det(moved[:3])
         if abs(turned) <= 1e-12 * np.abs(moved[:3]).max() ** 3:
-            raise _bad(self.where, f"object {key[1]} of {key[0]} is moved by a matrix that flattens it")
+            raise _bad(self.where, Text("object {} of {} is moved by a matrix that flattens it", key[1], key[0]))
         points.append((own @ moved[:3] + moved[3]) * unit)
         corners.append((some if turned > 0.0 else some[:, ::-1]) + self.points)
         self.points += len(own)
@@ -212,9 +213,10 @@ class _Model:
             elif name == "model":
                 self._model(values)
         except KeyError as error:
-            raise _bad(self.where, f"a {name} in {self.name} lacks {error}") from None
+            raise _bad(self.where, Text("a {} in {} lacks {}", name, self.name, error)) from None
         except ValueError as error:
-            raise _bad(self.where, f"a {name} in {self.name} has a value that is not a number ({error})") from None
+            raise _bad(self.where, Text("a {} in {} has a value that is not a number ({})", name, self.name,
+                                        error)) from None
 
     def _key(self, values: dict[str, str]) -> Key:
         path = next((text for name, text in values.items() if name.endswith(" path")), "")
@@ -223,13 +225,15 @@ class _Model:
     def _model(self, values: dict[str, str]) -> None:
         unit = values.get("unit", "millimeter")
         if unit not in UNITS:
-            raise _bad(self.where, f"its unit {unit!r} is none of {', '.join(UNITS)}")
+            raise _bad(self.where, Text("its unit {!r} is none of {}", unit, ", ".join(UNITS)))
         self.unit = UNITS[unit]
         for prefix in values.get("requiredextensions", "").split():
             space = self.prefixes.get(prefix, prefix)
             if space not in KNOWN:
-                text = "it is encrypted" if "securecontent" in space else f"it needs an extension that is not read ({space})"
-                raise InputError("UNSUPPORTED_FILE", self.where, f"{text}; export plain triangles")
+                text = "it is encrypted" if "securecontent" in space else Text(
+                    "it needs an extension that is not read ({})", space
+                )
+                raise InputError("UNSUPPORTED_FILE", self.where, "{}; export plain triangles", Word(text))
 
 
 def _matrix(values: dict[str, str]) -> Array:
@@ -241,4 +245,4 @@ def _matrix(values: dict[str, str]) -> Array:
 
 
 def _bad(where: str, what: str) -> InputError:
-    return InputError("BAD_FILE", where, f"{what}; export the part again")
+    return InputError("BAD_FILE", where, "{}; export the part again", what)

@@ -33,8 +33,8 @@ def reported(label: str) -> Iterator[None]:
     except FAULTS as error:
         what = " ".join(str(error).split()) or type(error).__name__
         raise InputError(
-            FAULTY, label, f"the geometry kernel cannot work with this shape ({what}); repair it (Part, Check "
-            "geometry), or draw its faces anew",
+            FAULTY, label, "the geometry kernel cannot work with this shape ({}); repair it (Part, Check geometry), or draw "
+            "its faces anew", what,
         ) from error
 
 
@@ -48,8 +48,8 @@ def refuse_bare(named: Sequence[tuple[str, Any]], owner: Index, label: str, narr
             found = _crossing(np.array([tuple(point) for point in edge.discretize(SAMPLES)]))
             if found is not None:
                 raise InputError(
-                    "SELF_INTERSECTION", f"{label} {name}", f"an edge of the face crosses itself at {place(found)}; draw "
-                    "it without crossings, or divide it there and deposit its parts one after the other",
+                    "SELF_INTERSECTION", f"{label} {name}", "an edge of the face crosses itself at {}; draw it without "
+                    "crossings, or divide it there and deposit its parts one after the other", place(found),
                 )
         raise InputError(
             FAULTY, f"{label} {name}", "the geometry kernel cannot divide this face into triangles; repair it (Part, "

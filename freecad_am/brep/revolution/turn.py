@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...core.geometry.curves.contour import Chain, Piece
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 
 MERIDIAN_MM = 1e-3  # mm between meridians that are one
 SAME_AZIMUTH = 1e-4  # rad
@@ -62,7 +62,7 @@ def _union(turns: Sequence[Turn | None], group: Sequence[Piece], label: str) -> 
     distinct = {round((start % (2.0 * np.pi)) / SAME_AZIMUTH) for start, _ in joined[1:]}
     if len(distinct) > 1:
         names = ", ".join(piece.name for piece in group)
-        text = f"{names} leave more than one opening around the axis; choose one of them"
+        text = Text("{} leave more than one opening around the axis; choose one of them", names)
         raise InputError("NOT_REVOLUTION", label, text)
     start, end = max(joined, key=lambda turn: turn[1] - turn[0])
     start_in_turn = start % (2.0 * np.pi)
@@ -83,11 +83,11 @@ def common_turn(chain: Chain, label: str) -> Turn | None:
         if not same:
             raise InputError(
                 "NOT_REVOLUTION", label,
-                f"{first.name} turns {_degrees(first.turn)} and {piece.name} {_degrees(piece.turn)}; choose faces that "
-                "turn alike",
+                "{} turns {} and {} {}; choose faces that turn alike", first.name, _degrees(first.turn), piece.name,
+                _degrees(piece.turn),
             )
     return first.turn
 
 
 def _degrees(turn: Turn | None) -> str:
-    return "all around" if turn is None else f"from {np.degrees(turn[0]):.4g} to {np.degrees(turn[1]):.4g} deg"
+    return "all around" if turn is None else Text("from {:.4g} to {:.4g} deg", np.degrees(turn[0]), np.degrees(turn[1]))

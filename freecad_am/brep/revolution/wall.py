@@ -13,7 +13,7 @@ from freecad_am.core.types import Array
 from ...core.geometry.curves import contour
 from ...core.geometry.curves.contour import Chain, Piece
 from ...core.geometry.curves.profile import Meridian, RevolvedWall
-from ...core.issues import NOTE, WARNING, InputError, Issue
+from ...core.issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ..files.lost_pole import has_lost_pole
 from .axis import candidates
 from .cylindrical import AxisFrame, axis_frame
@@ -55,7 +55,7 @@ def _chosen(named: list[Named], faces: Sequence[str], label: str) -> list[Named]
     known = dict(named)
     for name in faces:
         if name not in known:
-            raise InputError("UNKNOWN_FACE", label, f"it has no {name}; its faces are Face1 to Face{len(named)}")
+            raise InputError("UNKNOWN_FACE", label, "it has no {}; its faces are Face1 to Face{}", name, len(named))
     return [(name, known[name]) for name in dict.fromkeys(faces)]
 
 
@@ -67,24 +67,24 @@ def _only_solid(shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any]
         own = [(name, face) for name, face in named if any(face.isSame(other) for other in solid.Faces)]
         try:
             made = _from_faces(own, wall, axis, label, False)
-            found.append((f"Solid{index} ({own[0][0]} to {own[-1][0]})", made, solid.Area / area))
+            found.append((Text("Solid{} ({} to {})", index, own[0][0], own[-1][0]), made, solid.Area / area))
         except InputError:
             continue
     if len(found) == 1:
         name, made, share = found[0]
         if share < MOSTLY:
             raise InputError(
-                "NOT_OF_REVOLUTION", label, f"of its {len(shape.Solids)} solids {name} alone turns about an axis, "
-                f"{share:.0%} of its surface; name the faces of that one to deposit it alone, and deposit the others as "
-                "walls on a part or solids on a hub",
+                "NOT_OF_REVOLUTION", label, "of its {} solids {} alone turns about an axis, {:.0%} of its surface; name the "
+                "faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub",
+                len(shape.Solids), name, share,
             )
         return made
     if not found:
         raise InputError(
-            "NO_WALL", label, f"none of its {len(shape.Solids)} solids is of revolution; name the faces of the wall"
+            "NO_WALL", label, "none of its {} solids is of revolution; name the faces of the wall", len(shape.Solids)
         )
-    names = ", ".join(name for name, *_ in found)
-    raise InputError("SEVERAL_SOLIDS", label, f"{names} all have a wall; name the faces of the one to deposit")
+    names = Text.joined(", ", (name for name, *_ in found))
+    raise InputError("SEVERAL_SOLIDS", label, "{} all have a wall; name the faces of the one to deposit", names)
 
 
 def _from_faces(
@@ -105,7 +105,7 @@ def _from_faces(
     if not worst.sound:
         hint = "choose other faces" if selected else "name the faces of the wall if it is not part of it"
         raise InputError(
-            "NOT_REVOLUTION", f"{label} {worst.name}", f"{worst.what}: {worst.deviation:.4g} mm off; {hint}"
+            "NOT_REVOLUTION", f"{label} {worst.name}", "{}: {:.4g} mm off; {}", worst.what, worst.deviation, Word(hint)
         )
     pieces = merged([piece for patch in patches for piece in patch.pieces], label)
     if not pieces:
@@ -151,18 +151,18 @@ def _assembled(pieces: list[Piece], frame: AxisFrame, wall: str, label: str, sel
     """The wall made of pieces about the axis of the frame."""
     chains, gap = contour.chains(pieces)
     if len(chains) > 1:
-        names = " and ".join("-".join(dict.fromkeys((chain[0].name, chain[-1].name))) for chain in chains)
+        names = Text.joined(" and ", ("-".join(dict.fromkeys((chain[0].name, chain[-1].name))) for chain in chains))
         raise InputError(
-            "NO_WALL", label, f"{names} do not join to one wall; name the faces of the wall, or deposit them one by one"
+            "NO_WALL", label, "{} do not join to one wall; name the faces of the wall, or deposit them one by one", names
         )
     chain, issues = chains[0], []
     if gap > contour.JOIN:
-        issues.append(Issue(NOTE, "GAP", f"a gap of {gap:.3g} mm between faces of {label} is bridged"))
+        issues.append(Issue(NOTE, "GAP", Text("a gap of {:.3g} mm between faces of {} is bridged", gap, label)))
     if contour.is_closed(chain) and (not selected or _loops(chain)):
         chain, meridian = _wall_of_contour(chain, wall, label)
     else:
         if wall != "outer":
-            text = f"{label} is a surface: it has no {wall} wall, and is taken as it is"
+            text = Text("{} is a surface: it has no {} wall, and is taken as it is", label, wall)
             issues.append(Issue(WARNING, "OPEN_WALL", text))
         chain = contour.upright(chain)
         meridian = contour.meridian_of(chain)
@@ -190,7 +190,7 @@ def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridi
     if wall == "outer":
         return walls[0], contour.meridian_of(walls[0])
     if len(walls) == 1:
-        raise InputError("NO_WALL", label, f"it is solid and has no {wall} wall; use wall: outer")
+        raise InputError("NO_WALL", label, "it is solid and has no {} wall; use wall: outer", wall)
     if wall == "inner":
         return walls[-1], contour.meridian_of(walls[-1])
     return walls[0] + walls[-1], Meridian.chained(contour.halfway(walls[0], walls[-1]))
@@ -199,7 +199,7 @@ def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridi
 def _step_notes(chain: Chain, label: str) -> list[Issue]:
     """Notes on tiny faces inside the wall, such as the step of a curve given in two formulas."""
     return [
-        Issue(NOTE, "STEP", f"{piece.name} of {label} is a step of {span:.3g} mm in the wall; it is kept")
+        Issue(NOTE, "STEP", Text("{} of {} is a step of {:.3g} mm in the wall; it is kept", piece.name, label, span))
         for piece in chain
         if (span := float(np.hypot(*(piece.points[-1] - piece.points[0])))) < contour.BRIDGE and len(chain) > 1
     ]

@@ -32,13 +32,13 @@ def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
         across = np.abs(points[name][:, 0] * outward[1] - points[name][:, 1] * outward[0]).max()
         if across > ACROSS:
             raise InputError(
-                "NOT_REVOLUTION", f"{label} {name}", f"it is {across:.4g} mm off the plane of the wire and its axis; "
-                "draw the wire in a plane that holds the axis",
+                "NOT_REVOLUTION", f"{label} {name}", "it is {:.4g} mm off the plane of the wire and its axis; draw the wire "
+                "in a plane that holds the axis", across,
             )
         behind = float((points[name][:, :2] @ outward).min())
         if behind < -ACROSS:
             raise InputError(
-                "NOT_REVOLUTION", f"{label} {name}", f"it crosses the axis by {-behind:.4g} mm; keep it on one side"
+                "NOT_REVOLUTION", f"{label} {name}", "it crosses the axis by {:.4g} mm; keep it on one side", -behind
             )
     return [
         Piece(name, samples, tangents)

@@ -48,8 +48,8 @@ def refuse_gaps(wall: PatchWall, label: str) -> None:
         row = int(np.argmax(np.where(best < SLIT, best, -1.0)))
         k = near[row, int(np.argmin(gap[row]))]
         raise InputError(
-            "GAP", label, f"{wall.faces[owner[row]]} and {wall.faces[owner[k]]} are {best[row]:.3g} mm apart at "
-            f"{place(middle[row])}; close the gap: edges must meet within {SEWN:g} mm",
+            "GAP", label, "{} and {} are {:.3g} mm apart at {}; close the gap: edges must meet within {:g} mm",
+            wall.faces[owner[row]], wall.faces[owner[k]], best[row], place(middle[row]), SEWN,
         )
     if count > 1:
         one, other = (np.flatnonzero(part == k) for k in (0, 1))
@@ -58,8 +58,8 @@ def refuse_gaps(wall: PatchWall, label: str) -> None:
         names = [wall.faces[wall.patch[np.flatnonzero((wall.triangles == v).any(axis=1))[0]]]
                  for v in (one[index[k]], other[k])]
         raise InputError(
-            "GAP", label, f"the faces form {count} separate pieces: {names[0]} and {names[1]} are {distance[k]:.4g} "
-            f"mm apart at {place(wall.vertices[other[k]])}; choose connected faces, edges meeting within {SEWN:g} mm",
+            "GAP", label, "the faces form {} separate pieces: {} and {} are {:.4g} mm apart at {}; choose connected faces, "
+            "edges meeting within {:g} mm", count, names[0], names[1], distance[k], place(wall.vertices[other[k]]), SEWN,
         )
 
 
@@ -90,8 +90,8 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
     if (edges.count > 2).any():
         at = middle[np.argmax(edges.count > 2)]
         raise InputError(
-            "BRANCHING_FACES", label, f"more than two faces meet in one edge at {place(at)}; a wall branches by smooth "
-            "faces with openings: leave one of them out",
+            "BRANCHING_FACES", label, "more than two faces meet in one edge at {}; a wall branches by smooth faces with "
+            "openings: leave one of them out", place(at),
         )
     two = edges.count == 2
     pair = wall.patch[edges.faces]
@@ -109,9 +109,9 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
     if angle[worst] > CREASE:
         names = [wall.faces[k] for k in pair[joint[worst]]]
         raise InputError(
-            "CREASE", f"{label} {_edge_at(shape, ends[worst])}".strip(), f"{names[0]} and {names[1]} meet at an angle of "
-            f"{np.degrees(angle[worst]):.3g} deg at {place(ends[worst])}; a wall's faces must run on smoothly, within "
-            f"{np.degrees(CREASE):g} deg: round the edge, or deposit the faces one after the other",
+            "CREASE", f"{label} {_edge_at(shape, ends[worst])}".strip(), "{} and {} meet at an angle of {:.3g} deg at {}; a "
+            "wall's faces must run on smoothly, within {:g} deg: round the edge, or deposit the faces one after the other",
+            names[0], names[1], np.degrees(angle[worst]), place(ends[worst]), np.degrees(CREASE),
         )
 
 
@@ -151,8 +151,8 @@ def refuse_tight_tube(tube: SurfaceWall, height: float, label: str) -> None:
 def _refuse_below(height: float, radius: float, point: Array, where: str) -> None:
     if radius < height * (1.0 - 1e-6):
         raise InputError(
-            "LAYER_HEIGHT", where, f"layers of {height:g} mm are higher than the wall's smallest radius of curvature, "
-            f"{radius:.3g} mm at {place(point)}; use lower layers, or a larger radius there",
+            "LAYER_HEIGHT", where, "layers of {:g} mm are higher than the wall's smallest radius of curvature, {:.3g} mm at "
+            "{}; use lower layers, or a larger radius there", height, radius, place(point),
         )
 
 

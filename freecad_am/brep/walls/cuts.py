@@ -14,7 +14,7 @@ from ...core.geometry.mesh.triangles import closest
 from ...core.geometry.walls.patch import SPLINE
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface import dot
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 
 BENT, FOLDED = 0.3, -0.7  # cosines between the normals at the ends of an edge, and of a small part of it
 STEPS, CLOSER = np.linspace(0.0, 1.0, 33), 4  # on an edge at which normals are asked for, and how often between two of them
@@ -47,8 +47,8 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
                 break
         if len(row):
             raise InputError(
-                "SELF_INTERSECTION", f"{label} {wall.faces[k]}", f"the face folds back and cuts itself at "
-                f"{place(patch.at(start[:1])[0][0])}; a bend must have a larger radius than the tube",
+                "SELF_INTERSECTION", f"{label} {wall.faces[k]}", "the face folds back and cuts itself at {}; a bend must "
+                "have a larger radius than the tube", place(patch.at(start[:1])[0][0]),
             )
 
 
@@ -91,8 +91,8 @@ def _refuse_cuts(wall: PatchWall, corner: Array, normal: Array, one: Index, othe
                 continue
             names = sorted({wall.faces[wall.patch[face]] for face in faces})
             raise InputError(
-                "SELF_INTERSECTION", label, f"the wall cuts itself at {place(found)} ({' and '.join(names)}); a bend "
-                "must have a larger radius than the tube, and faces must not cross",
+                "SELF_INTERSECTION", label, "the wall cuts itself at {} ({}); a bend must have a larger radius than the "
+                "tube, and faces must not cross", place(found), Text.joined(" and ", names),
             )
 
 

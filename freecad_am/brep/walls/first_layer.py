@@ -16,7 +16,7 @@ from freecad_am.core.types import Array
 from ...core.geometry.formatting import deviation
 from ...core.geometry.walls.surface import dot
 from ...core.geometry.walls.surface_wall import TABLE, TORUS, Placed, SurfaceWall
-from ...core.issues import NOTE, InputError, Issue
+from ...core.issues import NOTE, InputError, Issue, Text
 from .patch_wall import sound
 from .wall import Tube, tubes
 
@@ -47,18 +47,19 @@ def find_wall(
     if not loops:
         gap = min(face.distToShape(solid)[0] for _, face in named)
         raise InputError(
-            "NO_CONTACT", label, f"the wall does not meet {substrate_label} in a closed curve (nearest {gap:.4g} mm); "
-            "let it reach into it all around",
+            "NO_CONTACT", label, "the wall does not meet {} in a closed curve (nearest {:.4g} mm); let it reach into it all "
+            "around", substrate_label, gap,
         )
     chains = sorted((_chain(loop, surface, solid) for loop in loops), key=lambda chain: chain[1])
     points, _, error = chains[-1]
     _refuse_inside(tube, solid, label, substrate_label)
     _refuse_edges(tube, points, named, label)
-    found = f"the first layer lies on the wall and on {substrate_label} within {deviation(error)} mm"
+    found = Text("the first layer lies on the wall and on {} within {} mm", substrate_label, deviation(error))
     issues = [Issue(NOTE, "FIRST_LAYER", found)]
     if len(chains) > 1:
         issues.append(Issue(
-            NOTE, "SEVERAL_LOOPS", f"{label} meets {substrate_label} in {len(chains)} loops; layers start at the uppermost"
+            NOTE, "SEVERAL_LOOPS", Text("{} meets {} in {} loops; layers start at the uppermost", label, substrate_label,
+                len(chains))
         ))
     return SurfaceWall(
         tube.kind, tube.sizes, tube.frame, tube.end, points, tube.u, tube.v, tube.table, tube.period, label, tube.faces,
@@ -196,7 +197,7 @@ def _refuse_inside(tube: Tube, solid: Any, label: str, substrate_label: str) -> 
     inside = [solid.isInside(FreeCAD.Vector(*point), 1e-7, False) for point in _ring(tube, tube.end)]
     if any(inside):
         raise InputError(
-            "INSIDE", label, f"both ends of the wall lie in {substrate_label}; a wall starts on it and ends outside of it"
+            "INSIDE", label, "both ends of the wall lie in {}; a wall starts on it and ends outside of it", substrate_label
         )
 
 

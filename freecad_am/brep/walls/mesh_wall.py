@@ -23,7 +23,7 @@ from ...core.geometry.walls.mesh_wall import MAX_TRIANGLES, MeshWall, mesh_wall
 from ...core.geometry.walls.patch_wall import FirstCurve
 from ...core.geometry.walls.rims import parts, rims_of, with_ends
 from ...core.geometry.walls.surface import dot
-from ...core.issues import NOTE, InputError, Issue
+from ...core.issues import NOTE, InputError, Issue, Text
 from .patch_wall import EQUAL, from_substrate, several_loops
 from .substrate import Substrate
 
@@ -46,9 +46,9 @@ def find_mesh_wall(
     if about > MAX_TRIANGLES:
         enough = at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES))))
         raise InputError(
-            "TOO_FINE", "strategy.layer_height", f"layers of {height:g} mm ask for a mesh of the wall of about "
-            f"{count(about)} triangles, and more than {MAX_TRIANGLES:,} cannot be worked with; give more than {enough:g} "
-            "mm, or deposit the wall in parts",
+            "TOO_FINE", "strategy.layer_height", "layers of {:g} mm ask for a mesh of the wall of about {} triangles, and "
+            "more than {:,} cannot be worked with; give more than {:g} mm, or deposit the wall in parts", height,
+            count(about), MAX_TRIANGLES, enough,
         )
     wall = mesh_wall(body.vertices, body.triangles.astype(np.intp), height, label, mend)
     rims = rims_of(wall)
@@ -96,9 +96,11 @@ def _from_edges(wall: MeshWall, names: Sequence[str], label: str) -> _Start:
     for name in dict.fromkeys(names):
         number = int(name.removeprefix("Edge")) if name.removeprefix("Edge").isdigit() else 0
         if not 1 <= number <= len(loops):
-            known = ", ".join(f"Edge{k + 1} at {place(loop.mean(axis=0))}" for k, loop in enumerate(loops[:8])) or "none"
+            known = Text.joined(
+                ", ", (Text("Edge{} at {}", k + 1, place(loop.mean(axis=0))) for k, loop in enumerate(loops[:8]))
+            ) or "none"
             raise InputError(
-                "UNKNOWN_EDGE", label, f"it has no {name}; the edges of a mesh are its open ends, by height: {known}"
+                "UNKNOWN_EDGE", label, "it has no {}; the edges of a mesh are its open ends, by height: {}", name, known
             )
         chosen.append(_curve(loops[number - 1]))
     return _Start(chosen, np.zeros(len(wall.vertices), dtype=bool), [])
@@ -115,7 +117,8 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
     loops = _loops(wall)
     standing = [loop for loop in loops if loop[:, 2].max() < lowest + height]
     if standing:
-        text = f"the first layer is the edge of {label} at {place(standing[0].mean(axis=0))}, which stands on the platform"
+        text = Text("the first layer is the edge of {} at {}, which stands on the platform", label,
+                    place(standing[0].mean(axis=0)))
         return _Start(
             [_curve(loop) for loop in standing], np.zeros(len(wall.vertices), dtype=bool), [Issue(NOTE, "FIRST_LAYER", text)]
         )
@@ -126,7 +129,7 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
         ground = PlaneGround(lowest + ABOVE * height)
         value = levels(wall, ground)
         first, _ = first_curves(wall, ground, value, rims_of(wall))
-        text = f"the first layer runs {ABOVE * height:g} mm over the floor of {label}, which is not deposited"
+        text = Text("the first layer runs {:g} mm over the floor of {}, which is not deposited", ABOVE * height, label)
         if first:
             return _Start(first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", text)])
     if not loops:
@@ -134,10 +137,8 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
             "NO_START", label, "it stands on a point and has no open end to start from; give a substrate that it grows on, "
             "or turn it so that an end lies on the platform",
         )
-    text = (
-        f"the first layer is the lowest open end of {label}, Edge1 at {place(loops[0].mean(axis=0))}, which does not lie on "
-        "the platform"
-    )
+    text = Text("the first layer is the lowest open end of {}, Edge1 at {}, which does not lie on the platform", label,
+                place(loops[0].mean(axis=0)))
     return _Start([_curve(loops[0])], np.zeros(len(wall.vertices), dtype=bool), [Issue(NOTE, "FIRST_LAYER", text)])
 
 
@@ -153,7 +154,7 @@ def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
         away = near.query(mine)[0]
         if away.min() > reach and len(mine) > 2:
             raise InputError(
-                "GAP", label, f"it is {number} pieces that do not hang together, and no layer starts on the one at "
-                f"{place(mine[np.argmin(away)])}, {away.min():.4g} mm from where layers start; choose its "
-                "edge to start from too, or deposit it by itself",
+                "GAP", label, "it is {} pieces that do not hang together, and no layer starts on the one at {}, {:.4g} mm "
+                "from where layers start; choose its edge to start from too, or deposit it by itself", number,
+                place(mine[np.argmin(away)]), away.min(),
             )

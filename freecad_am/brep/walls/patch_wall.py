@@ -17,7 +17,7 @@ from ...core.geometry.walls import contact
 from ...core.geometry.walls.ground import nearest
 from ...core.geometry.walls.patch_wall import FirstCurve, PatchWall
 from ...core.geometry.walls.rims import outward_volume, parts, rims_of, with_ends
-from ...core.issues import NOTE, InputError, Issue
+from ...core.issues import NOTE, InputError, Issue, Text
 from .checks import refuse_creases, refuse_gaps, refuse_tight, smallest_radii
 from .cuts import refuse_crossing, refuse_folded
 from .sheet import MAX_TRIANGLES, sheet
@@ -70,11 +70,13 @@ def _from_platform(wall: PatchWall, faces: Sequence[Any], label: str) -> tuple[l
     edges = standing_edges(faces, float(lowest[2]))
     if not edges:
         raise InputError(
-            "NO_SUBSTRATE", label, f"there is nothing to grow on: none of its edges lies on the platform, the plane Z = "
-            f"{lowest[2]:.4g} mm through its lowest place {place(lowest)}; choose a substrate, or the edges to start from",
+            "NO_SUBSTRATE", label, "there is nothing to grow on: none of its edges lies on the platform, the plane Z = "
+            "{:.4g} mm through its lowest place {}; choose a substrate, or the edges to start from", lowest[2],
+            place(lowest),
         )
     first = curves_along(edges, wall)
-    text = f"the first layer is the edge of {label} at {place(first[0].points.mean(axis=0))}, which stands on the platform"
+    text = Text("the first layer is the edge of {} at {}, which stands on the platform", label,
+                place(first[0].points.mean(axis=0)))
     return first, [Issue(NOTE, "FIRST_LAYER", text)]
 
 
@@ -82,10 +84,10 @@ def several_loops(first: Sequence[FirstCurve], label: str) -> list[Issue]:
     """A note where there are several first curves."""
     if len(first) < 2:
         return []
-    places = ", ".join(place(curve.points.mean(axis=0)) for curve in first)
+    places = Text.joined(", ", (place(curve.points.mean(axis=0)) for curve in first))
     return [Issue(
-        NOTE, "SEVERAL_LOOPS", f"{label} starts in {len(first)} curves, about {places}: layers grow from all of them; "
-        "choose the edges to start from if only some are meant",
+        NOTE, "SEVERAL_LOOPS", Text("{} starts in {} curves, about {}: layers grow from all of them; choose the edges to "
+            "start from if only some are meant", label, len(first), places),
     )]
 
 
@@ -95,9 +97,9 @@ def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
     about, enough = area / (EQUAL * height) / height, at_least(float(np.sqrt(area / (EQUAL * MAX_TRIANGLES))))
     if about > MAX_TRIANGLES:
         raise InputError(
-            "TOO_FINE", "strategy.layer_height", f"layers of {height:g} mm ask for a mesh of the wall of about "
-            f"{count(about)} triangles, and more than {MAX_TRIANGLES:,} cannot be worked with; give more than {enough:g} "
-            "mm, or deposit the wall in parts",
+            "TOO_FINE", "strategy.layer_height", "layers of {:g} mm ask for a mesh of the wall of about {} triangles, and "
+            "more than {:,} cannot be worked with; give more than {:g} mm, or deposit the wall in parts", height,
+            count(about), MAX_TRIANGLES, enough,
         )
 
 
@@ -141,30 +143,29 @@ def from_substrate(
     if outside.all():
         at, gap = nearest(wall.vertices, ground, value)
         raise InputError(
-            "NO_CONTACT", label, f"the wall does not touch {substrate.label}: it comes nearest at "
-            f"{place(wall.vertices[at])}, {gap:.4g} mm away; move it so that it reaches in, at most "
-            f"{contact.TOUCH:g} mm may be missing",
+            "NO_CONTACT", label, "the wall does not touch {}: it comes nearest at {}, {:.4g} mm away; move it so that it "
+            "reaches in, at most {:g} mm may be missing", substrate.label, place(wall.vertices[at]), gap, contact.TOUCH,
         )
     if not outside.any():
         at, depth = nearest(wall.vertices, ground, value)
         raise InputError(
-            "INSIDE", label, f"the wall lies wholly in {substrate.label} (at {place(wall.vertices[at])} it is "
-            f"{depth:.4g} mm deep, and nowhere less); a wall starts on the substrate and ends outside of it",
+            "INSIDE", label, "the wall lies wholly in {} (at {} it is {:.4g} mm deep, and nowhere less); a wall starts on "
+            "the substrate and ends outside of it", substrate.label, place(wall.vertices[at]), depth,
         )
     dropped = _stays_in(wall, outside, substrate)
     value[dropped] = np.minimum(value[dropped], -1e-6)
     first, off = contact.first_curves(wall, ground, value, rims)
     if not first:
         raise InputError(
-            "NO_CONTACT", label, f"the wall meets {substrate.label} in no curve that a layer can start from (shorter than "
-            f"a few {wall.mesh.typical_edge:.2g} mm); let it reach in all around, or choose the edges to start from",
+            "NO_CONTACT", label, "the wall meets {} in no curve that a layer can start from (shorter than a few {:.2g} mm); "
+            "let it reach in all around, or choose the edges to start from", substrate.label, wall.mesh.typical_edge,
         )
-    found = f"the first layer lies on the wall and on {substrate.label}"
+    found = Text("the first layer lies on the wall and on {}", substrate.label)
     if ground.facets:
-        found += (f"; between the edges of its triangles it runs smoothly, up to {deviation(off)} mm off them, about as far "
-                  "as they are off what they stand for" if off > 0.0 else "")
+        found += (Text("; between the edges of its triangles it runs smoothly, up to {} mm off them, about as far as they "
+                       "are off what they stand for", deviation(off)) if off > 0.0 else "")
     else:
-        found += f" within {deviation(off)} mm"
+        found += Text(" within {} mm", deviation(off))
     return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]
 
 

@@ -55,9 +55,9 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
         made = refined(vertices, triangles, owner, edge, places.middles, MAX_TRIANGLES, turned=False)
     if made is None:
         raise InputError(
-            "TOO_FINE", label, f"with edges of {edge:.3g} mm, by layer height and smallest radius, the mesh of the wall has "
-            f"more than {MAX_TRIANGLES} triangles, about {about:.2g}; use a larger layer height, round sharp bends more, or "
-            "deposit the wall in parts",
+            "TOO_FINE", label, "with edges of {:.3g} mm, by layer height and smallest radius, the mesh of the wall has more "
+            "than {} triangles, about {:.2g}; use a larger layer height, round sharp bends more, or deposit the wall in "
+            "parts", edge, MAX_TRIANGLES, about,
         )
     vertices, triangles, owner = made
     triangles, owner = collapsed(vertices, triangles, owner, COLLAPSE * edge, edge)
@@ -155,6 +155,6 @@ def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Ind
 def _twisted(label: str, one: str, other: str) -> InputError:
     named = one if one == other else f"{one} and {other}"
     return InputError(
-        "NOT_ORIENTABLE", label, f"{named} cannot be turned to one side (a twisted band has no outside); divide the band, "
-        "or leave one of its faces out",
+        "NOT_ORIENTABLE", label, "{} cannot be turned to one side (a twisted band has no outside); divide the band, or "
+        "leave one of its faces out", named,
     )

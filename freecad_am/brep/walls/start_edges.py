@@ -28,15 +28,14 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
     for name in dict.fromkeys(names):
         number = int(name.removeprefix("Edge")) if name.removeprefix("Edge").isdigit() else 0
         if not 1 <= number <= len(shape.Edges):
-            raise InputError("UNKNOWN_EDGE", label, f"it has no {name}; its edges are Edge1 to Edge{len(shape.Edges)}")
+            raise InputError("UNKNOWN_EDGE", label, "it has no {}; its edges are Edge1 to Edge{}", name, len(shape.Edges))
         edge = shape.Edges[number - 1]
         points = np.array([tuple(edge.valueAt(t)) for t in np.linspace(*edge.ParameterRange, 9)])
         off = np.linalg.norm(wall.project(points)[0] - points, axis=1)
         if off.max() > ON_WALL:
             raise InputError(
-                "NO_START", f"{label} {name}", f"the edge is {off.max():.4g} mm off the wall at "
-                f"{place(points[np.argmax(off)])}; "
-                "choose edges of the wall's own faces",
+                "NO_START", f"{label} {name}", "the edge is {:.4g} mm off the wall at {}; choose edges of the wall's own "
+                "faces", off.max(), place(points[np.argmax(off)]),
             )
         edges.append(edge)
     return curves_along(edges, wall)

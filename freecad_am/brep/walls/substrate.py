@@ -64,8 +64,8 @@ def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
     for solid in source.Solids:
         if solid.Volume <= 0.0:
             raise InputError(
-                "INSIDE_OUT", label, f"the solid around {place(solid.BoundBox.Center)} is turned inside out (volume "
-                f"{solid.Volume:.4g} mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)",
+                "INSIDE_OUT", label, "the solid around {} is turned inside out (volume {:.4g} mm3); repair it (Part, Check "
+                "geometry), or turn it (Part, Reverse shapes)", place(solid.BoundBox.Center), solid.Volume,
             )
     source = _as_one(source)
     made = in_kernel_process(tessellated, source.copy(), CHORD)

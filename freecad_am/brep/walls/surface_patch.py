@@ -62,9 +62,8 @@ def _spline(face: Any, where: str) -> Patch:
                 surface = surface.toBSpline()
         except (RuntimeError, AttributeError, Part.OCCError):
             raise InputError(
-                "ROUGH_WALL", where, f"its surface ({surface.TypeId.removeprefix('Part::Geom')}) cannot be told as a "
-                "spline; "
-                "rebuild the face, for instance as a loft",
+                "ROUGH_WALL", where, "its surface ({}) cannot be told as a spline; rebuild the face, for instance as a loft",
+                surface.TypeId.removeprefix("Part::Geom"),
             ) from None
     else:
         surface = surface.copy()
@@ -101,8 +100,8 @@ def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
             if turn.max() > KINK:
                 at = ", ".join(f"{number:.4g}" for number in points[np.argmax(turn)])
                 raise InputError(
-                    "ROUGH_WALL", where, f"at ({at}) the face has an edge within itself, of {np.degrees(turn.max()):.3g} "
-                    "deg; round it, or divide the face there and deposit its parts one after the other",
+                    "ROUGH_WALL", where, "at ({}) the face has an edge within itself, of {:.3g} deg; round it, or divide "
+                    "the face there and deposit its parts one after the other", at, np.degrees(turn.max()),
                 )
 
 
@@ -116,7 +115,7 @@ def _checked(patch: Patch, face: Any, where: str) -> Patch:
     if off.max() > ERROR:
         at = ", ".join(f"{number:.4g}" for number in points[np.argmax(off)])
         raise InputError(
-            "ROUGH_WALL", where, f"at ({at}) it is {off.max():.3g} mm off the spline that stands for it, more than "
-            f"{ERROR:g} mm; rebuild the face, for instance as a loft or a sweep",
+            "ROUGH_WALL", where, "at ({}) it is {:.3g} mm off the spline that stands for it, more than {:g} mm; rebuild the "
+            "face, for instance as a loft or a sweep", at, off.max(), ERROR,
         )
     return patch

@@ -13,7 +13,7 @@ from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array
 
 from ...core.geometry.walls.surface_wall import CONE, TABLE, TORUS, Placed, own_surface
-from ...core.issues import InputError
+from ...core.issues import InputError, Word
 
 AGREEMENT_MM = 1e-6  # mm; faces of one surface agree within this
 TABLE_ERROR = 5e-5  # mm, between the places a table was taken from
@@ -52,8 +52,8 @@ def tubes(shape: Any, names: Sequence[str], label: str) -> tuple[list[tuple[str,
     kind = _ANALYTIC.get(first.Surface.TypeId, TABLE)
     if kind == TABLE and len(named) > 1:
         raise InputError(
-            "NOT_ONE_SURFACE", label, f"{first_name} is not a torus, cylinder or cone: a wall of several faces must be of "
-            "one of these; choose one face",
+            "NOT_ONE_SURFACE", label, "{} is not a torus, cylinder or cone: a wall of several faces must be of one of "
+            "these; choose one face", first_name,
         )
     for name, face in named[1:]:
         _refuse_other(first, face, f"{label} {name}", first_name)
@@ -73,7 +73,7 @@ def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any
     known = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
     for name in names:
         if name not in known:
-            raise InputError("UNKNOWN_FACE", label, f"it has no {name}; its faces are Face1 to Face{len(known)}")
+            raise InputError("UNKNOWN_FACE", label, "it has no {}; its faces are Face1 to Face{}", name, len(known))
     return known
 
 
@@ -83,7 +83,7 @@ def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any
         return [(name, known[name]) for name in dict.fromkeys(names)]
     curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != "Part::GeomPlane"]
     if len(curved) != 1:
-        raise InputError("NO_WALL", label, f"it has {len(curved)} faces that are not flat; name the wall's in part.faces")
+        raise InputError("NO_WALL", label, "it has {} faces that are not flat; name the wall's in part.faces", len(curved))
     return curved
 
 
@@ -95,8 +95,8 @@ def _refuse_other(first: Any, face: Any, where: str, first_name: str) -> None:
     off = max((surface.value(*surface.parameter(point)) - point).Length for point in points)
     if surface.TypeId != face.Surface.TypeId or off > AGREEMENT_MM:
         raise InputError(
-            "NOT_ONE_SURFACE", where, f"it is not on the surface of {first_name} ({off:.3g} mm off); walls of several "
-            "surfaces cannot be deposited yet: choose faces of one torus, cylinder or cone",
+            "NOT_ONE_SURFACE", where, "it is not on the surface of {} ({:.3g} mm off); walls of several surfaces cannot be "
+            "deposited yet: choose faces of one torus, cylinder or cone", first_name, off,
         )
 
 
@@ -173,7 +173,7 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
     closed_v = surface.isVClosed() and _spans(surface.bounds()[2:], low_v, high_v)
     if closed_u == closed_v:
         what = "closes on itself both ways" if closed_u else "has no closed direction"
-        raise InputError("NOT_CLOSED", f"{label} {faces[0]}", f"it {what}; choose a tube that is closed around")
+        raise InputError("NOT_CLOSED", f"{label} {faces[0]}", "it {}; choose a tube that is closed around", Word(what))
     along, around = ((low_v, high_v), (low_u, high_u)) if closed_u else ((low_u, high_u), (low_v, high_v))
 
     def value(a: float, b: float) -> Any:
@@ -196,8 +196,8 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
             break
         if n >= LARGEST_TABLE[0]:
             raise InputError(
-                "ROUGH_WALL", f"{label} {faces[0]}", f"the wall bends too sharply: {error:.3g} mm off between {n} x {m} "
-                "samples; smooth it, or cut it where it has an edge",
+                "ROUGH_WALL", f"{label} {faces[0]}", "the wall bends too sharply: {:.3g} mm off between {} x {} samples; "
+                "smooth it, or cut it where it has an edge", error, n, m,
             )
         n, m = 2 * n, 2 * m
     turned = points[::-1, ::-1]  # both ways, so that the outside stays outside

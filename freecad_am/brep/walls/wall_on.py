@@ -102,15 +102,15 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
     if not curved or not _one_piece([face for _, face in curved]):
         listed = ", ".join(name for name, _ in curved[:MOST_NAMED]) + (", ..." if len(curved) > MOST_NAMED else "") or "none"
         raise InputError(
-            "NO_WALL", label, f"it is a solid whose faces that are not flat ({listed}) are not one wall; name the faces "
-            "of the wall: part.faces of a job, or select them"
+            "NO_WALL", label, "it is a solid whose faces that are not flat ({}) are not one wall; name the faces of the "
+            "wall: part.faces of a job, or select them", listed
         )
     flat = next((name for name, face in known.items() if face.Surface.TypeId == FLAT
                  and any(_runs_on(face, other) for _, other in curved)), "")
     if flat:
         raise InputError(
-            "NO_WALL", label, f"its faces that are not flat run on smoothly into {flat}, which is; name the faces of the "
-            "wall: part.faces of a job, or select them"
+            "NO_WALL", label, "its faces that are not flat run on smoothly into {}, which is; name the faces of the wall: "
+            "part.faces of a job, or select them", flat
         )
     return curved
 

@@ -78,8 +78,8 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
     for region in thin:
         if beads.thin == "refuse":
             raise InfeasibleError(
-                "THIN_REGION", "filling", f"the region at {beads.where(region.inside())} is {region.width:.3g} mm wide, "
-                f"less than a bead ({2.0 * beads.inset:.3g} mm); choose thin = single, a narrower bead or a margin",
+                "THIN_REGION", "filling", "the region at {} is {:.3g} mm wide, less than a bead ({:.3g} mm); choose thin = "
+                "single, a narrower bead or a margin", beads.where(region.inside()), region.width, 2.0 * beads.inset,
             )
         found += _network(region, beads)
     return found

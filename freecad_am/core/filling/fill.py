@@ -40,7 +40,7 @@ def fill(
     InputError MISSING_LIBRARY.
     """
     if pattern not in PATTERNS:
-        raise InputError("PATTERN", "filling", f"there is no pattern {pattern!r}; use one of {', '.join(PATTERNS)}")
+        raise InputError("PATTERN", "filling", "there is no pattern {!r}; use one of {}", pattern, ", ".join(PATTERNS))
     if pattern not in CURVED and math.isinf(walls):
         pattern, infill = "contours", WHOLE
     if isinstance(region, Strip):

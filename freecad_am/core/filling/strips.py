@@ -93,8 +93,8 @@ def single(strip: Strip, beads: Beads) -> list[PlaneCurve]:
     """One bead in the middle of a strip narrower than a bead. InfeasibleError THIN_REGION where none is wanted."""
     if beads.thin == "refuse":
         raise InfeasibleError(
-            "THIN_REGION", "filling", f"a region round the hub is nowhere as wide as a bead ({2.0 * beads.inset:.3g} mm); "
-            "choose thin = single, a narrower bead or a margin",
+            "THIN_REGION", "filling", "a region round the hub is nowhere as wide as a bead ({:.3g} mm); choose thin = "
+            "single, a narrower bead or a margin", 2.0 * beads.inset,
         )
     return _middle(strip, beads, 0)
 

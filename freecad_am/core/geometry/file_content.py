@@ -41,4 +41,4 @@ def _pieces(path: str | Path, largest: int, code: str, where: str) -> Iterator[b
             yield piece
             size = max(size, stream.tell())
     if size > largest * MB:
-        raise InputError(code, where, f"the file is larger than {largest} MB, the most that is read; is it the right one?")
+        raise InputError(code, where, "the file is larger than {} MB, the most that is read; is it the right one?", largest)

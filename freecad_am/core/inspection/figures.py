@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import Meridian
-from ..issues import InputError
+from ..issues import InputError, Text
 from ..types import Array
 from .planned import Planned
 from .roundness import Round, least, narrowest
@@ -123,8 +123,8 @@ def circle(planned: Planned, points: Array, normal: Array, height: float, band: 
     slid = own[:, :2] * (1.0 + grown / np.maximum(radius, 1e-9))[:, None]
     if len(slid) < 4:
         raise InputError(
-            "FEW_POINTS", where, f"{len(slid)} points lie within {band:g} mm of the height {height:g} mm; measure more "
-            "there, choose other heights, or a wider band"
+            "FEW_POINTS", where, "{} points lie within {:g} mm of the height {:g} mm; measure more there, choose other "
+            "heights, or a wider band", len(slid), band, height
         )
     angle = np.sort(np.arctan2(slid[:, 1], slid[:, 0]))
     gap = float(np.diff(angle, append=angle[0] + 2.0 * np.pi).max())
@@ -195,7 +195,8 @@ def default_heights(planned: Planned, points: Array) -> tuple[float, ...]:
 def warnings_of(circles: Sequence[Circle]) -> list[str]:
     """What to know about circles that were not measured all round."""
     return [
-        f"the circle at {one.height:g} mm was not measured all round: {np.degrees(one.gap):.0f} deg between neighbours"
+        Text("the circle at {:g} mm was not measured all round: {:.0f} deg between neighbours", one.height,
+            np.degrees(one.gap))
         for one in circles if one.gap > 2.0 * np.pi * ALL_ROUND
     ]
 

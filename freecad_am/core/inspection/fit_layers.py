@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.fitted import REMAINS, Fitted
 from ..geometry.formatting import place
-from ..issues import NOTE, WARNING, InputError, Issue
+from ..issues import NOTE, WARNING, InputError, Issue, Text
 from ..parameters.scan import ScanParameters
 from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array
@@ -47,8 +47,8 @@ def refuse_family(toolpath: Toolpath, where: str) -> None:
     """InputError NOT_YET for families whose layers are not fitted to scans."""
     if toolpath.family not in FAMILIES:
         raise InputError(
-            "NOT_YET", where, f"layers of the family {toolpath.family} are not fitted to a scan yet; solids in plane layers "
-            "and walls on a substrate are: leave the scan out"
+            "NOT_YET", where, "layers of the family {} are not fitted to a scan yet; solids in plane layers and walls on a "
+            "substrate are: leave the scan out", toolpath.family
         )
 
 
@@ -59,8 +59,8 @@ def fitted(toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out:
     first = parameters.first
     if first >= len(toolpath.layers):
         raise InputError(
-            "NO_LAYER", "substrate.after_layer", f"there is no layer above {first - 1}: the last one of "
-            f"{len(toolpath.layers)} is {len(toolpath.layers) - 1}"
+            "NO_LAYER", "substrate.after_layer", "there is no layer above {}: the last one of {} is {}", first - 1,
+            len(toolpath.layers), len(toolpath.layers) - 1
         )
     ways = ways_of(toolpath)
     beads = toolpath.layers[first].beads
@@ -116,16 +116,17 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
         if len(bare):
             size = float(np.linalg.norm(np.ptp(scan.points, axis=0))) if len(scan.points) else 0.0
             raise InputError(
-                "SCAN_MISSES", scan.label, f"at {len(bare)} of {len(points)} places of layer {layer} there are no points of "
-                f"the scan around, the first at {place(points[bare[0]])}; it reaches over {size:.4g} mm, the layer over "
-                f"{float(np.linalg.norm(np.ptp(points, axis=0))):.4g} mm: scan all that the layer lies on, or check its "
-                "unit and fit"
+                "SCAN_MISSES", scan.label, "at {} of {} places of layer {} there are no points of the scan around, the "
+                "first at {}; it reaches over {:.4g} mm, the layer over {:.4g} mm: scan all that the layer lies on, or "
+                "check its unit and fit", len(bare), len(points), layer, place(points[bare[0]]), size,
+                float(np.linalg.norm(np.ptp(points, axis=0)))
             )
         far = int(np.abs(found.off).argmax())
         if abs(found.off[far]) > scan.within:
             raise InputError(
-                "SCAN_OFF", scan.label, f"the scan lies {found.off[far]:.4g} mm from layer {layer} at {place(points[far])}, "
-                f"more than substrate.scan_within = {scan.within:g} mm; check that it is of this part, its unit and its fit"
+                "SCAN_OFF", scan.label, "the scan lies {:.4g} mm from layer {} at {}, more than substrate.scan_within = "
+                "{:g} mm; check that it is of this part, its unit and its fit", found.off[far], layer, place(points[far]),
+                scan.within
             )
         return found.off
 
@@ -189,15 +190,15 @@ def _slope(planned: Sequence[Scanned]) -> float:
 
 def _issues(record: Fitted, height: float) -> list[Issue]:
     issues = [Issue(
-        NOTE, "SCAN_FITTED", f"{record.file}: layer {record.layer} lies on what was scanned, {record.off.min():.3f} to "
-        f"{record.off.max():.3f} mm from the plan, now within {np.abs(record.left).max():.3f} mm; {record.layers} layers "
-        f"lead back to the plan. {record.points} points were looked at, {record.left_out} that face another way left "
-        "out; along the "
-        f"beads it rises by up to {math.degrees(math.atan(record.slope)):.1f} deg against the plan{_moved(record.motion)}",
+        NOTE, "SCAN_FITTED", Text("{}: layer {} lies on what was scanned, {:.3f} to {:.3f} mm from the plan, now within "
+            "{:.3f} mm; {} layers lead back to the plan. {} points were looked at, {} that face another way left out; along "
+            "the beads it rises by up to {:.1f} deg against the plan{}", record.file, record.layer, record.off.min(),
+            record.off.max(), np.abs(record.left).max(), record.layers, record.points, record.left_out,
+            math.degrees(math.atan(record.slope)), _moved(record.motion)),
     )]
     if record.remains > 0.05 * height:
         issues.append(Issue(
-            WARNING, REMAINS, f"the part has too few layers to lead back to the plan: the last one is up to "
-            f"{record.remains:.3f} mm off it; a larger substrate.scan_band leads back in fewer layers"
+            WARNING, REMAINS, Text("the part has too few layers to lead back to the plan: the last one is up to {:.3f} mm "
+                "off it; a larger substrate.scan_band leads back in fewer layers", record.remains)
         ))
     return issues

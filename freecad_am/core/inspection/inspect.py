@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..issues import NOTE, WARNING, InputError, Issue
+from ..issues import NOTE, WARNING, InputError, Issue, Text
 from ..parameters.inspection import AXIS, BEST, BOTH, NONE, SHIFT, InspectionParameters
 from ..types import Array
 from . import figures
@@ -119,8 +119,8 @@ def _aligned(
         on_part = few[planned.within_edges(few @ start[:3, :3].T + start[:3, 3])]
         if len(on_part) < LEAST_POINTS:
             raise InputError(
-                "NOT_ON_PART", where, f"{len(on_part)} of its points lie on {planned.name}; choose the object that was "
-                "measured, its unit, or pairs of points to begin with"
+                "NOT_ON_PART", where, "{} of its points lie on {}; choose the object that was measured, its unit, or pairs "
+                "of points to begin with", len(on_part), planned.name
             )
         if parameters.fit == NONE:
             distance, _ = exact(on_part)
@@ -184,22 +184,23 @@ def _unlike(points: Array, planned: Planned) -> list[Issue]:
     measured, part = (float(np.linalg.norm(np.ptp(one, axis=0))) for one in (points, planned.spread))
     if measured * UNLIKE > part:
         return []
-    return [Issue(WARNING, "SMALL", f"the points reach over {measured:.3g} mm, {planned.name} over {part:.3g} mm; check the "
-                  "unit of the file")]
+    return [Issue(WARNING, "SMALL", Text("the points reach over {:.3g} mm, {} over {:.3g} mm; check the unit of the file",
+                                         measured, planned.name, part))]
 
 
 def _issues(
     found: Registration, planned: Planned, within: NDArray[np.bool_], fitted: NDArray[np.bool_], is_ball: bool
 ) -> list[Issue]:
     free = ("turning it about the centre of the sphere",) if is_ball and len(found.free) == 3 else found.free
-    issues = [Issue(NOTE, "FREE_MOTION", f"{text} changes no deviation: the points do not tell it") for text in free]
+    issues = [Issue(NOTE, "FREE_MOTION", Text("{} changes no deviation: the points do not tell it", text)) for text in free]
     past = int((~within).sum())
     if past:
-        issues.append(Issue(NOTE, "PAST_EDGES", f"{past} points lie past the edges of {planned.name} and count nowhere"))
+        issues.append(Issue(NOTE, "PAST_EDGES", Text("{} points lie past the edges of {} and count nowhere", past,
+                                                     planned.name)))
     out = int((within & ~fitted).sum())
     if out:
-        text = f"{out} points were left out of the fit, the farthest off; the figures have them"
+        text = Text("{} points were left out of the fit, the farthest off; the figures have them", out)
         issues.append(Issue(NOTE, "LEFT_OUT", text))
     if planned.chord > 0.0 and planned.exact is planned.nearest:
-        issues.append(Issue(NOTE, "CHORD", f"{planned.name} is known to {planned.chord:g} mm, by triangles"))
+        issues.append(Issue(NOTE, "CHORD", Text("{} is known to {:g} mm, by triangles", planned.name, planned.chord)))
     return issues

@@ -67,7 +67,7 @@ def ply(data: bytes, where: str) -> Array:
         table = np.frombuffer(body, dtype=row, count=held)
         found = np.column_stack([table[axis].astype(np.float64) for axis in "xyz"])
     if len(found) < count:
-        raise InputError("BAD_FILE", where, f"it is cut short after {len(found)} of {count} vertices; export it again")
+        raise InputError("BAD_FILE", where, "it is cut short after {} of {} vertices; export it again", len(found), count)
     return found
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..geometry.file_content import content
-from ..issues import NOTE, WARNING, InputError, Issue
+from ..issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ..parameters.inspection import AUTO, UNITS
 from ..types import Array
 from . import mesh_file
@@ -45,12 +45,12 @@ def read(path: str | Path, unit: str = AUTO) -> Measured:
     suffix = file.suffix.lower()
     if suffix not in (*TABLES, *MESHES):
         known = ", ".join((*TABLES, *MESHES))
-        raise InputError("UNSUPPORTED_FILE", file.name, f"{suffix or 'no ending'} is not read as points; use {known}")
+        raise InputError("UNSUPPORTED_FILE", file.name, "{} is not read as points; use {}", suffix or "no ending", known)
     try:
         data = content(file, LARGEST, "BAD_FILE", file.name)
     except (OSError, ValueError) as error:
         why = (getattr(error, "strerror", None) or str(error)).lower()
-        raise InputError("NO_FILE", str(path), f"the measured points cannot be read ({why}); check the path") from None
+        raise InputError("NO_FILE", str(path), "the measured points cannot be read ({}); check the path", why) from None
     return parse(data, file.name, unit)
 
 
@@ -66,16 +66,18 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
     level = NOTE
     finite = np.isfinite(found).all(axis=1)
     if not finite.all():
-        messages.append(f"{int((~finite).sum())} points without finite coordinates are left out")
+        messages.append(Text("{} points without finite coordinates are left out", int((~finite).sum())))
         found, level = found[finite], WARNING
     if not len(found):
         raise InputError("NO_POINTS", label, "there are no points in it; give rows of x y z")
     chosen = unit if unit != AUTO else named or "mm"
-    messages.append(f"coordinates in {chosen}" + ("" if unit != AUTO or named else ", as the file names no unit"))
+    messages.append(Text("coordinates in {}{}", chosen,
+                         Word("" if unit != AUTO or named else ", as the file names no unit")))
     if len(found) > MAX_POINTS:
-        messages.append(f"of {len(found)} points {MAX_POINTS} are kept, evenly")
+        messages.append(Text("of {} points {} are kept, evenly", len(found), MAX_POINTS))
         found = found[np.linspace(0, len(found) - 1, MAX_POINTS).astype(np.intp)]
-    return Measured(found * UNITS[chosen], label, (Issue(level, "POINTS_READ", f"{label}: {'; '.join(messages)}"),))
+    return Measured(found * UNITS[chosen], label, (Issue(level, "POINTS_READ",
+                                                         Text("{}: {}", label, Text.joined("; ", messages))),))
 
 
 def _text(data: bytes) -> str:

@@ -57,7 +57,7 @@ def refuse_too_few(points: Array, where: str) -> None:
     """InputError TOO_FEW_POINTS, naming `where`, when points (n, 3) are fewer than hold a part in its place."""
     if len(points) < LEAST_POINTS:
         raise InputError(
-            "TOO_FEW_POINTS", where, f"{len(points)} points do not hold a part; measure {LEAST_POINTS} or more all over",
+            "TOO_FEW_POINTS", where, "{} points do not hold a part; measure {} or more all over", len(points), LEAST_POINTS,
         )
 
 
@@ -77,7 +77,7 @@ def register(
     """
     refuse_too_few(points, where)
     if not 0.0 <= trim < 0.5:
-        raise InputError("OUT_OF_RANGE", where, f"{trim:g} of the points left out, expected 0 or more and less than 0.5")
+        raise InputError("OUT_OF_RANGE", where, "{:g} of the points left out, expected 0 or more and less than 0.5", trim)
     best = roughly(points, surface, starts, trim, radius, allowed, free)
     motion, _, moved = _converged(points, surface, best, trim, radius, ROUNDS, allowed, free)
     if moved > still:
@@ -139,7 +139,7 @@ def by_pairs(measured: Array, planned: Array, where: str) -> Array:
     """The start (1, 4, 4) that lays three or more measured points (k, 3) onto the points of the part that they are (k, 3),
     with the least squares (Kabsch 1976)."""
     if measured.shape != planned.shape or len(measured) < 3:
-        raise InputError("TOO_FEW_PAIRS", where, f"{min(len(measured), len(planned))} pairs of points; give three or more")
+        raise InputError("TOO_FEW_PAIRS", where, "{} pairs of points; give three or more", min(len(measured), len(planned)))
     here, there = measured.mean(axis=0), planned.mean(axis=0)
     left, stretch, right = np.linalg.svd((planned - there).T @ (measured - here))
     if stretch[1] <= 1e-9 * max(stretch[0], 1e-300):

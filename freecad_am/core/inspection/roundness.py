@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares, linprog
 
-from ..issues import InputError
+from ..issues import InputError, Word
 from ..types import Array
 
 ROUNDS = 60
@@ -103,14 +103,16 @@ def _algebraic(points: Array, where: str) -> tuple[Array, float]:
     name = "circle" if dimension == 2 else "sphere"
     if len(points) < dimension + 1:
         raise InputError(
-            "TOO_FEW_POINTS", where, f"{len(points)} points do not make a {name}; measure {dimension + 1} or more",
+            "TOO_FEW_POINTS", where, "{} points do not make a {}; measure {} or more", len(points), Word(name),
+            dimension + 1,
         )
     middle = points.mean(axis=0)
     local = points - middle
     spread = np.linalg.svd(local, compute_uv=False)
     if spread[-1] <= FLAT * spread[0]:
         shape = "line" if dimension == 2 else "plane"
-        raise InputError("FLAT_POINTS", where, f"all points lie in one {shape}, which no {name} fits; measure further round")
+        raise InputError("FLAT_POINTS", where, "all points lie in one {}, which no {} fits; measure further round",
+                         Word(shape), Word(name))
     system = np.column_stack([2.0 * local, np.ones(len(points))])
     solved = np.linalg.lstsq(system, (local**2).sum(axis=1), rcond=None)[0]
     centre, rest = solved[:-1], solved[-1]

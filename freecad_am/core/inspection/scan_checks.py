@@ -7,7 +7,7 @@ import numpy as np
 
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.obstacles import Body
-from ..issues import InputError
+from ..issues import InputError, Text, Word
 from ..parameters.inspection import UNITS
 from ..types import Array
 from .inspect import UNLIKE
@@ -30,11 +30,11 @@ def refuse_size(points: Array, label: str, body: Body) -> None:
     ratio = asked / max(size, 1e-12)
     units = (name for name, scale in UNITS.items() if name != "mm" and 1.0 / SCALE_RATIO < ratio / scale < SCALE_RATIO)
     unit = next(units, "")
-    remedy = f"in {unit} it would be about as large, give that as substrate.scan_unit" if unit else (
+    remedy = Text("in {} it would be about as large, give that as substrate.scan_unit", unit) if unit else (
         "check its unit, substrate.scan_unit, and what was scanned"
     )
     raise InputError(
-        "SCAN_UNIT", label, f"the scan reaches over {size:.4g} mm, {body.name} over {asked:.4g} mm; {remedy}"
+        "SCAN_UNIT", label, "the scan reaches over {:.4g} mm, {} over {:.4g} mm; {}", size, body.name, asked, Word(remedy)
     )
 
 
@@ -45,10 +45,10 @@ def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
     if share >= LEAST_ON_PART:
         return
     raise InputError(
-        "SCAN_OTHER", label, f"{share:.0%} of its {len(points)} points lie within {within:g} mm of {body.name}, at least "
-        f"{LEAST_ON_PART:.0%} have to; half of them are farther off than {np.median(off):.3g} mm. It reaches over "
-        f"{extent(points):.4g} mm, {body.name} over {extent(body.vertices):.4g} mm: scan this part, crop the scan to it, "
-        "check its unit, or raise substrate.scan_within"
+        "SCAN_OTHER", label, "{:.0%} of its {} points lie within {:g} mm of {}, at least {:.0%} have to; half of them are "
+        "farther off than {:.3g} mm. It reaches over {:.4g} mm, {} over {:.4g} mm: scan this part, crop the scan to it, "
+        "check its unit, or raise substrate.scan_within", share, len(points), within, body.name, LEAST_ON_PART,
+        np.median(off), extent(points), body.name, extent(body.vertices)
     )
 
 

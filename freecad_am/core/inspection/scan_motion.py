@@ -38,7 +38,7 @@ def aligned(points: Array, body: Body, label: str) -> Array:
             off = np.abs(found.distance)
             few = few[off <= max(OUTLYING * 1.4826 * float(np.median(off)), 1e-6)]
     except AmError as error:
-        raise InputError("SCAN_OTHER", label, f"it cannot be laid onto {body.name}: {error.message}") from None
+        raise InputError("SCAN_OTHER", label, "it cannot be laid onto {}: {}", body.name, error.message) from None
     return start
 
 
@@ -56,9 +56,9 @@ def _attitude(points: Array, surface: Surface, starts: Array, label: str) -> Arr
     if others and turns.min() > PLAIN:
         angle = np.degrees(_turn(others[0][:3, :3] @ best[:3, :3].T))
         raise InputError(
-            "SCAN_AMBIGUOUS", label, f"it lies as well on the part turned by {angle:.0f} deg: "
-            "the scan does not tell which; give three points of it and where they are on the part as "
-            "substrate.scan_pairs, or measure it in the part's coordinates"
+            "SCAN_AMBIGUOUS", label, "it lies as well on the part turned by {:.0f} deg: the scan does not tell which; give "
+            "three points of it and where they are on the part as substrate.scan_pairs, or measure it in the part's "
+            "coordinates", angle
         )
     return best
 

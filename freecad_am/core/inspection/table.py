@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..issues import Text, Word
 from .inspect import Inspected
 from .roundness import Round
 
@@ -50,12 +51,12 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
             Row("Radius of the sphere", ball.fitted.radius, "mm", "Radius"),
         ]
     for one in inspected.circles:
-        at, height = f"at {one.height:g} mm", f"{one.height:g} mm"
+        at, height = Text("at {:g} mm", one.height), f"{one.height:g} mm"
         found += [
-            Row(f"Circularity defect {at}", one.zone.zone, "mm", "Circularity", f"At height {height}"),
-            Row(f"Circularity defect {at}, least squares", one.fitted.zone, "mm"),
-            Row(f"Diameter {at}", 2.0 * one.fitted.radius, "mm", "Diameter", f"At height {height}"),
-            Row(f"Eccentricity {at}", one.eccentricity, "mm", "Off axis", f"At height {height}"),
+            Row(Text("Circularity defect {}", Word(at)), one.zone.zone, "mm", "Circularity", f"At height {height}"),
+            Row(Text("Circularity defect {}, least squares", Word(at)), one.fitted.zone, "mm"),
+            Row(Text("Diameter {}", Word(at)), 2.0 * one.fitted.radius, "mm", "Diameter", f"At height {height}"),
+            Row(Text("Eccentricity {}", Word(at)), one.eccentricity, "mm", "Off axis", f"At height {height}"),
         ]
     if inspected.thickness is not None:
         wall = inspected.thickness

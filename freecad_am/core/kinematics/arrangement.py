@@ -59,5 +59,5 @@ def planned_of(setup: str) -> Arrangement:
     found = _ALL.get(setup)
     if found is None or not found.planned:
         *first, last = (one.setup for one in _ALL.values() if one.planned)
-        raise InputError("NOT_YET", "cell.setup", f"{setup} cannot be planned yet; use {', '.join(first)} or {last}")
+        raise InputError("NOT_YET", "cell.setup", "{} cannot be planned yet; use {} or {}", setup, ", ".join(first), last)
     return found

@@ -18,7 +18,7 @@ import numpy as np
 from ..geometry import frames
 from ..geometry.columns import columns
 from ..geometry.obstacles import Body
-from ..issues import InputError
+from ..issues import InputError, Text, Word
 from ..parameters.cell import CellParameters, NozzleParameters
 from ..parameters.external import externals
 from ..types import Array
@@ -280,8 +280,7 @@ def resolve(
         nozzle=parameters.nozzle,
         platform_diameter=parameters.platform_diameter,
         external=external,
-        arm_clearance=parameters.arm_clearance,
-        up=upward(parameters.upward()),
+        arm_clearance=parameters.arm_clearance, up=upward(parameters.upward()),
         offset=offset, external_links=external_links(external),
     )
 
@@ -291,10 +290,11 @@ def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: 
     not known."""
     if arrangement not in machine.arrangements:
         kind = "is a robot" if machine.free else "has sliding axes"
-        wanted = " or ".join(one.setup for one in machine.arrangements if one.planned)
-        raise InputError("WRONG_SETUP", "cell.setup", f"{machine.title} {kind}; use {wanted}, or choose another machine")
+        wanted = Text.joined(" or ", (one.setup for one in machine.arrangements if one.planned))
+        raise InputError("WRONG_SETUP", "cell.setup", "{} {}; use {}, or choose another machine", machine.title, Word(kind),
+                         wanted)
     if machine.no_arm:
-        raise InputError("NO_CLOSED_FORM", "cell.machine", f"{machine.title}: {machine.no_arm}")
+        raise InputError("NO_CLOSED_FORM", "cell.machine", "{}: {}", machine.title, machine.no_arm)
     if has_external and arrangement.carries_part:
-        raise InputError("WRONG_SETUP", "cell.external", f"{arrangement.setup}: axes beside the robot need "
-                         "the tool on the robot; use setup: tool-on-robot, or leave external out")
+        raise InputError("WRONG_SETUP", "cell.external", "{}: axes beside the robot need the tool on the robot; use setup: "
+                         "tool-on-robot, or leave external out", arrangement.setup)

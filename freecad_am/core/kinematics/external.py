@@ -136,35 +136,35 @@ def _check(found: Sequence[tuple[External, Machine]]) -> None:
     tracks = [machine for one, machine in found if one.carries == ROBOT]
     for machine in tracks:
         if machine.chain.axes != 1 or not machine.chain.sliding.all():
-            raise InputError("NOT_YET", WHERE, f"{machine.title} carries the robot and is not a track, which is one axis "
-                             "that slides; nothing else can be planned")
+            raise InputError("NOT_YET", WHERE, "{} carries the robot and is not a track, which is one axis that slides; "
+                             "nothing else can be planned", machine.title)
     if len(tracks) > 1:
-        raise InputError("NOT_YET", WHERE, f"{len(tracks)} mechanisms carry the robot; one track can be planned")
+        raise InputError("NOT_YET", WHERE, "{} mechanisms carry the robot; one track can be planned", len(tracks))
     others = [machine for one, machine in found if one.carries == PART]
     for machine in others:
         if machine.chain.sliding.any():
-            raise InputError("NOT_YET", WHERE, f"{machine.title} has an axis that slides and carries the part, which cannot "
-                             "be planned yet; use turning axes")
+            raise InputError("NOT_YET", WHERE, "{} has an axis that slides and carries the part, which cannot be planned "
+                             "yet; use turning axes", machine.title)
     count = sum(machine.chain.axes for machine in others)
     if count > 2:
-        raise InputError("NOT_YET", WHERE, f"{count} axes carry the part; one or two turning axes can be planned")
+        raise InputError("NOT_YET", WHERE, "{} axes carry the part; one or two turning axes can be planned", count)
 
 
 def _check_names(robot: Machine, found: Sequence[tuple[External, Machine]]) -> None:
     """Refuse mechanisms that are the robot itself, or each other."""
     for k, (one, machine) in enumerate(found):
         if machine.id == robot.id or (_alike(machine, robot) and one.carries == ROBOT):
-            raise InputError("BAD_VALUE", WHERE, f"{machine.title} is the machine of the cell, which cannot carry "
-                             "itself; name what stands beside it")
+            raise InputError("BAD_VALUE", WHERE, "{} is the machine of the cell, which cannot carry itself; name what "
+                             "stands beside it", machine.title)
         for other, before in found[:k]:
             if machine.id != before.id:
                 continue
             if not _alike(machine, before):
-                raise InputError("BAD_VALUE", WHERE, f"{one.machine} and {other.machine} are two mechanisms of one name, "
-                                 f"{machine.id!r}; give one of the files another id")
+                raise InputError("BAD_VALUE", WHERE, "{} and {} are two mechanisms of one name, {!r}; give one of the files "
+                                 "another id", one.machine, other.machine, machine.id)
             if one.pose == other.pose or one.carries != other.carries:
-                raise InputError("BAD_VALUE", WHERE, f"{machine.id!r} stands there twice; leave one of them out, or give a "
-                                 "second one of the same kind a pose of its own")
+                raise InputError("BAD_VALUE", WHERE, "{!r} stands there twice; leave one of them out, or give a second one "
+                                 "of the same kind a pose of its own", machine.id)
 
 
 def _alike(one: Machine, other: Machine) -> bool:
@@ -187,8 +187,8 @@ def load(name: str, folders: Sequence[str] = ()) -> Machine:
         if error.code != "UNKNOWN_MACHINE":
             raise
         known = ", ".join(sorted(path.stem for path in MECHANISMS.glob("*.json")))
-        raise InputError("UNKNOWN_MACHINE", WHERE, f"{name!r} is not known; built in are {known}; or give the path of a "
-                         "machine file or a URDF") from None
+        raise InputError("UNKNOWN_MACHINE", WHERE, "{!r} is not known; built in are {}; or give the path of a machine file "
+                         "or a URDF", name, known) from None
 
 
 def upward(up: Sequence[float]) -> Array:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..collision.inside import inside_of
 from ..geometry.cylinders import Cylinder, about
 from ..geometry.obstacles import Body
-from ..issues import InputError
+from ..issues import InputError, Text, Word
 from ..parameters.cell import NozzleParameters
 from ..types import Array
 
@@ -48,12 +48,12 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
     corners = found.corners()
     away = float(np.sqrt(_from_origin(corners).min()))
     if away > FARTHEST:
-        raise InputError(CODE, WHERE, f"it is {away:.4g} mm from its origin, which is where the deposit comes out; put the "
-                         "tip of the wire or nozzle at the origin of the file, Z out of the nozzle, in mm")
+        raise InputError(CODE, WHERE, "it is {:.4g} mm from its origin, which is where the deposit comes out; put the tip "
+                         "of the wire or nozzle at the origin of the file, Z out of the nozzle, in mm", away)
     low = float(found.vertices[:, 2].min())
     if low < -BEYOND:
-        raise InputError(CODE, WHERE, f"it reaches {-low:.4g} mm beyond its origin along Z, where the deposit is; Z of the "
-                         "file points out of the nozzle, away from the torch, and the origin is its tip")
+        raise InputError(CODE, WHERE, "it reaches {:.4g} mm beyond its origin along Z, where the deposit is; Z of the file "
+                         "points out of the nozzle, away from the torch, and the origin is its tip", -low)
     _refuse_wider(found, nozzle)
     return Torch(found, tuple(_cylinders(cut(found.vertices, found.triangles, nozzle.length, above=True))))
 
@@ -142,13 +142,13 @@ def _refuse_wider(found: Body, nozzle: NozzleParameters) -> None:
         return
     high = np.maximum(seen[:, 2], 1e-3)
     least = float(np.degrees(np.arctan(np.maximum((away - tip) / high, 0.0).max())))
-    remedy = f"cell.nozzle.half_angle of {np.ceil(least * 10.0 + 0.1) / 10.0:.4g} deg at least" if least < 89.0 else (
+    remedy = Text("cell.nozzle.half_angle of {:.4g} deg at least", np.ceil(least * 10.0 + 0.1) / 10.0) if least < 89.0 else (
         "a larger cell.nozzle.diameter"
     )
     raise InputError(
-        CODE, WHERE, f"{seen[worst, 2]:.4g} mm over its tip it reaches {away[worst]:.4g} mm from its axis, the nozzle as a "
-        f"cone {allowed[worst]:.4g} mm, and it is the cone that is kept clear of the deposit; give {remedy}, or a smaller "
-        "cell.nozzle.length",
+        CODE, WHERE, "{:.4g} mm over its tip it reaches {:.4g} mm from its axis, the nozzle as a cone {:.4g} mm, and it is "
+        "the cone that is kept clear of the deposit; give {}, or a smaller cell.nozzle.length", seen[worst, 2], away[worst],
+        allowed[worst], Word(remedy),
     )
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry import frames
-from ..issues import InputError
+from ..issues import InputError, Text, Word
 from ..parameters.cell import CellParameters
 from ..parameters.external import PART, externals
 from ..parameters.touched import WHERE, Touched, touched
@@ -56,15 +56,15 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
     """Where the part stands. Raises InputError TOUCHED for fewer than three points, points on a line, of another size, and
     where one is farther than `tolerance` mm from where it was touched."""
     if len(points) < LEAST:
-        raise InputError(CODE, WHERE, f"{len(points)} point(s) do not tell where a part stands; touch {LEAST} or more, far "
-                         "from one another and not on a line")
+        raise InputError(CODE, WHERE, "{} point(s) do not tell where a part stands; touch {} or more, far from one another "
+                         "and not on a line", len(points), LEAST)
     part, robot = (np.array([getattr(one, side) for one in points]) for side in ("part", "robot"))
     here, there = part - part.mean(axis=0), robot - robot.mean(axis=0)
     for side, seen in (("part", here), ("robot", there)):
         spread = np.linalg.svd(seen, compute_uv=False)
         if not spread[1] > LINE * spread[0]:
-            raise InputError(CODE, WHERE, f"the points {'touched' if side == 'robot' else 'of the part'} are on a line, or "
-                             "all in one place: nothing tells how the part is turned about it; touch one beside it")
+            raise InputError(CODE, WHERE, "the points {} are on a line, or all in one place: nothing tells how the part is "
+                             "turned about it; touch one beside it", Word("touched" if side == "robot" else "of the part"))
     _refuse_other_size(float(np.linalg.norm(there) / np.linalg.norm(here)))
     left, _, right = np.linalg.svd(here.T @ there)
     turn = (left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right).T
@@ -73,9 +73,11 @@ def work_offset(points: Sequence[Touched], tolerance: float) -> WorkOffset:
     worst = int(np.argmax(residual))
     if residual[worst] > tolerance:
         text = ", ".join(f"{value:.3g}" for value in residual)
-        raise InputError(CODE, WHERE, f"point {worst + 1} is {residual[worst]:.3g} mm from where it was touched (of all: "
-                         f"{text} mm), more than cell.touched_tolerance of {tolerance:g} mm; touch it again, and see that "
-                         "the points stand in the same order, are of this part, and that the tip is calibrated")
+        raise InputError(
+            CODE, WHERE, "point {} is {:.3g} mm from where it was touched (of all: {} mm), more than cell.touched_tolerance "
+            "of {:g} mm; touch it again, and see that the points stand in the same order, are of this part, and that the "
+            "tip is calibrated", worst + 1, residual[worst], text, tolerance
+        )
     return WorkOffset(pose, residual)
 
 
@@ -84,6 +86,7 @@ def _refuse_other_size(ratio: float) -> None:
     if abs(ratio - 1.0) <= SAME_SIZE:
         return
     unit = next((name for factor, name in _UNITS if abs(ratio * factor - 1.0) <= SAME_SIZE), "")
-    raise InputError(CODE, WHERE, f"what was touched is {ratio:.4g} times as large as what is planned; "
-                     + (f"one of them is in {unit}, give both in mm" if unit else "these are points of another part, or "
-                        "in another order"))
+    raise InputError(
+        CODE, WHERE, "what was touched is {:.4g} times as large as what is planned; {}", ratio, Word(Text("one of them is "
+            "in {}, give both in mm", unit) if unit else "these are points of another part, or in another order")
+    )

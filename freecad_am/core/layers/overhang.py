@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from ..geometry.formatting import place
 from ..geometry.on_hub import Base
 from ..geometry.regions.region import Region
-from ..issues import WARNING, Issue
+from ..issues import WARNING, Issue, Text
 from ..parameters.filled import SolidParameters
 from .surface import Slice
 
@@ -33,9 +33,10 @@ def with_overhangs(slices: Iterator[Slice], base: Base, strategy: SolidParameter
                 spot = max(over, key=lambda part: part.area).inside()
                 at = place(base.placed(one.surface.wrap(spot[None]).points)[0])
                 issues = (*issues, Issue(
-                    WARNING, CODE, f"{math.fsum(part.area for part in over):.4g} mm^2 lean out over the layer below by more "
-                    f"than {math.degrees(strategy.max_overhang):.4g} deg, the largest piece at {at}; deposit what carries "
-                    "it first, choose another strategy.direction, or raise strategy.max_overhang", one.layer,
+                    WARNING, CODE, Text("{:.4g} mm^2 lean out over the layer below by more than {:.4g} deg, the largest "
+                        "piece at {}; deposit what carries it first, choose another strategy.direction, or raise "
+                        "strategy.max_overhang", math.fsum(part.area for part in over), math.degrees(strategy.max_overhang),
+                        at), one.layer,
                 ))
         before = one
         yield one._replace(issues=issues)

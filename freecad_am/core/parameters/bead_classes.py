@@ -146,9 +146,9 @@ def _parsed(text: str) -> tuple[tuple[str, BeadClass], ...]:
     for part in filter(str.strip, text.split(MORE)):
         name, colon, rest = (piece.strip() for piece in part.partition(":"))
         if not colon:
-            raise InputError("BAD_VALUE", WHERE, f"{part.strip()!r} is not a class of beads; {_FORM}")
+            raise InputError("BAD_VALUE", WHERE, "{!r} is not a class of beads; {}", part.strip(), _FORM)
         if name in found:
-            raise InputError("BAD_VALUE", WHERE, f"{name} is there twice; write all of it in one place")
+            raise InputError("BAD_VALUE", WHERE, "{} is there twice; write all of it in one place", name)
         found[name] = made(name, _values(name, rest))
     return tuple(found.items())
 
@@ -163,11 +163,11 @@ def _values(name: str, text: str) -> dict[str, float | int | None]:
     for entry in filter(str.strip, text.split(",")):
         key, _, number = entry.strip().partition(" ")
         if key not in SPECS:
-            raise InputError("BAD_VALUE", WHERE, f"{name} has no {key!r}; it may have {', '.join(SPECS)}")
+            raise InputError("BAD_VALUE", WHERE, "{} has no {!r}; it may have {}", name, key, ", ".join(SPECS))
         try:
             value = float(number)
         except ValueError:
-            raise InputError("BAD_VALUE", WHERE, f"{name}: {entry.strip()!r} tells no number; {_FORM}") from None
+            raise InputError("BAD_VALUE", WHERE, "{}: {!r} tells no number; {}", name, entry.strip(), _FORM) from None
         whole = SPECS[key].kind == f.COUNT and value.is_integer()
         values[key] = int(value) if whole else _INNER.get(SPECS[key].kind, float)(value)
     return values

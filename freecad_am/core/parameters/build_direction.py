@@ -71,6 +71,6 @@ class BuildDirectionParameters:
         if not 0.0 < math.hypot(x, y, z) < math.inf:
             raise InputError(
                 "BAD_VALUE", "build_direction.plane",
-                f"{self.plane!r} is not a direction; give three numbers such as 0 1 0, or auto",
+                "{!r} is not a direction; give three numbers such as 0 1 0, or auto", self.plane,
             )
         return x, y, z

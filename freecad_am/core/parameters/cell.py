@@ -111,7 +111,7 @@ class CellParameters:
         self.upward()
         if isinstance(self.platform, (tuple, list)):
             if len(self.platform) != 6:
-                raise InputError("BAD_VALUE", "cell.platform", f"{self.platform!r} is neither a length nor six numbers")
+                raise InputError("BAD_VALUE", "cell.platform", "{!r} is neither a length nor six numbers", self.platform)
             object.__setattr__(self, "platform", tuple(self.platform))
         if not isinstance(self.branch, str):
             object.__setattr__(self, "branch", checked_branch(self.branch))
@@ -126,6 +126,6 @@ def checked_branch(words: tuple[str, ...]) -> tuple[str, str, str]:
     wanted = (SHOULDERS, ELBOWS, WRISTS)
     if len(words) != 3 or any(word not in known for word, known in zip(words, wanted)):
         raise InputError(
-            "BAD_VALUE", "cell.branch", f"{list(words)!r} is not a branch; use [front|back, up|down, flip|noflip] or auto"
+            "BAD_VALUE", "cell.branch", "{!r} is not a branch; use [front|back, up|down, flip|noflip] or auto", list(words)
         )
     return (words[0], words[1], words[2])

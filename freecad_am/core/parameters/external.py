@@ -31,9 +31,9 @@ class External:
 
     def __post_init__(self) -> None:
         if self.carries not in (PART, ROBOT):
-            raise InputError("BAD_VALUE", WHERE, f"{self.carries!r} cannot be carried; use {PART} or {ROBOT}")
+            raise InputError("BAD_VALUE", WHERE, "{!r} cannot be carried; use {} or {}", self.carries, PART, ROBOT)
         if len(self.pose) != 6 or not all(math.isfinite(number) for number in self.pose):
-            raise InputError("BAD_VALUE", WHERE, f"{self.pose!r} is not a pose; give six numbers x y z RX RY RZ")
+            raise InputError("BAD_VALUE", WHERE, "{!r} is not a pose; give six numbers x y z RX RY RZ", self.pose)
 
     def where(self) -> str:
         """Where it stands, as its text says it."""
@@ -54,16 +54,16 @@ def externals(text: str) -> tuple[External, ...]:
 def _external(text: str) -> External:
     found = _TEXT.fullmatch(text)
     if found is None:
-        raise InputError("BAD_VALUE", WHERE, f"{text!r} names no external axes; {_FORM}")
+        raise InputError("BAD_VALUE", WHERE, "{!r} names no external axes; {}", text, _FORM)
     words = found["pose"].replace(",", " ").split()
     if pendant.named(words):
         return External(found["machine"], pendant.six(words, WHERE), found["carries"])
     try:
         numbers = [float(word) for word in words]
     except ValueError:
-        raise InputError("BAD_VALUE", WHERE, f"{found['pose']!r} is not a pose; {_FORM}") from None
+        raise InputError("BAD_VALUE", WHERE, "{!r} is not a pose; {}", found["pose"], _FORM) from None
     if len(numbers) != 6:
-        raise InputError("BAD_VALUE", WHERE, f"{found['pose']!r} has {len(numbers)} numbers, a pose has six; {_FORM}")
+        raise InputError("BAD_VALUE", WHERE, "{!r} has {} numbers, a pose has six; {}", found["pose"], len(numbers), _FORM)
     x, y, z, *angles = numbers
     a, b, c = (math.radians(angle) for angle in angles)
     return External(found["machine"], (x, y, z, a, b, c), found["carries"])

@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ..issues import InputError
+from ..issues import InputError, Text, Word
 
 LENGTH, ANGLE, SPEED, TIME = "length", "angle", "speed", "time"
 RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = "ratio", "number", "count", "flag", "choice", "text", "pose"
@@ -70,7 +70,7 @@ def direction_of(text: str, where: str, remedy: str) -> tuple[float, float, floa
     except ValueError:
         x = y = z = math.nan
     if not 0.0 < math.hypot(x, y, z) < math.inf:
-        raise InputError("BAD_VALUE", where, f"{text!r} is not a direction; {remedy}")
+        raise InputError("BAD_VALUE", where, "{!r} is not a direction; {}", text, remedy)
     return x, y, z
 
 
@@ -92,7 +92,7 @@ def check(owner: Any, prefix: str, skip: frozenset[str] = frozenset()) -> None:
 
 def unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputError:
     """The error for a word that is not one of `choices`."""
-    return InputError("BAD_VALUE", key, f"{value!r} is not known; use one of {', '.join(choices)}")
+    return InputError("BAD_VALUE", key, "{!r} is not known; use one of {}", value, ", ".join(choices))
 
 
 def check_value(spec: Spec, value: Any, key: str) -> None:
@@ -104,45 +104,45 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
             raise unknown_choice(key, value, spec.choices)
     elif spec.kind == FLAG:
         if not isinstance(value, bool):
-            raise InputError("BAD_VALUE", key, f"{value!r} is not true or false")
+            raise InputError("BAD_VALUE", key, "{!r} is not true or false", value)
     elif spec.kind == TEXT:
         if not isinstance(value, str):
-            raise InputError("BAD_VALUE", key, f"{value!r} is not a text")
+            raise InputError("BAD_VALUE", key, "{!r} is not a text", value)
     elif spec.kind == POSE:
         if isinstance(value, str) or len(value) != 6 or not all(math.isfinite(number) for number in value):
-            also = "".join(f" or {word}" for word in spec.words)
-            raise InputError("BAD_VALUE", key, f"{value!r} is not a pose; give six numbers x y z RX RY RZ{also}")
+            also = Text.joined(" or ", ("", *spec.words))
+            raise InputError("BAD_VALUE", key, "{!r} is not a pose; give six numbers x y z RX RY RZ{}", value, also)
     elif spec.kind == ANGLE_RANGE:
         if len(value) != 2 or not value[0] < value[1]:
-            raise InputError("BAD_VALUE", key, f"{value!r} is not a range; give two angles, the smaller first")
+            raise InputError("BAD_VALUE", key, "{!r} is not a range; give two angles, the smaller first", value)
     elif spec.kind == RATIO_RANGE:
         if isinstance(value, (int, float, str)) or len(value) != 2:
-            raise InputError("BAD_VALUE", key, f"{value!r} is not a range; give two percentages, the smaller first")
+            raise InputError("BAD_VALUE", key, "{!r} is not a range; give two percentages, the smaller first", value)
         for end in value:
             _check_number(dataclasses.replace(spec, kind=RATIO), end, key)
         if value[0] > value[1]:
-            ends = " to ".join(outer_text(dataclasses.replace(spec, kind=RATIO), end) for end in value)
-            raise InputError("BAD_VALUE", key, f"{ends} is not a range; give the smaller percentage first")
+            ends = Text.joined(" to ", (outer_text(dataclasses.replace(spec, kind=RATIO), end) for end in value))
+            raise InputError("BAD_VALUE", key, "{} is not a range; give the smaller percentage first", ends)
     else:
         _check_number(spec, value, key)
 
 
 def _check_number(spec: Spec, value: Any, key: str) -> None:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or math.isnan(value):
-        also = f" or {', '.join(spec.words)}" if spec.words else ""
-        raise InputError("BAD_VALUE", key, f"{value!r} is not a number{also}")
+        also = Text(" or {}", ", ".join(spec.words)) if spec.words else ""
+        raise InputError("BAD_VALUE", key, "{!r} is not a number{}", value, Word(also))
     if spec.kind == COUNT and (math.isinf(value) or value != int(value)):
-        raise InputError("BAD_VALUE", key, f"{value!r} is not a whole number")
+        raise InputError("BAD_VALUE", key, "{!r} is not a whole number", value)
     too_low = spec.low is not None and (value <= spec.low if spec.open_low else value < spec.low)
     if too_low or (spec.high is not None and value > spec.high):
-        raise InputError("BAD_VALUE", key, f"{outer_text(spec, value)} is out of range; give {range_text(spec)}")
+        raise InputError("BAD_VALUE", key, "{} is out of range; give {}", outer_text(spec, value), range_text(spec))
 
 
 def range_text(spec: Spec) -> str:
     """The allowed range in outer units, '' where there is none."""
     parts = []
     if spec.low is not None:
-        parts.append(("more than " if spec.open_low else "at least ") + outer_text(spec, spec.low))
+        parts.append(Text("more than {}" if spec.open_low else "at least {}", outer_text(spec, spec.low)))
     if spec.high is not None:
-        parts.append("at most " + outer_text(spec, spec.high))
-    return " and ".join(parts)
+        parts.append(Text("at most {}", outer_text(spec, spec.high)))
+    return Text.joined(" and ", parts)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..issues import InputError
+from ..issues import InputError, Text
 from . import field as f
 from .strategy import LAYER_TIME, MEND, LayerParameters
 
@@ -52,7 +52,7 @@ class BaseParameters:
         if len(numbers) != 6 or not all(map(math.isfinite, numbers)) or not math.hypot(*way) > 0.0:
             raise InputError(
                 "BAD_VALUE", "strategy.base.axis",
-                f"{self.axis!r} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]",
+                "{!r} is not an axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]", self.axis,
             )
         return point, way
 
@@ -147,12 +147,12 @@ class FilledParameters(LayerParameters):
         f.check(self, "strategy")
         object.__setattr__(self, "spacing_range", tuple(self.spacing_range))
         if not self.spacing_range[0] <= 1.0 <= self.spacing_range[1]:
-            ends = " to ".join(f"{100.0 * end:g} %" for end in self.spacing_range)
-            raise InputError("BAD_VALUE", "strategy.spacing_range", f"{ends} is without 100 %, the usual width; include it")
+            ends = Text.joined(" to ", (f"{100.0 * end:g} %" for end in self.spacing_range))
+            raise InputError("BAD_VALUE", "strategy.spacing_range", "{} is without 100 %, the usual width; include it", ends)
         if self.fill in ("connected", "spiral") and self.fill_density < 1.0:
             raise InputError(
-                "BAD_VALUE", "strategy.fill_density", f"{self.fill} fills the whole, not {100.0 * self.fill_density:g} %; "
-                "use 100 %, or fill: contours, lines, zigzag, grid, triangles, honeycomb or gyroid",
+                "BAD_VALUE", "strategy.fill_density", "{} fills the whole, not {:g} %; use 100 %, or fill: contours, lines, "
+                "zigzag, grid, triangles, honeycomb or gyroid", self.fill, 100.0 * self.fill_density,
             )
 
     @property
@@ -257,4 +257,4 @@ class CladdingParameters(FilledParameters):
         super().__post_init__()
         for key, given, instead in (("margin", self.margin, "0 mm"), ("solid_layers", self.solid_layers, "0")):
             if given:
-                raise InputError("NOT_FOR_FAMILY", f"strategy.{key}", f"it is for solids, not for cladding; use {instead}")
+                raise InputError("NOT_FOR_FAMILY", f"strategy.{key}", "it is for solids, not for cladding; use {}", instead)

@@ -72,7 +72,8 @@ class InspectionParameters:
             try:
                 found.append(float(text.removesuffix("mm")))
             except (ValueError, AttributeError):
-                raise InputError("BAD_VALUE", f"{PREFIX}.heights", f"{text!r} is not a height; give numbers in mm") from None
+                raise InputError("BAD_VALUE", f"{PREFIX}.heights", "{!r} is not a height; give numbers in mm",
+                                 text) from None
         return tuple(found)
 
     def start_pairs(self) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]:
@@ -86,7 +87,7 @@ class InspectionParameters:
                 one = other = ()
             if len(one) != 3 or len(other) != 3:
                 raise InputError(
-                    "BAD_VALUE", f"{PREFIX}.pairs", f"{text.strip()!r} is not a pair of points; give x y z > x y z in mm"
+                    "BAD_VALUE", f"{PREFIX}.pairs", "{!r} is not a pair of points; give x y z > x y z in mm", text.strip()
                 )
             found.append((one, other))
         return tuple(found)

@@ -119,11 +119,12 @@ def given_polynomials(given: tuple[str, ...]) -> dict[tuple[int, int] | None, tu
             values = []
         if not values or len(values) > HIGHEST + 1 or not all(map(math.isfinite, values)) or (key and min(key) < 0):
             raise InputError(
-                "BAD_VALUE", "joints.given", f"{entry!r} is not understood; give layer/bead:constant:slope with up to "
-                f"{HIGHEST + 1} coefficients in deg and deg per turn, such as 12/0:-35:360; * stands for every other bead",
+                "BAD_VALUE", "joints.given", "{!r} is not understood; give layer/bead:constant:slope with up to {} "
+                "coefficients in deg and deg per turn, such as 12/0:-35:360; * stands for every other bead", entry,
+                HIGHEST + 1,
             )
         if key in found:
-            raise InputError("BAD_VALUE", "joints.given", f"{place.strip()} is there twice; give each bead one")
+            raise InputError("BAD_VALUE", "joints.given", "{} is there twice; give each bead one", place.strip())
         found[key] = tuple(math.radians(value) / (2.0 * math.pi) ** power for power, value in enumerate(values))
     return found
 

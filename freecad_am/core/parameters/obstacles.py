@@ -35,16 +35,16 @@ class Obstacle:
 
     def __post_init__(self) -> None:
         if len(self.pose) != 6 or not all(math.isfinite(number) for number in self.pose):
-            raise InputError("BAD_VALUE", WHERE, f"{self.name}: {self.pose!r} is not a pose; give six numbers x y z "
-                             "RX RY RZ")
+            raise InputError("BAD_VALUE", WHERE, "{}: {!r} is not a pose; give six numbers x y z RX RY RZ", self.name,
+                             self.pose)
         if (self.size is None) == (not self.file):
-            raise InputError("BAD_VALUE", WHERE, f"{self.name} is neither a file nor a box, or both; give one of them")
+            raise InputError("BAD_VALUE", WHERE, "{} is neither a file nor a box, or both; give one of them", self.name)
         if self.size is not None and not all(0.0 < edge <= LARGEST for edge in self.size):
             edges = " ".join(f"{edge:g}" for edge in self.size)
-            raise InputError("BAD_VALUE", WHERE, f"{self.name}: {edges} mm is not a box; give three lengths of more than 0 "
-                             f"mm, at most {LARGEST:g} mm")
+            raise InputError("BAD_VALUE", WHERE, "{}: {} mm is not a box; give three lengths of more than 0 mm, at most "
+                             "{:g} mm", self.name, edges, LARGEST)
         if any(sign in self.name for sign in "=;") or not self.name.strip():
-            raise InputError("BAD_VALUE", WHERE, f"{self.name!r} is not a name; use words without = and ;")
+            raise InputError("BAD_VALUE", WHERE, "{!r} is not a name; use words without = and ;", self.name)
 
     def __str__(self) -> str:
         what = self.file if self.size is None else "box " + " ".join(f"{edge:.12g}" for edge in self.size)
@@ -60,7 +60,8 @@ def obstacles(text: str) -> tuple[Obstacle, ...]:
     names = [one.name for one in found]
     for name in names:
         if names.count(name) > 1:
-            raise InputError("BAD_VALUE", WHERE, f"{names.count(name)} of them are called {name!r}; give each its own name")
+            raise InputError("BAD_VALUE", WHERE, "{} of them are called {!r}; give each its own name", names.count(name),
+                             name)
     return found
 
 
@@ -72,7 +73,7 @@ def usual_name(file: str, number: int) -> str:
 def _obstacle(text: str, number: int) -> Obstacle:
     found = _TEXT.fullmatch(text)
     if found is None:
-        raise InputError("BAD_VALUE", WHERE, f"{text!r} is not an obstacle; {_FORM}")
+        raise InputError("BAD_VALUE", WHERE, "{!r} is not an obstacle; {}", text, _FORM)
     pose = _numbers(found["pose"], 6)
     x, y, z, *angles = pose
     a, b, c = (math.radians(angle) for angle in angles)
@@ -90,5 +91,5 @@ def _numbers(text: str, count: int) -> list[float]:
     except ValueError:
         numbers = []
     if len(numbers) != count:
-        raise InputError("BAD_VALUE", WHERE, f"{text.strip()!r} are not {count} numbers; {_FORM}")
+        raise InputError("BAD_VALUE", WHERE, "{!r} are not {} numbers; {}", text.strip(), count, _FORM)
     return numbers

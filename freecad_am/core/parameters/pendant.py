@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..geometry import frames
-from ..issues import InputError
+from ..issues import InputError, Text, Word
 from ..types import Array
 
 # what each shows after X Y Z
@@ -38,13 +38,13 @@ def six(words: Sequence[str], where: str) -> tuple[float, float, float, float, f
     """
     controller = named(words)
     letters = " ".join(SHOWN[controller])
-    form = f"write such as: {controller} X Y Z {letters}"
+    form = Text("write such as: {} X Y Z {}", controller, letters)
     try:
         numbers = [float(word) for word in words if word.lower() != controller]
     except ValueError:
         numbers = []
     if len(numbers) != 3 + len(SHOWN[controller]) or not all(map(math.isfinite, numbers)):
-        raise InputError("BAD_VALUE", where, f"{' '.join(words)!r} is not a pose; {form}")
+        raise InputError("BAD_VALUE", where, "{!r} is not a pose; {}", " ".join(words), Word(form))
     a, b, c = frames.to_bryant(_rotation(controller, numbers[3:], where)).tolist()
     return numbers[0], numbers[1], numbers[2], a, b, c
 
@@ -71,15 +71,15 @@ def _rotation(controller: str, numbers: Sequence[float], where: str) -> Array:
     size = float(np.linalg.norm(numbers))
     if controller == "abb":
         if abs(size - 1.0) > UNIT:
-            raise InputError("BAD_VALUE", where, f"q1 to q4 are together {size:.4g} long, a quaternion is 1; look at the "
-                             "digits")
+            raise InputError("BAD_VALUE", where, "q1 to q4 are together {:.4g} long, a quaternion is 1; look at the digits",
+                             size)
         w, *vector = (number / size for number in numbers)
         length = float(np.linalg.norm(vector))
         return _about(np.array(vector), 2.0 * math.atan2(length, w))
     if controller == "ur":
         if size > WHOLE:
-            raise InputError("BAD_VALUE", where, f"the rotation vector is {size:.4g} rad long, more than a turn; give RX RY "
-                             "RZ in rad, as the pendant shows them")
+            raise InputError("BAD_VALUE", where, "the rotation vector is {:.4g} rad long, more than a turn; give RX RY RZ "
+                             "in rad, as the pendant shows them", size)
         return _about(np.array(numbers), size)
     first, second, third = np.radians(numbers)
     if controller == "staubli":

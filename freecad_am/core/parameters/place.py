@@ -61,15 +61,15 @@ class PlaceParameters:
         f.check(self, "place")
         count = math.prod(len(values) for values in self._values())
         if count > MAX_POSES:
-            raise InputError("BAD_VALUE", "place.step", f"these are {count} poses, more than {MAX_POSES}; give a larger "
-                             "step or a smaller box")
+            raise InputError("BAD_VALUE", "place.step", "these are {} poses, more than {}; give a larger step or a smaller "
+                             "box", count, MAX_POSES)
 
     def _values(self) -> list[NDArray[np.float64]]:
         """What is added to each of the six numbers of a pose."""
         found = []
         for number, name in enumerate(SIDES):
             step = self.step if number < 3 else self.angle_step
-            most = math.floor(getattr(self, name) / step + 1e-9)
+            most = math.floor(min(getattr(self, name) / step, MAX_POSES) + 1e-9)  # of more the count alone is asked for
             found.append(step * np.arange(-most, most + 1))
         return found
 

@@ -42,6 +42,6 @@ def _one(text: str) -> Touched:
     except ValueError:
         numbers = []
     if len(numbers) != 2 or not all(len(one) == 3 and all(map(math.isfinite, one)) for one in numbers):
-        raise InputError("BAD_VALUE", WHERE, f"{text!r} is not a touched point; {_FORM}")
+        raise InputError("BAD_VALUE", WHERE, "{!r} is not a touched point; {}", text, _FORM)
     (x, y, z), (u, v, w) = numbers
     return Touched((x, y, z), (u, v, w))

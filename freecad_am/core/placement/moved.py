@@ -7,7 +7,7 @@ import dataclasses
 import math
 from collections.abc import Sequence
 
-from ..issues import InputError
+from ..issues import InputError, Text
 from ..kinematics.arrangement import of_setup
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.external import MORE, PART, externals
@@ -32,8 +32,8 @@ def chosen(settings: CellParameters, moves: str) -> str:
     if moves == AUTO and there:
         return there[0]
     if moves not in there:
-        raise InputError("NOT_FOR_SETUP", "place.moves", f"a cell with {settings.setup} has no {moves} that places the "
-                         f"part; use {' or '.join(there) or 'another set-up'}")
+        raise InputError("NOT_FOR_SETUP", "place.moves", "a cell with {} has no {} that places the part; use {}",
+                         settings.setup, moves, Text.joined(" or ", there) or "another set-up")
     return moves
 
 

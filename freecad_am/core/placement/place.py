@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..issues import Text
 from ..parameters.cell import CellParameters, Pose
 from ..parameters.place import CLEARANCE, MARGIN, POINT, POSITIONER, TIME, PlaceParameters
 from ..planning.plan import Progress
@@ -73,7 +74,7 @@ def placed(job: Job, settings: CellParameters, parameters: PlaceParameters, prog
     some = Judge(job, parameters.points)
     found = []
     for number, pose in enumerate(poses):
-        progress(JUDGING * number / len(poses), f"pose {number + 1} of {len(poses)}")
+        progress(JUDGING * number / len(poses), Text("pose {} of {}", number + 1, len(poses)))
         found.append(some.judged(moved.moved(settings, moves, np.round(pose, 9))))
     result = Placed(settings, moves, about, poses, tuple(found), some.points, job.toolpath.point_count)
     return dataclasses.replace(result, proven=_proven(job, settings, parameters, result, progress))
@@ -86,7 +87,7 @@ def _proven(
     whole, done = Judge(job, None), dict[int, Judged]()
     for number in ranked(found, parameters.best)[: parameters.proven]:
         share = JUDGING + (1.0 - JUDGING) * len(done) / parameters.proven
-        progress(share, f"planning the whole job at one of the best poses, the {len(done) + 1}.")
+        progress(share, Text("planning the whole job at one of the best poses, the {}.", len(done) + 1))
         done[number] = whole.judged(moved.moved(settings, found.moves, found.pose(number)))
         if done[number].feasible:
             break

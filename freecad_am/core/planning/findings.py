@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..geometry import frames
-from ..issues import ERROR, Issue
+from ..issues import ERROR, Issue, Text, Word
 from ..kinematics.cell import Cell
 from .joint_path import BeadPath
 from .task import Task
@@ -24,16 +24,18 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
     lost = np.flatnonzero(~np.isfinite(path.joints).all(axis=1))
     if len(lost) and not task.cell.machine.free:
         return [Issue(
-            ERROR, "UNREACHABLE", f"{len(lost)} of {len(path.joints)} directions cannot be turned to the torch by this "
-            "machine; tilt less, or mount the part otherwise", point=int(lost[0]), **place,
+            ERROR, "UNREACHABLE", Text("{} of {} directions cannot be turned to the torch by this machine; tilt less, or "
+                "mount the part otherwise", len(lost), len(path.joints)), point=int(lost[0]), **place,
         )]
     if len(lost):
-        count = f"{len(lost)} of {len(path.joints)} points cannot be reached with this branch; "
+        count = Text("{} of {} points cannot be reached with this branch; ", len(lost), len(path.joints))
         external = task.cell.external
         return [Issue(
             ERROR, "UNREACHABLE",
-            f"{count}move the positioner, choose another branch or tilt less" if external and external.turning else
-            f"{count}move the deposition point, choose another branch or tilt less", point=int(lost[0]), **place,
+            Text("{}move the positioner, choose another branch or tilt less",
+                Word(count)) if external and external.turning else
+            Text("{}move the deposition point, choose another branch or tilt less", Word(count)), point=int(lost[0]),
+            **place,
         )]
     return _limit_findings(task, path, place) + _condition_findings(path, place) + _range_findings(task, path, place)
 
@@ -57,8 +59,9 @@ def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
     if nearest <= most:
         return []
     return [Issue(
-        ERROR, "UNREACHABLE", f"the positioner is out of the robot's reach: the nearest point of the part is {nearest:.0f} "
-        f"mm from the shoulder, arm and tool stretch {most:.0f} mm at most; put the positioner nearer (cell.external)",
+        ERROR, "UNREACHABLE", Text("the positioner is out of the robot's reach: the nearest point of the part is {:.0f} mm "
+            "from the shoulder, arm and tool stretch {:.0f} mm at most; put the positioner nearer (cell.external)", nearest,
+            most),
     )]
 
 
@@ -72,9 +75,10 @@ def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
         value = values[point, row]
         limit = rows.lower[row] if value < rows.lower[row] else rows.upper[row]
         unit, of = ("mm", 1.0) if (rows.matrix[row] @ task.cell.machine.chain.sliding).any() else ("deg", math.radians(1.0))
-        text = f"{rows.labels[row]} would be at {value / of:.2f} {unit}, its limit is {limit / of:g} {unit}"
+        text = Text("{} would be at {:.2f} {}, its limit is {:g} {}", rows.labels[row], value / of, unit, limit / of, unit)
         found.append(Issue(
-            ERROR, "LIMIT", text if task.cell.machine.free else f"{text}; move the part on the table", point=point, **place,
+            ERROR, "LIMIT", text if task.cell.machine.free else Text("{}; move the part on the table", Word(text)),
+            point=point, **place,
         ))
     return found
 
@@ -86,7 +90,8 @@ def _condition_findings(path: BeadPath, place: dict[str, int]) -> list[Issue]:
         return []
     return [Issue(
         ERROR, "SINGULAR",
-        f"condition {path.condition[point]:.4f} is below the {path.threshold[point]:.4f} asked for: too near a singularity",
+        Text("condition {:.4f} is below the {:.4f} asked for: too near a singularity", path.condition[point],
+            path.threshold[point]),
         point=point, **place,
     )]
 
@@ -101,6 +106,7 @@ def _range_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[I
         return []
     return [Issue(
         ERROR, "ROTATION_RANGE",
-        f"the rotation about the tool axis would be {math.degrees(path.phi[point]):.2f} deg, outside the range allowed",
+        Text("the rotation about the tool axis would be {:.2f} deg, outside the range allowed",
+            math.degrees(path.phi[point])),
         point=point, **place,
     )]

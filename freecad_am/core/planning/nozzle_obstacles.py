@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..collision.nozzle import depositing
 from ..collision.scene import scene
 from ..geometry import frames
-from ..issues import ERROR, Issue
+from ..issues import ERROR, Issue, Text, Word
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..types import Array
@@ -38,7 +38,8 @@ def findings(motion: Motion, cell: Cell) -> list[Issue]:
             "lift the part over it by cell.platform, or move it in cell.external")
         if len(laying):
             found.append(Issue(
-                ERROR, ON_BEADS, f"the nozzle touches {name} on {len(laying)} move(s) while it deposits; {remedy}",
+                ERROR, ON_BEADS, Text("the nozzle touches {} on {} move(s) while it deposits; {}", name, len(laying),
+                    Word(remedy)),
                 int(motion.layer[laying[0]]), int(motion.bead[laying[0]])))
     return found
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..issues import ERROR, NOTE, WARNING, Issue, has_errors
+from ..issues import ERROR, NOTE, WARNING, Issue, Text, has_errors
 from ..kinematics.cell import Cell
 from ..kinematics.inverse import opw
 from ..parameters.cell import NO_SHAPE
@@ -165,8 +165,8 @@ def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, lis
     if not chosen:
         return parameters, []
     return parameters, [Issue(
-        NOTE, "NOT_USED", f"{', '.join(chosen)}: of no effect on a machine with two rotary axes, which leaves no rotation "
-        "about the tool to choose; leave out what is meant for robots",
+        NOTE, "NOT_USED", Text("{}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool "
+            "to choose; leave out what is meant for robots", ", ".join(chosen)),
     )]
 
 

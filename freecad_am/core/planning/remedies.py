@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.obstacles import Body
-from ..issues import ERROR, NOTE, AmError, Issue, has_errors
+from ..issues import ERROR, NOTE, AmError, Issue, Text, has_errors
 from ..kinematics import cell as cells
 from ..kinematics import proposed_cell
 from ..kinematics.arrangement import of_setup
@@ -109,7 +109,7 @@ def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Pro
     failed = _failed(issues)
     points, whole, tried = POINTS, WHOLE, []
     for change in _changes(job, path, issues):
-        progress(1.0, f"looking for what would make it feasible: {change.remedy}")
+        progress(1.0, Text("looking for what would make it feasible: {}", change.remedy))
         try:
             toolpath = change.toolpath()
             some = _some(toolpath, failed)
@@ -121,18 +121,19 @@ def remedies(job: Tried, path: JointPath, issues: Sequence[Issue], progress: Pro
                 continue
             if toolpath.point_count > LONGEST:
                 count = len(some.layers)
-                return [Issue(NOTE, REMEDY, f"with {change.remedy} the {count} of the layers in question that were planned "
-                              "anew are feasible; the whole job was not tried")]
+                return [Issue(NOTE, REMEDY, Text("with {} the {} of the layers in question that were planned anew are "
+                                                 "feasible; the whole job was not tried", change.remedy, count))]
             whole -= 1
             if not has_errors(change.issues(toolpath, True, progress)):
-                return [Issue(NOTE, REMEDY, f"with {change.remedy} this job is feasible; tried, not applied")]
+                return [Issue(NOTE, REMEDY, Text("with {} this job is feasible; tried, not applied", change.remedy))]
             if not whole:
                 break
         except AmError:  # what cannot be asked for is not a remedy
             continue
     if not tried:
         return []
-    return [Issue(NOTE, NO_REMEDY, f"none of these makes the job feasible, each was tried: {'; '.join(tried)}")]
+    return [Issue(NOTE, NO_REMEDY, Text("none of these makes the job feasible, each was tried: {}",
+                                        Text.joined("; ", tried)))]
 
 
 def _failed(issues: Sequence[Issue]) -> list[int]:
@@ -164,7 +165,7 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
         fixed = dataclasses.replace(job, toolpath=job.fixed.make, remedy=job.fixed.remedy)
         yield fixed
         if free and job.settings.branch != "auto":
-            yield _with_cell(fixed, f"{fixed.remedy} and `cell.branch: auto`", branch="auto")
+            yield _with_cell(fixed, Text("{} and `cell.branch: auto`", fixed.remedy), branch="auto")
     if not left_out and free:
         yield from _points(job)
     yield from _external_axes(job, codes)
@@ -236,10 +237,10 @@ def _points(job: Tried) -> Iterator[Tried]:
     best = proposed_cell.proposed(job.settings, job.folders)
     if best.deposition_point != job.settings.deposition_point:
         words = best.branch if isinstance(best.branch, str) else f"[{', '.join(best.branch)}]"
-        yield _with_cell(job, f"{_shown(best.deposition_point)} and `cell.branch: {words}`",
+        yield _with_cell(job, Text("{} and `cell.branch: {}`", _shown(best.deposition_point), words),
                          deposition_point=best.deposition_point, branch=best.branch)
     for point in _before(job) if not of_setup(job.settings.setup).carries_part else _adjacent(job.settings.deposition_point):
-        yield _with_cell(job, f"{_shown(point)} and `cell.branch: auto`", deposition_point=point, branch="auto")
+        yield _with_cell(job, Text("{} and `cell.branch: auto`", _shown(point)), deposition_point=point, branch="auto")
 
 
 def _external_axes(job: Tried, codes: set[str]) -> Iterator[Tried]:
@@ -276,4 +277,4 @@ def _before(job: Tried) -> list[Pose]:
 
 def _shown(point: Pose) -> str:
     angles = [math.degrees(angle) for angle in point[3:]]
-    return f"`cell.deposition_point: [{', '.join(f'{value + 0.0:.10g}' for value in (*point[:3], *angles))}]`"
+    return Text("`cell.deposition_point: [{}]`", ", ".join(f"{value + 0.0:.10g}" for value in (*point[:3], *angles)))

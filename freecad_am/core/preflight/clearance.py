@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..issues import Issue
+from ..issues import Issue, Text, Word
 from ..kinematics.cell import Cell
 from ..kinematics.links.contact import LINKS_MORE
 from ..kinematics.links.rounds import NONE
@@ -29,10 +29,8 @@ def nozzle(issues: Sequence[Issue], looked: Looked | None) -> Promise:
     if looked is None:
         return Promise(what, "not checked: build_direction.clearance is none", None)
     found = of_codes(issues, DEPOSITING)
-    how = (
-        f"the nozzle as a cone at {looked.count} points, against platform, part and what is deposited by then; beads as "
-        "wide and high as they count"
-    )
+    how = Text("the nozzle as a cone at {} points, against platform, part and what is deposited by then; beads as wide and "
+               "high as they count", looked.count)
     place = issue_place(found) if found or looked.place is None else Place(*looked.place)
     return Promise(what, how, not found and not looked.touched, float(looked.touched), "points", 0.0, place)
 
@@ -40,10 +38,8 @@ def nozzle(issues: Sequence[Issue], looked: Looked | None) -> Promise:
 def rapids(issues: Sequence[Issue], looked: RapidsLooked) -> Promise:
     """On the way between beads."""
     found = of_codes(issues, RAPIDS)
-    how = (
-        f"retracts, travels and approaches driven anew, at {looked.places} places {number(looked.step)} mm apart, against "
-        "bodies, platform and beads as wide and high as they are by then"
-    )
+    how = Text("retracts, travels and approaches driven anew, at {} places {} mm apart, against bodies, platform and beads "
+               "as wide and high as they are by then", looked.places, number(looked.step))
     place = issue_place(found) if looked.place is None else Place(*looked.place)
     return Promise(ON_RAPIDS, how, not found and not len(looked.rows), float(len(looked.rows)), "rapids", 0.0, place)
 
@@ -58,16 +54,15 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
     if len(rows):
         place = row_place(motion, int(rows[0]))
         link, other = touches.link[rows[0]], touches.names[touches.what[rows[0]]]
-        met = f"{other} with {touches.links[link]}"
+        met = Text("{} with {}", other, touches.links[link])
     step = number(math.degrees(touches.step))
-    near = f"come nearer than {cell.arm_clearance:g} mm to" if cell.arm_clearance else "touch"
+    near = Text("come nearer than {:g} mm to", cell.arm_clearance) if cell.arm_clearance else "touch"
     if not true_shapes:
-        how = (
-            f"not checked: without the manufacturer's shapes, links drawn from the kinematics {near} {met}, looked at every "
-            f"{step} deg"
-        )
+        how = Text("not checked: without the manufacturer's shapes, links drawn from the kinematics {} {}, looked at every "
+                   "{} deg", Word(near), Word(met), step)
         return Promise(what, how, None, float(len(rows)), "points", None, place)
-    how = f"shapes of all links, against each other too, every {step} deg of the whole motion: they {near} {met}"
+    how = Text("shapes of all links, against each other too, every {} deg of the whole motion: they {} {}", step, Word(near),
+               Word(met))
     return Promise(what, how, not len(rows), float(len(rows)), "points", 0.0, place)
 
 
@@ -82,9 +77,9 @@ def external_links(
     names = [one.name for one in cell.external_links]
     known = {one.mechanism for one in cell.external_links}
     untold = [one.machine.title for k, one in enumerate(cell.external.mechanisms) if k not in known]
-    missing = f"no file tells what {', '.join(untold)} is made of" if untold else ""
+    missing = Text("no file tells what {} is made of", ", ".join(untold)) if untold else ""
     if touches is None or not names:
-        return [Promise(what, f"not checked: no file tells what {', '.join(untold)} is made of", None)]
+        return [Promise(what, Text("not checked: no file tells what {} is made of", ", ".join(untold)), None)]
     own = cell.robot.chain.axes
     about = np.isin(touches.what, [touches.names.index(name) for name in names]) | (touches.link >= own + LINKS_MORE)
     rows = np.flatnonzero((touches.link != NONE) & about)
@@ -92,20 +87,16 @@ def external_links(
     met, place = "nothing", None
     if len(rows):
         place = row_place(motion, int(rows[0]))
-        met = f"{touches.names[touches.what[rows[0]]]} with {touches.links[touches.link[rows[0]]]}"
+        met = Text("{} with {}", touches.names[touches.what[rows[0]]], touches.links[touches.link[rows[0]]])
     text = [one for one in of_codes(issues, (*DEPOSITING, *RAPIDS)) if any(name in one.message for name in names)]
     broken = bool(text) or bool(len(rows) and (true_shapes or touches.link[rows[0]] > own))
     whole = true_shapes and not untold
     step = number(math.degrees(touches.step))
-    how = (
-        f"{len(names)} links that move with their axes, every {step} deg of the whole motion, the nozzle every mm: they "
-        f"touch {met}"
-    )
+    how = Text("{} links that move with their axes, every {} deg of the whole motion, the nozzle every mm: they touch {}",
+               len(names), step, Word(met))
     if not whole:
         lacks = missing or "links of the robot are drawn from the kinematics"
-        how = (
-            f"not checked in full, for {lacks}: {len(names)} links that move with their axes, every {step} deg of the whole "
-            f"motion, the nozzle every mm; they touch {met}"
-        )
+        how = Text("not checked in full, for {}: {} links that move with their axes, every {} deg of the whole motion, the "
+                   "nozzle every mm; they touch {}", lacks, len(names), step, Word(met))
     ok = False if broken else True if whole else None
     return [Promise(what, how, ok, float(len(rows)), "points", 0.0 if whole else None, issue_place(text) or place)]

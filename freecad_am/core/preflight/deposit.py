@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..geometry.fitted import REMAINS
-from ..issues import WARNING, Issue
+from ..issues import WARNING, Issue, Text
 from ..parameters.process import ProcessParameters
 from ..process.deposit import balance as deposit_balance
 from ..process.deposit import layer_heights, on_part, spacing, support
@@ -47,9 +47,9 @@ def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
         return Promise(what, "not checked: the part has no faces to measure from", None)
     places, worst, allowed = toolpath.on_part
     found = of_codes(issues, (on_part.CODE,))
-    how = f"distance of {places:.0f} places of the beads to the shape itself, which slicing does not use"
+    how = Text("distance of {:.0f} places of the beads to the shape itself, which slicing does not use", places)
     if toolpath.fitted is not None:
-        how = f"distance of {places:.0f} places of the beads to the shape itself, less what a scan moved their layers"
+        how = Text("distance of {:.0f} places of the beads to the shape itself, less what a scan moved their layers", places)
     off = worst > allowed or bool(of_codes(issues, (REMAINS,), WARNING))
     return Promise(what, how, not off, worst, "mm", allowed, issue_place(found))
 
@@ -108,10 +108,8 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
     found = toolpath.predicted
     if found is None:
         return ()
-    how = (
-        f"how far a deposit of cubes of {found.edge:.3g} mm, filled bead by bead with what the wire feeds, reaches beyond "
-        f"{found.places} places of the part's faces, along their normals"
-    )
+    how = Text("how far a deposit of cubes of {:.3g} mm, filled bead by bead with what the wire feeds, reaches beyond {} "
+               "places of the part's faces, along their normals", found.edge, found.places)
     inside = Promise(
         "The part lies inside the predicted deposit, by its machining allowance", how, found.short <= 0.0, found.least, "mm",
         found.allowance, Place(found.layer, found.bead, found.point), at_least=True,
@@ -148,7 +146,8 @@ def fed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
     others = sorted({name for part, _ in parts for name in wire_taken.by_schedules(part, process)})
     off, where = max(found, key=lambda one: one[0], default=(0.0, None))
     if others and off <= wire.TOLERANCE:
-        how = f"not checked: schedules of their own, which nobody here knows, tell the welder to feed {', '.join(others)}"
+        how: str = Text("not checked: schedules of their own, which nobody here knows, tell the welder to feed {}",
+                        ", ".join(others))
         return Promise(what, how, None)
     how = "section of the wire times its feed, against width x height x speed of beads of each class, their starts and ends"
     return Promise(what, how, off <= wire.TOLERANCE, PERCENT * off, "%", PERCENT * wire.TOLERANCE, where)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..issues import Issue
+from ..issues import Issue, Text, Word
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
@@ -25,11 +25,14 @@ def carried(
         return []
     mass, text = finished(motion, cell, toolpath, process), of_codes(issues, (CODE,))
     least = min(cell.carriers, key=lambda one: one.payload.kg)
-    weighed = f"deposit and what it grows on, where that is closed, at {number(process.density)} g/cm3 (process.density)"
+    weighed = Text("deposit and what it grows on, where that is closed, at {} g/cm3 (process.density)",
+                   number(process.density))
     untold = [one.title for one in cell.carriers if math.isinf(one.payload.kg)]
     if untold and not text:
-        return [Promise(WHAT, f"not checked: the file of {untold[0]} tells no payload; {weighed}", None, mass, "kg")]
-    how = f"{weighed}, against what {least.title} carries"
+        return [Promise(WHAT, Text("not checked: the file of {} tells no payload; {}", untold[0], Word(weighed)), None, mass,
+                        "kg")]
+    how = Text("{}, against what {} carries", Word(weighed), least.title)
     if not math.isinf(least.payload.from_axis):
-        how = f"{weighed}, against what {least.title} carries, and its moment about the last axis, as it grows"
+        how = Text("{}, against what {} carries, and its moment about the last axis, as it grows", Word(weighed),
+                   least.title)
     return [Promise(WHAT, how, not text, mass, "kg", least.payload.kg, issue_place(text))]

@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..issues import Text, Word
 from .promise import Promise
 
 TEXT, BETWEEN = "The text takes the tool to the planned points", "Between its points the text keeps to the planned path"
@@ -35,7 +36,7 @@ def _read_back(read: ReadBack | None) -> list[Promise]:
     if read is None:
         return [Promise(what, "not checked: there is no program that was read back", None) for what in (TEXT, BETWEEN)]
     how = "read back by a reader of its own and driven through the joint-frame chain"
-    both = how + " and PyKDL" if read.solvers > 1 else how + "; PyKDL is not installed"
+    both = Text("{} and PyKDL", Word(how)) if read.solvers > 1 else Text("{}; PyKDL is not installed", Word(how))
     return [
         Promise(TEXT, both, _within(read, read.at_points, read.bound), *_figure(read.at_points, read.bound)),
         Promise(

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from ..issues import InputError
+from ..issues import InputError, Word
 from ..parameters.bead_classes import CLASSES, CLOSING, CONTOUR, END, FILL, FIRST_LAYER, START, WALL, PhaseParameters
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
@@ -62,9 +62,8 @@ def with_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
             if used > bead.length:
                 raise InputError(
                     "PHASE_LENGTH", f"process.classes.{bead.bead_class}",
-                    f"start and end take {used:.4g} mm{more}, and a bead of this class in "
-                    f"layer {number} is {bead.length:.4g} mm long; make them shorter for the class, or lay no beads as "
-                    "short as that",
+                    "start and end take {:.4g} mm{}, and a bead of this class in layer {} is {:.4g} mm long; make them "
+                    "shorter for the class, or lay no beads as short as that", used, Word(more), number, bead.length,
                 )
         layers[number] = replace(layer, beads=tuple(replace(bead, ends=of_class[bead.bead_class]) for bead in layer.beads))
     return replace(toolpath, layers=tuple(layers))
@@ -77,8 +76,8 @@ def _ends(process: ProcessParameters, name: str) -> tuple[float, ...]:
             where = f"process.{end}" if getattr(process.of_class(name), f"{end}_ramp") is None else (
                 f"process.classes.{name}.{end}")
             raise InputError(
-                "BAD_VALUE", f"{where}.ramp", f"a ramp of {phase.ramp:g} mm leads from or to the travel_speed there, and "
-                "there is none; give it, or leave the ramp out",
+                "BAD_VALUE", f"{where}.ramp", "a ramp of {:g} mm leads from or to the travel_speed there, and there is "
+                "none; give it, or leave the ramp out", phase.ramp,
             )
     if not process.start.there and not process.end.there:
         return ()

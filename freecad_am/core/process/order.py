@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..issues import NOTE, Issue
+from ..issues import NOTE, Issue, Text
 from ..toolpath import Bead, Layer, Toolpath
 from ..types import Array
 
@@ -100,7 +100,7 @@ def no_shorter(toolpath: Toolpath, least: float, rapid_speed: float) -> Toolpath
     layers = waited(Course(toolpath.layers, solids), 0.0, rapid_speed, least)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
     text = [Issue(
-        NOTE, "WAITS", f"the machine waits before {len(waits)} of {len(layers)} layers, up to {max(waits):.4g} s and "
-        f"{sum(waits):.5g} s in all, so that no layer takes less than {least:g} s",
+        NOTE, "WAITS", Text("the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no layer "
+            "takes less than {:g} s", len(waits), len(layers), max(waits), sum(waits), least),
     )] if waits else []
     return dataclasses.replace(toolpath, layers=layers, issues=(*toolpath.issues, *text))

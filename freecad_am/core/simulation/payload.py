@@ -11,7 +11,7 @@ import numpy as np
 
 from ..geometry import frames
 from ..geometry.obstacles import enclosed
-from ..issues import ERROR, Issue
+from ..issues import ERROR, Issue, Text, Word
 from ..kinematics.cell import Cell
 from ..kinematics.machines.machine import Machine
 from ..motion import Motion
@@ -38,9 +38,11 @@ def issues(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParam
         over = mass > machine.payload.kg
         if over.any():
             row = int(over.argmax())
-            found.append(_at(motion, row, f"the part weighs more than {machine.payload.kg:g} kg from here on, "
-                             f"{mass[-1]:.4g} kg when it is finished, {bodies:.3g} kg of which it grows on, and "
-                             f"{machine.title} carries no more; {REMEDY}"))
+            found.append(_at(
+                motion, row, Text("the part weighs more than {:g} kg from here on, {:.4g} kg when it is finished, {:.3g} kg "
+                    "of which it grows on, and {} carries no more; {}", machine.payload.kg, mass[-1], bodies, machine.title,
+                    REMEDY)
+            ))
     out = cell.carriers[-1].payload.from_axis
     if np.isfinite(out):
         from_axis = _from_axis(cell, cell.carriers[-1], motion.position, deposited, bodies, centre)
@@ -63,11 +65,13 @@ def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> li
         return []
     row = int(over.argmax())
     middle = moment[-1] / mass[-1] if mass[-1] > 0.0 else 0.0
-    rated = f"{load.from_axis:g} mm" if np.isinf(load.kg) else f"{load.from_axis:g} mm with {load.kg:g} kg"
+    rated = Text("{:g} mm", load.from_axis) if np.isinf(load.kg) else Text("{:g} mm with {:g} kg", load.from_axis, load.kg)
     out = moment[row] / mass[row]
-    return [_at(motion, row, f"the centre of gravity of the part, {mass[row]:.4g} kg by then, is {out:.4g} mm from "
-                f"the last axis of {machine.title} ({middle:.4g} mm when it is finished), which carries {rated}; put it "
-                f"nearer to the middle (cell.platform may be a pose); {REMEDY}")]
+    return [_at(
+        motion, row, Text("the centre of gravity of the part, {:.4g} kg by then, is {:.4g} mm from the last axis of {} "
+            "({:.4g} mm when it is finished), which carries {}; put it nearer to the middle (cell.platform may be a pose); "
+            "{}", mass[row], out, machine.title, middle, Word(rated), REMEDY)
+    )]
 
 
 def _from_axis(cell: Cell, machine: Machine, position: Array, deposited: Array, bodies: float, centre: Array) -> Array:

@@ -19,7 +19,7 @@ def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]
     if layer_height > meridian.length:
         raise InputError(
             "LAYER_HEIGHT", "strategy.layer_height",
-            f"{layer_height:g} mm is more than the wall is long ({meridian.length:.4g} mm); give a smaller one",
+            "{:g} mm is more than the wall is long ({:.4g} mm); give a smaller one", layer_height, meridian.length,
         )
     steps = int(np.floor(meridian.length / layer_height + 1e-6))
     s = np.minimum(np.arange(steps + 1) * layer_height, meridian.length)

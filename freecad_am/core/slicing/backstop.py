@@ -11,5 +11,5 @@ def refuse_too_many(layers: int, height: float, label: str) -> None:
     """InputError LAYER_HEIGHT once there are as many layers as may be."""
     if layers >= MOST_LAYERS:
         raise InputError(
-            "LAYER_HEIGHT", label, f"more than {MOST_LAYERS} layers of {height:g} mm: use a larger layer height"
+            "LAYER_HEIGHT", label, "more than {} layers of {:g} mm: use a larger layer height", MOST_LAYERS, height
         )

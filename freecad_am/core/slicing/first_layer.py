@@ -45,8 +45,8 @@ def _crossing(
     if not leaves.any(axis=0).all() or not outside[-1].all():
         missing = v[np.flatnonzero(~(leaves.any(axis=0) & outside[-1]))[0]]
         raise InputError(
-            "NO_INTERSECTION", label, f"the wall does not come out of the substrate everywhere (at v = {missing:.4g}, "
-            "for instance): let it reach into the substrate all around, or choose the edges it starts from",
+            "NO_INTERSECTION", label, "the wall does not come out of the substrate everywhere (at v = {:.4g}, for "
+            "instance): let it reach into the substrate all around, or choose the edges it starts from", missing,
         )
     last = len(u) - 2 - np.argmax(leaves[::-1], axis=0)
     low, high = u[last], u[last + 1]

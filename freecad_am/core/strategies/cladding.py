@@ -10,7 +10,7 @@ from ..filling.curve import PlaneCurve
 from ..geometry.on_hub import Base
 from ..geometry.plane import Plane
 from ..geometry.walls.clad_faces import CladFaces
-from ..issues import NOTE, InfeasibleError, InputError, Issue
+from ..issues import NOTE, InfeasibleError, InputError, Issue, Text
 from ..layers.curved.on_faces import FaceLayer, pieces, slices
 from ..layers.surface import Slice
 from ..parameters.build_direction import BuildDirectionParameters
@@ -66,8 +66,8 @@ def plan(
             made += here
     if not ranked:
         raise InputError(
-            "NOTHING_TO_DEPOSIT", given.label, f"no bead of {strategy.least_bead:g} mm or more finds room on its faces; "
-            "use a smaller bead spacing, or thin = single",
+            "NOTHING_TO_DEPOSIT", given.label, "no bead of {:g} mm or more finds room on its faces; use a smaller bead "
+            "spacing, or thin = single", strategy.least_bead,
         )
     layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
     noted = notes(made, layers, mended, strategy, process, model)
@@ -86,8 +86,9 @@ def _stretched(share: float) -> tuple[Issue, ...]:
     if share <= REPORTED_DISTORTION:
         return ()
     return (Issue(
-        NOTE, "DISTORTED", "faces that are bent both ways cannot be laid flat without distortion: beads are up to "
-        f"{100.0 * share:.2g} % nearer together or farther apart than the bead spacing; strategy.distortion bounds that",
+        NOTE, "DISTORTED", Text("faces that are bent both ways cannot be laid flat without distortion: beads are up to "
+            "{:.2g} % nearer together or farther apart than the bead spacing; strategy.distortion bounds that",
+            100.0 * share),
     ),)
 
 
@@ -97,7 +98,8 @@ def _filled(pictures: Pictures, layer: Slice, label: str) -> Filled:
     except InfeasibleError as error:
         where = f"{label} layer {layer.layer}"
         raise InfeasibleError(
-            error.code, where, error.message, (Issue("error", error.code, f"{label}: {error.message}", layer.layer),)
+            error.code, where, error.message,
+            issues=(Issue("error", error.code, Text("{}: {}", label, error.message), layer.layer),)
         ) from None
 
 

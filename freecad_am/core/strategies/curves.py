@@ -71,8 +71,8 @@ def _bead(
     worst = int(np.abs((forward * away).sum(axis=1)).argmax())
     if abs(float(forward[worst] @ away[worst])) > ALONG:
         raise InputError(
-            "ALONG_DIRECTION", label, f"a bead runs along the direction in which it is laid, at {place(points[worst])}: the "
-            "nozzle would be in its own way; give another strategy.direction, faces, or directions in the table",
+            "ALONG_DIRECTION", label, "a bead runs along the direction in which it is laid, at {}: the nozzle would be in "
+            "its own way; give another strategy.direction, faces, or directions in the table", place(points[worst]),
         )
     across = np.cross(forward, away)
     across /= np.linalg.norm(across, axis=1, keepdims=True)

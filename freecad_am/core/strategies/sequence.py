@@ -79,8 +79,9 @@ def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) 
     if open_ < FLOATS * length:
         return
     raise InputError(
-        "FLOATS", part.feature_label, f"nothing carries it: {open_:.4g} of {length:.4g} mm of its first layer lie over "
-        "nothing when they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on"
+        "FLOATS", part.feature_label, "nothing carries it: {:.4g} of {:.4g} mm of its first layer lie over nothing when "
+        "they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on", open_,
+        length
     )
 
 

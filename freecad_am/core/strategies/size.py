@@ -18,7 +18,7 @@ from ..geometry.formatting import at_least, count
 from ..geometry.mesh.facets import doubled_areas
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import SolidsOnHub
-from ..issues import NOTE, InputError, Issue
+from ..issues import NOTE, InputError, Issue, Text, Word
 from ..parameters.filled import CladdingParameters, FilledParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import MOST_LAYERS, LayerParameters, RevolutionParameters, SurfaceParameters
@@ -131,16 +131,16 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
     height = strategy.layer_height
     if size.layers > MOST_LAYERS:
         raise InputError(
-            "TOO_MANY", "strategy.layer_height", f"{height:g} mm makes about {count(size.layers)} layers, and more than "
-            f"{MOST_LAYERS:,} cannot be worked with; give at least {at_least(height * size.layers / MOST_LAYERS):g} mm",
+            "TOO_MANY", "strategy.layer_height", "{:g} mm makes about {} layers, and more than {:,} cannot be worked with; "
+            "give at least {:g} mm", height, count(size.layers), MOST_LAYERS, at_least(height * size.layers / MOST_LAYERS),
         )
     over = size.points / MOST_POINTS
     if over > 1.0:
         cause = max(_causes(strategy, width), key=lambda one: (one.usual / one.value) ** one.power)
         enough = at_least(cause.value * over ** (1.0 / cause.power))
         raise InputError(
-            "TOO_MANY", cause.key, f"{cause.value:g} mm makes about {count(size.points)} points, and more than "
-            f"{MOST_POINTS:,} cannot be worked with; give at least {enough:g} mm",
+            "TOO_MANY", cause.key, "{:g} mm makes about {} points, and more than {:,} cannot be worked with; give at least "
+            "{:g} mm", cause.value, count(size.points), MOST_POINTS, enough,
         )
 
 
@@ -153,9 +153,9 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     if seconds < LARGE_SECONDS and gigabytes < LARGE_GIGABYTES:
         return ()
     return (Issue(
-        NOTE, LARGE, f"about {count(size.points)} points in {count(size.layers)} layers are planned, which takes about "
-        f"{at_least(seconds / 60.0):g} min of the processor and {at_least(gigabytes):g} GB of memory; a larger "
-        "strategy.layer_height or strategy.chord_error makes them fewer",
+        NOTE, LARGE, Text("about {} points in {} layers are planned, which takes about {:g} min of the processor and {:g} "
+            "GB of memory; a larger strategy.layer_height or strategy.chord_error makes them fewer", count(size.points),
+            count(size.layers), at_least(seconds / 60.0), at_least(gigabytes)),
     ),)
 
 
@@ -165,17 +165,17 @@ def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:
     seconds = points * times * SECONDS_A_TILT
     if seconds < LARGE_SECONDS:
         return ()
-    minutes = f"{at_least(seconds / 60.0):g} min of the processor"
+    minutes = Text("{:g} min of the processor", at_least(seconds / 60.0))
     if times > 1:
         return (Issue(
-            NOTE, LARGE, "with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on "
-            f"beads of {count(points)} points; finding slower ones takes up to {minutes}; a larger "
-            "build_direction.max_turn, a slimmer nozzle, or clearance: none, saves it",
+            NOTE, LARGE, Text("with tilts that keep the nozzle clear the tool turns faster than build_direction.max_turn on "
+                "beads of {} points; finding slower ones takes up to {}; a larger build_direction.max_turn, a slimmer "
+                "nozzle, or clearance: none, saves it", count(points), Word(minutes)),
         ),)
     return (Issue(
-        NOTE, LARGE, f"with the tool axes asked for the nozzle touches beads of {count(points)} points; finding tilts that "
-        f"keep it clear takes about {minutes}, several times that where the tool would turn too fast; a smaller "
-        "build_direction.lead and build_direction.tilt, or clearance: none, saves it",
+        NOTE, LARGE, Text("with the tool axes asked for the nozzle touches beads of {} points; finding tilts that keep it "
+            "clear takes about {}, several times that where the tool would turn too fast; a smaller build_direction.lead "
+            "and build_direction.tilt, or clearance: none, saves it", count(points), Word(minutes)),
     ),)
 
 
@@ -186,8 +186,8 @@ def of_remedies(points: int) -> tuple[Issue, ...]:
     if seconds < LARGE_SECONDS:
         return ()
     return (Issue(
-        NOTE, LARGE, "as it is this job cannot be carried out; looking for what would make it feasible takes up to "
-        f"{at_least(seconds / 60.0):g} min of the processor",
+        NOTE, LARGE, Text("as it is this job cannot be carried out; looking for what would make it feasible takes up to "
+            "{:g} min of the processor", at_least(seconds / 60.0)),
     ),)
 
 

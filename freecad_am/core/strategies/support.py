@@ -13,7 +13,7 @@ from ..geometry.mesh.facets import doubled_areas
 from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base
-from ..issues import WARNING, Issue
+from ..issues import WARNING, Issue, Text
 from ..process.deposit import support
 from ..process.deposit.pieces import cut
 from ..toolpath import Toolpath
@@ -62,9 +62,9 @@ def over_edge(toolpath: Toolpath, frame: Array, diameter: float, bodies: Sequenc
         return []
     worst = out[beyond[out].argmax()]
     return [Issue(
-        WARNING, OVER_PLATFORM, f"{math.fsum(first.length[out]):.4g} mm of the first layer lie over the edge of the "
-        f"platform, up to {beyond[worst]:.4g} mm beyond it; move the part, or set cell.platform_diameter to what there is "
-        "(0 for none)",
+        WARNING, OVER_PLATFORM, Text("{:.4g} mm of the first layer lie over the edge of the platform, up to {:.4g} mm "
+            "beyond it; move the part, or set cell.platform_diameter to what there is (0 for none)",
+            math.fsum(first.length[out]), beyond[worst]),
         0, int(first.bead[worst]), int(first.point[worst]),
     )]
 

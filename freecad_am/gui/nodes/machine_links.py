@@ -128,7 +128,7 @@ def _drawn_mesh(shape: LinkShape) -> Mesh | None:
     try:
         return mesh_of(shape)
     except InputError as error:
-        reported = InputError(error.code, shape.where, f"{error.message}; the link has its plain solid for now")
+        reported = InputError(error.code, shape.where, "{}; the link has its plain solid for now", error.message)
         App.Console.PrintError(error_line(reported))
         return None
 

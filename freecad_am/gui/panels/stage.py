@@ -16,7 +16,7 @@ from PySide import QtCore, QtGui
 from ...core.issues import AmError, InputError
 from ...objects.fields import expressions, preferences
 from ...objects.fields.rows import group_of, rows
-from ...objects.results.findings import issues_of
+from ...objects.results.findings import issues_of, message_of
 from ...objects.stage import Stage
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
@@ -136,7 +136,7 @@ class StagePanel(Noted):
         if self.obj is None:
             return
         found = issues_of(self.obj)
-        lines = [translated(self.obj.Message)] if self.obj.Message and not found else []
+        lines = [translated(message_of(self.obj))] if self.obj.Message and not found else []
         lines += [
             tr("{}: {}").format(
                 " ".join(filter(None, (translated(issue.level), translated(issue.where)))), translated(issue.message)

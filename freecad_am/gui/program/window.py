@@ -15,6 +15,7 @@ from PySide import QtCore, QtGui
 from ... import api
 from ...core.issues import AmError
 from ...objects.fields import preferences
+from ...objects.results.findings import message_of
 from ...objects.staleness import UP_TO_DATE
 from .. import icons
 from ..colours import WRONG
@@ -78,7 +79,7 @@ class ProgramWindow:
         fits = self.obj.Status == UP_TO_DATE
         warning = "" if fits or not names else tr("This text is of an earlier plan; do not run it.")
         status = tr("Status: {}.").format(translated(self.obj.Status))
-        self.state.setText(" ".join(filter(None, (warning, status, translated(self.obj.Message)))))
+        self.state.setText(" ".join(filter(None, (warning, status, translated(message_of(self.obj))))))
         self.located = None
         self.place.clear()
         try:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import json
-from functools import lru_cache
 from pathlib import Path
 
 import FreeCAD as App
@@ -12,10 +10,9 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from .field_names import as_in_panels
-from .phrases import Phrases
+from .in_language import in_language, names_first
 
 CONTEXT = "RoboticAM"
-KINDS = ("cell", "feature", "toolpath", "program", "inspection")  # stages, as messages call them
 FOLDER = Path(__file__).resolve().parents[3] / "resources" / "translations"
 
 
@@ -42,14 +39,14 @@ def marked(text: str) -> str:
 def translated(text: str) -> str:
     """What the core wrote, which knows no language and no panel - a help, a word, a message with figures in it - in that of
     the window, with parameters as its panels call them; itself where no translation is there."""
-    return _translated(text, tr("en"), tr("“{}”"))  # each translation says its own code
+    return _in_panels(text, tr("“{}”"))
 
 
 def translated_error(error: BaseException) -> str:
     """An error with the place it belongs to, in the language of the window."""
     if not isinstance(error, AmError):
         return str(error)
-    return tr("{}: {}").format(_translated(error.where, tr("en"), "{}"), translated(error.message))
+    return tr("{}: {}").format(_in_panels(error.where, "{}"), translated(error.message))
 
 
 def error_line(error: AmError) -> str:
@@ -60,16 +57,9 @@ def error_line(error: AmError) -> str:
 def sentence(text: str) -> str:
     """A text that begins small, such as a finding, as a sentence of its own, in the language of the window. One that begins
     with the name of a part or file keeps that as it is."""
-    worded = translated(text)
-    return worded if _phrases().names_first(text) else worded[:1].upper() + worded[1:]
+    shown = translated(text)
+    return shown if names_first(text) else shown[:1].upper() + shown[1:]
 
 
-@lru_cache(maxsize=4096)
-def _translated(text: str, language: str, quoted: str) -> str:
-    worded = text if language == "en" else _phrases().translated(text, tr)
-    return as_in_panels(worded, tr if language == "en" else translated, quoted)
-
-
-@lru_cache(maxsize=1)
-def _phrases() -> Phrases:
-    return Phrases(json.loads((FOLDER / "messages.json").read_text(encoding="utf-8")), KINDS)
+def _in_panels(text: str, quoted: str) -> str:
+    return as_in_panels(in_language(text, tr), translated, quoted)

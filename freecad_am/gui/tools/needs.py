@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from ...objects.results.findings import message_of
 from ...objects.stage import stage_of
 from ...objects.staleness import INFEASIBLE
 from ..picking.picking import is_mesh, usable
@@ -71,7 +72,7 @@ def joint_path(doc: Any) -> str:
     if any(obj.Key for obj in paths):
         return ""
     if paths:
-        return tr("{} has no result: {}").format(paths[-1].Label, translated(paths[-1].Message))
+        return tr("{} has no result: {}").format(paths[-1].Label, translated(message_of(paths[-1])))
     return tr("First make a joint path: Joint Path…, or all stages at once: New Job….")
 
 
@@ -81,7 +82,7 @@ def feasible(doc: Any) -> str:
     if lacking or any(obj.Status != INFEASIBLE for obj in _stages(doc, "joint path")):
         return lacking
     last = list(_stages(doc, "joint path"))[-1]
-    return tr("{} cannot be carried out: {}").format(last.Label, translated(last.Message))
+    return tr("{} cannot be carried out: {}").format(last.Label, translated(message_of(last)))
 
 
 def _stages(doc: Any, kind: str) -> Iterator[Any]:

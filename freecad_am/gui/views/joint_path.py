@@ -189,7 +189,7 @@ def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
     if mechanisms:
         machine, limits, _ = coupled(machine, limits, mechanisms, settings.upward(), folders)
     if joints.shape[1] != limits.axes:
-        raise InputError("BAD_INPUT", obj.Label, f"{machine.title} has other axes than the joint path")
+        raise InputError("BAD_INPUT", obj.Label, "{} has other axes than the joint path", machine.title)
     if kind == MARGIN:
         return limits.smallest_share(joints)
     motion = seen.read().motion

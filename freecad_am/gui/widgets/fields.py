@@ -197,7 +197,7 @@ def _number(text: str, name: str) -> float | str:
     try:
         return float(text)
     except ValueError:
-        raise InputError("BAD_VALUE", name, f"{text!r} is not a number; give one such as 0.1") from None
+        raise InputError("BAD_VALUE", name, "{!r} is not a number; give one such as 0.1", text) from None
 
 
 def _choice(row: Row, shown: str) -> Field:

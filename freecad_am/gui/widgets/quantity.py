@@ -20,7 +20,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text, Word
 from ...objects.fields.expressions import MARK, is_expression
 from ...objects.fields.rows import plain_blanks
 from ...objects.fields.rows import quantity as quantity_of
@@ -89,21 +89,22 @@ class QuantityField:
         locale = self.box.locale()
         point, group = str(locale.decimalPoint()), str(locale.groupSeparator())
         if (group.strip() and group in text) or re.search(r"\d[\s’]+\d", text):
-            example = f"1{point}5 {self.unit}"
-            raise self._wrong(text, f"write decimals with '{point}', as in {example}, and do not group digits")
+            example = Text("1{}5 {}", point, self.unit)
+            raise self._wrong(text, Text("write decimals with '{}', as in {}, and do not group digits", point,
+                                         Word(example)))
         if not text.strip():
-            raise InputError("BAD_VALUE", self.name, f"it is empty; give a quantity in {self.unit}")
+            raise InputError("BAD_VALUE", self.name, "it is empty; give a quantity in {}", self.unit)
         try:
             quantity = quantity_of(text.replace(point, "."))
         except (ValueError, TypeError, ArithmeticError):
-            raise self._wrong(text, f"give a quantity in {self.unit}") from None
+            raise self._wrong(text, Text("give a quantity in {}", self.unit)) from None
         if quantity.Unit not in (self.dimension, App.Units.Unit()) or not math.isfinite(quantity.Value):
-            raise self._wrong(text, f"give a quantity in {self.unit}")
+            raise self._wrong(text, Text("give a quantity in {}", self.unit))
         plain = quantity.Unit == App.Units.Unit()
         return float(quantity.Value if plain else quantity.getValueAs(self.unit))
 
     def _wrong(self, text: str, remedy: str) -> InputError:
-        return InputError("BAD_VALUE", self.name, f"{plain_blanks(text)!r} is not understood; {remedy}")
+        return InputError("BAD_VALUE", self.name, "{!r} is not understood; {}", plain_blanks(text), remedy)
 
     # ---- the field changes its own text when it is left
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text, Word
 from ...core.kinematics.cell import Cell
 from ...core.kinematics.machines import machine as machines
 from ...core.kinematics.machines.machine import UNKNOWN_REMARK, Machine
@@ -32,11 +32,12 @@ def check_controller(machine: Machine, post: str) -> None:
     if machine.posts is None or post in machine.posts:
         return
     if machine.controller_remark == UNKNOWN_REMARK:
-        raise InputError("WRONG_CONTROLLER", "program.post", f"{machine.title} is a URDF, which does not tell what the "
-                         "controller shows; plan without a program, or make a machine file of it with New Machine…")
-    known = f"use one of {', '.join(machine.posts)}" if machine.posts else (
+        raise InputError("WRONG_CONTROLLER", "program.post", "{} is a URDF, which does not tell what the controller shows; "
+                         "plan without a program, or make a machine file of it with New Machine…", machine.title)
+    known = Text("use one of {}", ", ".join(machine.posts)) if machine.posts else (
         "there is no post for it yet: plan without a program; waypoints.csv has its axes")
-    raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
+    raise InputError("WRONG_CONTROLLER", "program.post", "the controller of {} does not read {}; {}", machine.title, post,
+                     Word(known))
 
 
 def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
@@ -47,9 +48,9 @@ def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
     points, layer, index = max(((len(bead), layer, index) for layer, index, bead in toolpath), default=(0, 0, 0))
     if points > max_points:
         raise InputError(
-            "BEAD_TOO_LONG", "program.max_points", f"layer {layer} bead {index} has {points} points, and loading another "
-            f"part within a bead would stop the robot while it deposits; use at least {points + APPROACH_POINTS}, or a "
-            "larger strategy.chord_error",
+            "BEAD_TOO_LONG", "program.max_points", "layer {} bead {} has {} points, and loading another part within a bead "
+            "would stop the robot while it deposits; use at least {}, or a larger strategy.chord_error", layer, index,
+            points, points + APPROACH_POINTS,
         )
 
 
@@ -60,16 +61,17 @@ def check_external(cell: Cell, post: str) -> None:
         return
     external = "a positioner" if cell.external.slides is None else (
         "a track and a positioner together" if cell.external.turning else "a track")
-    known = f"use one of {', '.join(written)}" if written else "plan without a program; waypoints.csv has all axes"
-    raise InputError("UNSUPPORTED_AXES", "program.post", f"programs of {post} are not written with {external}; {known}")
+    known = Text("use one of {}", ", ".join(written)) if written else "plan without a program; waypoints.csv has all axes"
+    raise InputError("UNSUPPORTED_AXES", "program.post", "programs of {} are not written with {}; {}", post, Word(external),
+                     Word(known))
 
 
 def check_wrist(machine: Machine, motion: str, post: str) -> None:
     """InputError NOT_FOR_WRIST: Cartesian programs of robots without a spherical wrist by posts that name configurations."""
     if motion == "cartesian" and machine.arm is not None and machine.opw is None and controller(post).configurations:
         raise InputError(
-            "NOT_FOR_WRIST", "program.motion", f"{machine.title} has no spherical wrist, and what its controller calls the "
-            "configurations of cartesian positions is not known; use joint",
+            "NOT_FOR_WRIST", "program.motion", "{} has no spherical wrist, and what its controller calls the configurations "
+            "of cartesian positions is not known; use joint", machine.title,
         )
 
 
@@ -77,14 +79,14 @@ def check_pulses(machine: Machine, motion: str, post: str) -> None:
     """InputError NO_PULSES, NO_SPEED_UNIT where a post needs what only the controller of that very robot tells."""
     if controller(post).pulses and not machine.pulses_per_degree:
         raise InputError(
-            "NO_PULSES", "cell.machine", f"how many pulses {machine.title} counts to a degree of each axis is not known, "
-            "and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the "
-            "pendant tells (a position in pulses over the same in degrees), or plan without a program",
+            "NO_PULSES", "cell.machine", "how many pulses {} counts to a degree of each axis is not known, and no two "
+            "models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant "
+            "tells (a position in pulses over the same in degrees), or plan without a program", machine.title,
         )
     if controller(post).pulses and motion == "cartesian" and not machine.speed_unit:
         raise InputError(
-            "NO_SPEED_UNIT", "cell.machine", f"the unit of V is a setting of the controller of {machine.title}, and another "
-            "one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`",
+            "NO_SPEED_UNIT", "cell.machine", "the unit of V is a setting of the controller of {}, and another one is "
+            "another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`", machine.title,
         )
 
 

@@ -52,7 +52,7 @@ def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = Non
     carried = cell if cell is not None else path.Cell
     for one, what in ((toolpath, "toolpath"), (carried, "cell")):
         if one is None or not one.Key:
-            raise InputError("NO_INPUT", path.Label, f"its {what} is missing; choose one and recompute")
+            raise InputError("NO_INPUT", path.Label, "its {} is missing; choose one and recompute", what)
     read, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
     own = stage.parameters(path, JointParameters) if stage.kind == "joint path" else JointParameters()
@@ -68,8 +68,8 @@ def given(parameters: PlaceParameters | None, values: dict[str, Any]) -> PlacePa
     known = {row.key: row for row in rows.rows(PlaceParameters)}
     unknown = sorted(set(values) - set(known))
     if unknown:
-        raise InputError("UNKNOWN_PARAMETER", "place", f"{', '.join(unknown)} is not known; use one of "
-                         f"{', '.join(sorted(known))}")
+        raise InputError("UNKNOWN_PARAMETER", "place", "{} is not known; use one of {}", ", ".join(unknown),
+                         ", ".join(sorted(known)))
     inner = rows.flat(parameters or PlaceParameters())
     inner.update({name: known[name].inner(value, f"place.{name}") for name, value in values.items()})
     found: PlaceParameters = rows.build(PlaceParameters, inner)

@@ -14,7 +14,7 @@ from ...brep.shapes.tessellate import triangles_of
 from ...core.geometry.fitted import PredictedShape
 from ...core.inspection import figures
 from ...core.inspection.inspect import PREDICTED, Inspected
-from ...core.issues import WARNING, InputError, Issue
+from ...core.issues import WARNING, InputError, Issue, Text
 from ...core.parameters.process import ProcessParameters
 from ...core.process.shape import compare
 from ...core.process.shape.compare import Compared
@@ -83,7 +83,7 @@ def predicted(toolpath: CoreToolpath, targets: Sequence[Target], report: Report)
     if not asked:
         raise InputError(NOTHING, "toolpath", "curves have no faces that a deposit could be held against; leave out "
                          "process.machining_allowance")
-    deposit = predicted_deposit(parts, lambda share, text: report(0.8 * share, f"predicting the deposit, {text}"))
+    deposit = predicted_deposit(parts, lambda share, text: report(0.8 * share, Text("predicting the deposit, {}", text)))
     report(0.8, "comparing the predicted deposit with the part")
     found = compare.compared(deposit, uncovered(asked))
     if not len(found.faces):
@@ -131,7 +131,7 @@ def _of_source(source: Taken, names: Sequence[str]) -> Faces:
     known = {f"Face{number}": face for number, face in enumerate(shape.Faces, start=1)}
     chosen: list[Any] = [known[name] for name in dict.fromkeys(names) if name in known]
     if not chosen and not known:
-        raise InputError(NOTHING, "toolpath", f"{source.label} has no faces that a deposit could be held against")
+        raise InputError(NOTHING, "toolpath", "{} has no faces that a deposit could be held against", source.label)
     side = OUTSIDE if shape.Solids else BOTH
     return together([faces(*triangles_of(face, DEFLECTION), side) for face in chosen or known.values()])
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 from ...core.parameters import field as f
 from .rows import Row
 
@@ -25,7 +25,7 @@ def evaluated(value: str, obj: Any, where: str) -> Any:
     except Exception as error:  # FreeCAD's own errors share no base
         raise _wrong(value, where, error) from None
     if isinstance(found, bool) or not (isinstance(found, (int, float)) or hasattr(found, "Unit")):
-        raise InputError("BAD_EXPRESSION", where, f"{value!r} gives {found!r}, which is not a number")
+        raise InputError("BAD_EXPRESSION", where, "{!r} gives {!r}, which is not a number", value, found)
     return found
 
 
@@ -54,7 +54,8 @@ def broken(obj: Any) -> str:
         try:
             obj.evalExpression(text)
         except Exception:  # FreeCAD's own errors share no base
-            return f"{name} follows the expression {text}, which gives nothing any more; give {name} a value or another one"
+            return Text("{} follows the expression {}, which gives nothing any more; give {} a value or another one", name,
+                        text, name)
     return ""
 
 
@@ -66,5 +67,5 @@ def _wrong(value: str, where: str, error: Exception) -> InputError:
     cause = error.args[0] if error.args else error
     reason = str(cause.get("sErrMsg", "") if isinstance(cause, dict) else cause).strip().rstrip(".")
     return InputError(
-        "BAD_EXPRESSION", where, f"{value!r} is not understood ({reason}); write it as in {MARK}Spreadsheet.height / 2"
+        "BAD_EXPRESSION", where, "{!r} is not understood ({}); write it as in {}Spreadsheet.height / 2", value, reason, MARK
     )

@@ -115,7 +115,7 @@ def _set(obj: Any, row: Row, value: Any) -> None:
         if row.form == f.ANGLE and abs(row.inner(getattr(obj, row.name), row.name) - value) > 1e-9:
             # FreeCAD keeps angles within a turn and says nothing
             shown = f.outer_text(row.spec, value)
-            raise InputError("BAD_VALUE", f"{obj.Label}.{row.name}", f"{shown} is out of range; give -360 to 360 deg")
+            raise InputError("BAD_VALUE", f"{obj.Label}.{row.name}", "{} is out of range; give -360 to 360 deg", shown)
 
 
 def _retype(obj: Any, row: Row) -> None:

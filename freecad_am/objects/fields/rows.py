@@ -15,7 +15,7 @@ from typing import Any
 
 import FreeCAD as App
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text, Word
 from ...core.parameters import field as f
 from ...core.parameters import pendant
 
@@ -212,7 +212,7 @@ def split(text: str, where: str) -> list[str]:
     comma may begin decimals ('10,5 20,5' is two numbers, or four), and for digits that are grouped by no-break blanks."""
     if _TWO_WAYS.search(text.strip()):
         remedy = "write decimals with a point and one kind of separator, as in 10.5 20.5"
-        raise InputError("BAD_VALUE", where, f"{plain_blanks(text)!r} may be read in two ways; {remedy}")
+        raise InputError("BAD_VALUE", where, "{!r} may be read in two ways; {}", plain_blanks(text), Word(remedy))
     return text.replace(",", " ").split()
 
 
@@ -223,27 +223,29 @@ def plain_blanks(text: str) -> str:
 
 def quantity(text: str) -> Any:
     """FreeCAD's quantity of a text. ValueError for what is none, also where FreeCAD would end at a sign it does not know
-    and leave out the rest, unit and all: of '1’234 mm' it takes the 1."""
+    and leave out the rest, unit and all: of '1’234 mm' it takes the 1; or where a '[' begins a comment to it, which
+    all later quantities would be within."""
     plain = plain_blanks(text).replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
-    if any(not sign.isascii() and sign not in _OTHER_SIGNS for sign in plain):
+    if "[" in plain or any(not sign.isascii() and sign not in _OTHER_SIGNS for sign in plain):
         raise ValueError(text)
     return App.Units.Quantity(plain)
 
 
 def _number(spec: f.Spec, value: Any, where: str) -> Any:
-    also = "".join(f" or {word}" for word in spec.words)
+    also = Text.joined(" or ", ("", *spec.words))
     if spec.kind not in _UNITS:
         try:
             number = float(value)
         except (TypeError, ValueError):
-            raise InputError("BAD_VALUE", where, f"{value!r} is not a number{also}") from None
+            raise InputError("BAD_VALUE", where, "{!r} is not a number{}", value, also) from None
         if spec.kind == f.COUNT:
             return int(number) if number.is_integer() else number
         return number * f.TO_INNER.get(spec.kind, 1.0)
     unit, example = _UNITS[spec.kind]
-    found = _quantity(value, where, example + also)
+    wanted = Text.joined(" or ", (example, *spec.words))
+    found = _quantity(value, where, wanted)
     if found.Unit != unit and found.Unit != App.Units.Unit():
-        raise InputError("BAD_UNIT", where, f"{value!s} has another dimension; give {example}{also}")
+        raise InputError("BAD_UNIT", where, "{!s} has another dimension; give {}", value, wanted)
     return math.radians(found.Value) if spec.kind in (f.ANGLE, f.TURN_RATE) else float(found.Value)
 
 
@@ -258,7 +260,7 @@ def _quantity(value: Any, where: str, example: str) -> Any:
         return quantity(value) if isinstance(value, str) else App.Units.Quantity(value)
     except (ValueError, TypeError, ArithmeticError, OSError):
         plain = plain_blanks(value) if isinstance(value, str) else value
-        raise InputError("BAD_VALUE", where, f"{plain!r} is not understood; give {example}") from None
+        raise InputError("BAD_VALUE", where, "{!r} is not understood; give {}", plain, example) from None
 
 
 def _pose(value: Any, where: str) -> tuple[float, ...]:
@@ -274,6 +276,6 @@ def _pose(value: Any, where: str) -> tuple[float, ...]:
     except (TypeError, ValueError):
         floats = []
     if len(floats) not in (3, 6):
-        raise InputError("BAD_VALUE", where, f"{value!r} is not a pose; give x y z in mm and RX RY RZ in deg")
+        raise InputError("BAD_VALUE", where, "{!r} is not a pose; give x y z in mm and RX RY RZ in deg", value)
     floats += [0.0] * (6 - len(floats))
     return (*floats[:3], *(math.radians(angle) for angle in floats[3:]))

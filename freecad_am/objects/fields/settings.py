@@ -21,7 +21,7 @@ def given(obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, 
     unknown = sorted(set(values) - set(known))
     if unknown:
         raise InputError(
-            "UNKNOWN_PARAMETER", obj.Label, f"{', '.join(unknown)} is not known; use one of {', '.join(sorted(known))}"
+            "UNKNOWN_PARAMETER", obj.Label, "{} is not known; use one of {}", ", ".join(unknown), ", ".join(sorted(known))
         )
     whole = {type(entry): entry for entry in dataclasses if entry is not None}
     checked = []

@@ -6,7 +6,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 from ...core.strategies.families import KINDS
 
 # class paths are a file format
@@ -23,7 +23,7 @@ _PROXIES = {
 def proxy_of(kind: str) -> type[Any]:
     """The class of the features of a family. InputError BAD_VALUE for a kind that there is not."""
     if kind not in KINDS:
-        raise InputError("BAD_VALUE", "kind", f"{kind!r} is none of {', '.join(KINDS)}")
+        raise InputError("BAD_VALUE", "kind", "{!r} is none of {}", kind, Text.joined(", ", KINDS))
     module, name = _PROXIES[kind]
     found: type[Any] = getattr(importlib.import_module(f"freecad_am.objects.{module}"), name)
     return found

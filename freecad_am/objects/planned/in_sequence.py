@@ -153,8 +153,8 @@ def _refuse_overlaps(members: Sequence[Member], names: Sequence[tuple[str, ...]]
             smaller = min((volume(shape) for pair in pairs for shape in pair if shape.Solids), default=0.0)
             if shared > OVERLAP * smaller > 0.0:
                 raise InputError(
-                    "OVERLAP", one.label, f"{shared / MM3:.4g} cm3 of it are within {other.label} and would be deposited "
-                    "twice; cut one from the other"
+                    "OVERLAP", one.label, "{:.4g} cm3 of it are within {} and would be deposited twice; cut one from the "
+                    "other", shared / MM3, other.label
                 )
 
 

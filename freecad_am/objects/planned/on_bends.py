@@ -8,6 +8,7 @@ from typing import Any
 
 from ...brep.kernel import limits as kernel
 from ...brep.lies_on import carrier, lies_on_bend
+from ...core.issues import Text
 from ..shapes.bodies import Taken
 
 
@@ -22,5 +23,5 @@ def carried(shape: Any) -> str:
     """What is told of several solids where most stand on the bend of another one; '' of others."""
     with contextlib.suppress(*kernel.FAULTS):
         if name := carrier(shape.Solids):
-            return f" (others stand on the bend of {name}: as the substrate it gives them layers of its shape)"
+            return Text(" (others stand on the bend of {}: as the substrate it gives them layers of its shape)", name)
     return ""

@@ -24,7 +24,7 @@ from ...core.geometry.mesh.manifold import holes, separated
 from ...core.geometry.mesh.repair import WELDS, connected_triangles
 from ...core.geometry.mesh.uncrossed import uncrossed
 from ...core.geometry.obstacles import Body
-from ...core.issues import InputError
+from ...core.issues import InputError, Text, Word
 from ...core.layers.curved.field import STANDING
 from ...core.layers.planes.stacking import best, facets, judged
 from ...core.parameters.filled import GEODESIC, PLANES, DevelopableParameters, SolidParameters
@@ -86,60 +86,60 @@ def proposed(
     planes = _Planes(direction, layer_height, substrate)
     shape = part.shape
     if shape is not None and (not shape.Faces or any(name.startswith("Edge") for name in names)):
-        what = f"edges of {part.label} are chosen" if names else f"{part.label} has edges and no faces"
-        return Proposal("curves", "", f"{what}, which are laid as beads")
+        what = Text("edges of {} are chosen", part.label) if names else Text("{} has edges and no faces", part.label)
+        return Proposal("curves", "", Text("{}, which are laid as beads", Word(what)))
     if not names and substrate is not None and stands_on_hub(part, substrate, base):
-        return Proposal("developable", "", f"{part.label} stands on a cylinder or cone of {substrate.label}")
+        return Proposal("developable", "", Text("{} stands on a cylinder or cone of {}", part.label, substrate.label))
     if shape is None:
         return _of_mesh(part, substrate, edges, tilts, planes)
     if edges:
-        return Proposal("surface", "", f"{part.label} names the edges that it starts from")
+        return Proposal("surface", "", Text("{} names the edges that it starts from", part.label))
     if substrate is not None and (names or not shape.Solids):
-        return Proposal("surface", "", f"{part.label} is a thin wall that grows on {substrate.label}")
+        return Proposal("surface", "", Text("{} is a thin wall that grows on {}", part.label, substrate.label))
     if len(shape.Solids) > 1 and not names:
         if _own_hub(part):
-            why = f"most solids of {part.label} stand on a cylinder or cone of another of them"
+            why = Text("most solids of {} stand on a cylinder or cone of another of them", part.label)
             return Proposal("developable", "", why)
-        return _solid(part, f"{part.label} holds {len(shape.Solids)} solids{carried(shape)}", tilts, planes)
+        return _solid(part, Text("{} holds {} solids{}", part.label, len(shape.Solids), carried(shape)), tilts, planes)
     left = ""
     wall = _turned(part, names) if substrate is None else None
     if wall is not None:
         if names:
-            return Proposal("revolution", "", f"the faces chosen of {part.label} turn about one axis")
+            return Proposal("revolution", "", Text("the faces chosen of {} turn about one axis", part.label))
         if not shape.Solids:
-            return Proposal("revolution", "", f"{part.label} is a skin that turns about one axis")
+            return Proposal("revolution", "", Text("{} is a skin that turns about one axis", part.label))
         deep = part_depths.of_revolved(shape, wall, part.label)
         balance = None if deep is None else of_wall(deep, width)
         out = 0.0 if balance is None else balance.left_out or 0.0
         if balance is None or out <= NEGLIGIBLE * (balance.part or 0.0):
-            why = f"{part.label} turns about one axis, and its wall is one bead of {width:.4g} mm"
+            why = Text("{} turns about one axis, and its wall is one bead of {:.4g} mm", part.label, width)
             return Proposal("revolution", "", why)
-        left = (
-            f"; it turns about one axis, but a wall of one bead would leave out {out / MM3:.3g} of its "
-            f"{(balance.part or 0.0) / MM3:.3g} cm3"
-        )
+        left = Text("; it turns about one axis, but a wall of one bead would leave out {:.3g} of its {:.3g} cm3", out / MM3,
+                    (balance.part or 0.0) / MM3)
     if names and shape.Solids and not _thin(part, width, names):
         return Proposal(
-            "cladding", "", f"faces of {part.label} are chosen, which do not turn about one axis, and it is thicker there "
-            f"than a bead of {width:.4g} mm, so they are covered",
+            "cladding", "", Text("faces of {} are chosen, which do not turn about one axis, and it is thicker there than a "
+                "bead of {:.4g} mm, so they are covered", part.label, width),
         )
     if names and stand([shape.getElement(name) for name in names]):
         return Proposal(
-            "surface", "", f"faces of {part.label} are chosen, which do not turn about one axis, so they are a wall that "
-            "starts on the platform where nothing carries it", stands=True,
+            "surface", "", Text("faces of {} are chosen, which do not turn about one axis, so they are a wall that starts "
+                "on the platform where nothing carries it", part.label), stands=True,
         )
     if names:
         return Proposal(
-            "surface", "", f"faces of {part.label} are chosen, which do not turn about one axis, so they are a wall; it "
-            "needs a substrate, or edges to start from",
+            "surface", "", Text("faces of {} are chosen, which do not turn about one axis, so they are a wall; it needs a "
+                "substrate, or edges to start from", part.label),
         )
     if not shape.Solids:
         return _of_skin(part)
     if clicked and not left and substrate is None and _own_hub(part, clicked):
-        return Proposal("developable", "", f"{', '.join(clicked)} of {part.label} is chosen, which the rest of it stands on")
+        return Proposal("developable", "", Text("{} of {} is chosen, which the rest of it stands on", ", ".join(clicked),
+                                                part.label))
     if substrate is not None and _thin(part, width):
-        return Proposal("surface", "", f"{part.label} is a thin shell, one bead of {width:.4g} mm, on {substrate.label}")
-    return _solid(part, f"{part.label} is a solid{left}", tilts, planes)
+        return Proposal("surface", "", Text("{} is a thin shell, one bead of {:.4g} mm, on {}", part.label, width,
+                                            substrate.label))
+    return _solid(part, Text("{} is a solid{}", part.label, Word(left)), tilts, planes)
 
 
 def _of_mesh(part: Taken, substrate: Taken | None, edges: bool, tilts: bool, planes: _Planes) -> Proposal:
@@ -150,25 +150,25 @@ def _of_mesh(part: Taken, substrate: Taken | None, edges: bool, tilts: bool, pla
     open_ = holes(separated(found.vertices, found.triangles))
     opening = max((hole.size for hole in open_), default=0.0)
     if opening <= OPEN * float(np.linalg.norm(np.ptp(body.vertices, axis=0))):
-        return _solid(part, f"{part.label} is a mesh, which is filled", tilts, planes)
+        return _solid(part, Text("{} is a mesh, which is filled", part.label), tilts, planes)
     crossed = crossings(found.vertices, found.triangles, WELDS[-1])
     sheet = found.vertices, found.triangles
     if len(crossed.pairs) and not edges and uncrossed(*sheet, crossed.pairs, SurfaceParameters.mend, WELDS[-1]) is None:
         at = place(crossed.places[crossed.length.argmax()])
         size = at_least(opening)
-        why = (
-            f"{part.label} is an open mesh that cuts itself at {len(crossed.pairs)} pairs of its triangles, as at {at}, "
-            f"so it is not a wall of one bead: it is filled, with its {len(open_)} holes of up to {size:.4g} mm closed"
+        why = Text(
+            "{} is an open mesh that cuts itself at {} pairs of its triangles, as at {}, so it is not a wall of one bead: "
+            "it is filled, with its {} holes of up to {:.4g} mm closed", part.label, len(crossed.pairs), at, len(open_), size
         )
         return replace(_solid(part, why, tilts, planes), mend=min(size, WIDEST))
     lies = _lying(found.vertices[found.triangles])
     if substrate is None and not edges and lies >= LYING:
         return Proposal(
-            "cladding", "", f"{part.label} is an open mesh that lies rather than stands, {lies:.0%} of it at less than 45 "
-            "deg to the platform, so it is a face that is covered",
+            "cladding", "", Text("{} is an open mesh that lies rather than stands, {:.0%} of it at less than 45 deg to the "
+                "platform, so it is a face that is covered", part.label, lies),
         )
-    where = "starts on the platform" if substrate is None else f"grows on {substrate.label}"
-    return Proposal("surface", "", f"{part.label} is an open mesh, so it is a thin wall that {where}")
+    where = "starts on the platform" if substrate is None else Text("grows on {}", substrate.label)
+    return Proposal("surface", "", Text("{} is an open mesh, so it is a thin wall that {}", part.label, Word(where)))
 
 
 def _of_skin(part: Taken) -> Proposal:
@@ -177,17 +177,17 @@ def _of_skin(part: Taken) -> Proposal:
     lies = _lying(body.vertices[body.triangles])
     if lies >= LYING:
         return Proposal(
-            "cladding", "", f"{part.label} is an open skin that lies rather than stands, {lies:.0%} of it at less than 45 "
-            "deg to the platform, so it is a face that is covered",
+            "cladding", "", Text("{} is an open skin that lies rather than stands, {:.0%} of it at less than 45 deg to the "
+                "platform, so it is a face that is covered", part.label, lies),
         )
     if stand(part.shape.Faces):
         return Proposal(
-            "surface", "", f"{part.label} is an open skin and not of revolution, so it is a thin wall, which starts on the "
-            "platform where nothing carries it", stands=True,
+            "surface", "", Text("{} is an open skin and not of revolution, so it is a thin wall, which starts on the "
+                "platform where nothing carries it", part.label), stands=True,
         )
     return Proposal(
-        "surface", "", f"{part.label} is an open skin and not of revolution, and nothing else serves it; it needs a "
-        "substrate, or edges to start from, and what does not grow from there is left out"
+        "surface", "", Text("{} is an open skin and not of revolution, and nothing else serves it; it needs a substrate, or "
+            "edges to start from, and what does not grow from there is left out", part.label)
     )
 
 
@@ -201,25 +201,28 @@ def _lying(corners: Array) -> float:
 def _solid(part: Taken, reason: str, tilts: bool, planes: _Planes) -> Proposal:
     """In planes, or in layers without support where the machine can tilt and much hangs over, or it stands on a bend."""
     if tilts and planes.ground is not None and on_bend(part, planes.ground):
-        return Proposal("solid", GEODESIC, f"{reason}, and layers have the bend of {planes.ground.label} where it stands")
+        return Proposal("solid", GEODESIC, Text("{}, and layers have the bend of {} where it stands", reason,
+                                                planes.ground.label))
     bodies = [part.body()]
     least = best(bodies, SolidParameters(max_overhang=STEEP, layer_height=planes.apart))[0].way
     way = least if planes.way is None else np.array(planes.way) / np.linalg.norm(planes.way)
     over = _overhang(bodies[0], way)
-    along = "" if np.array_equal(way, UP) else f", stacked along {_direction_text(way)}"
+    along = "" if np.array_equal(way, UP) else Text(", stacked along {}", _direction_text(way))
     if over < ROUNDED_OFF:
-        return Proposal("solid", PLANES, f"{reason}, and less than 1% of its surface hangs over by more than 45 deg{along}")
-    why = f"{reason}, and {over:.0%} of its surface hangs over by more than 45 deg{along}"
+        return Proposal("solid", PLANES, Text("{}, and less than 1% of its surface hangs over by more than 45 deg{}", reason,
+                                              Word(along)))
+    why = Text("{}, and {:.0%} of its surface hangs over by more than 45 deg{}", reason, over, Word(along))
     if over <= OVER:
         return Proposal("solid", PLANES, why)
     other = _overhang(bodies[0], least)
-    hint = f"; stacked along {_direction_text(least)} it would be {other:.0%}" if other <= OVER else ""
+    hint = Text("; stacked along {} it would be {:.0%}", _direction_text(least), other) if other <= OVER else ""
     if not _stands(bodies[0], way, planes.apart):
-        return Proposal("solid", PLANES, f"{why}; curved layers need a flat face that it stands on, which it has not{hint}")
+        return Proposal("solid", PLANES, Text("{}; curved layers need a flat face that it stands on, which it has not{}",
+                                              Word(why), Word(hint)))
     if tilts:
-        return Proposal("solid", GEODESIC, f"{why}, which layers along the way through it carry{hint}")
-    what = f"a machine that tilts could lay layers: {GEODESIC}, which need no support"
-    return Proposal("solid", PLANES, f"{why}; {what}{hint}")
+        return Proposal("solid", GEODESIC, Text("{}, which layers along the way through it carry{}", Word(why), Word(hint)))
+    what = Text("a machine that tilts could lay layers: {}, which need no support", GEODESIC)
+    return Proposal("solid", PLANES, Text("{}; {}{}", Word(why), Word(what), Word(hint)))
 
 
 def _overhang(body: Body, way: Array) -> float:

@@ -32,14 +32,14 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
     where = f"{obj.Label}.Scan"
     if stage_of(scan.Planned) is not None:
         raise InputError(
-            "BAD_INPUT", where, f"{scan.Label} compares with {scan.Planned.Label}; choose an inspection of the part that is "
-            "deposited on"
+            "BAD_INPUT", where, "{} compares with {}; choose an inspection of the part that is deposited on", scan.Label,
+            scan.Planned.Label
         )
     how = scan.Proxy.parameters(scan, InspectionParameters).fit
     if parameters.after_layer is not None and how != NONE:
         raise InputError(
-            "BAD_VALUE", f"{scan.Label}.Fit", f"{how}: how far a part has grown is told by a scan in the part's own "
-            "coordinates alone; give none"
+            "BAD_VALUE", f"{scan.Label}.Fit", "{}: how far a part has grown is told by a scan in the part's own coordinates "
+            "alone; give none", how
         )
     inspected = scan.Proxy.value(scan)
     ground = getattr(obj.Feature, "Substrate", None)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING
 
-from ...core.issues import ERROR, NOTE, AmError, Issue, has_errors
+from ...core.issues import ERROR, NOTE, AmError, Issue, Text, has_errors
 from ...core.toolpath import Toolpath
 from ..work import progress
 
@@ -24,11 +24,12 @@ def with_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
         return toolpath
     from ...core.planning.remedies import NO_REMEDY, REMEDY
 
-    progress.report(1.0, f"looking for what would clear the nozzle: {fixed.remedy}")
+    progress.report(1.0, Text("looking for what would clear the nozzle: {}", fixed.remedy))
     try:
         clear = not has_errors(list(fixed.make().issues))
     except AmError:  # what cannot be asked for is not a remedy
         clear = False
-    note = Issue(NOTE, REMEDY, f"with {fixed.remedy} the nozzle is clear; the toolpath was planned so, joints were not") if (
-        clear) else Issue(NOTE, NO_REMEDY, f"the nozzle is not clear with {fixed.remedy} either, which was tried")
+    note = Issue(NOTE, REMEDY, Text("with {} the nozzle is clear; the toolpath was planned so, joints were not",
+                                    fixed.remedy)) if (
+        clear) else Issue(NOTE, NO_REMEDY, Text("the nozzle is not clear with {} either, which was tried", fixed.remedy))
     return dataclasses.replace(toolpath, issues=(note, *toolpath.issues))

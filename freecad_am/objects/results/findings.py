@@ -7,17 +7,25 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from ...core.issues import ERROR, WARNING, Issue
+from ...core.issues import ERROR, WARNING, Issue, Text
 
 
 def issues_of(obj: Any) -> tuple[Issue, ...]:
     """The findings stored with the object."""
-    return tuple(Issue(**entry) for entry in json.loads(obj.Issues or "[]"))
+    known = _texts(obj)
+    entries = json.loads(obj.Issues or "[]")
+    return tuple(Issue(**{**entry, "message": known.get(entry["message"], entry["message"])}) for entry in entries)
 
 
-def as_text(issues: Sequence[Issue]) -> str:
-    """Findings as an object stores them."""
-    return json.dumps([issue.as_dict() for issue in issues])
+def message_of(obj: Any) -> str:
+    """What the object says, with how it was made: the window tells it in its language."""
+    return _texts(obj).get(obj.Message, str(obj.Message))
+
+
+def store_issues(obj: Any, issues: Sequence[Issue]) -> None:
+    """Store findings with the object."""
+    obj.Issues = json.dumps([issue.as_dict() for issue in issues])
+    remember(obj, *(issue.message for issue in issues))
 
 
 def first_message(issues: Sequence[Issue]) -> str:
@@ -25,7 +33,7 @@ def first_message(issues: Sequence[Issue]) -> str:
     for level in (ERROR, WARNING):
         for issue in issues:
             if issue.level == level:
-                return f"{issue.where}: {issue.message}" if issue.where else issue.message
+                return Text("{}: {}", issue.where, issue.message) if issue.where else issue.message
     return ""
 
 
@@ -33,5 +41,31 @@ def say(obj: Any, status: str, message: str) -> None:
     """Set status and message, each only where it is another: views and panels follow every change."""
     if obj.Message != message:
         obj.Message = message
+    remember(obj, message)
     if obj.Status != status:
         obj.Status = status
+
+
+def remember(obj: Any, *messages: str) -> None:
+    """Keep how these messages were made, of those that the object tells now, beside what they say in English. One from a
+    document that had no such property is shown in English until its stage is computed again."""
+    said = {obj.Message, *(entry["message"] for entry in json.loads(obj.Issues or "[]"))}
+    known = {**_texts(obj), **{str(one): one for one in messages if isinstance(one, Text) and one.values}}
+    kept = json.dumps([_parts(text) for sentence, text in known.items() if sentence in said])
+    if kept != (obj.Texts or "[]"):
+        obj.Texts = kept
+
+
+def _texts(obj: Any) -> dict[str, Text]:
+    """Texts that the object tells, by what they say. One of an older document gets the property once it is restored."""
+    found = [_text(parts) for parts in json.loads(getattr(obj, "Texts", "") or "[]")]
+    return {str(text): text for text in found}
+
+
+def _parts(text: str) -> Any:
+    """A text for JSON: its template and values; one without is itself."""
+    return [text.template, *map(_parts, text.values)] if isinstance(text, Text) and text.values else str(text)
+
+
+def _text(parts: Any) -> Any:
+    return Text(parts[0], *map(_text, parts[1:])) if isinstance(parts, list) else parts

@@ -85,7 +85,7 @@ def picked(
         return tuple(reader.value(_within(tree, place), not place) for place in places)
     except (KeyError, ValueError, TypeError, AttributeError, ImportError, IndexError, zlib.error,
             lzma.LZMAError) as error:
-        raise InputError("BAD_RESULT", where, f"the stored result cannot be read ({error}); recompute it") from None
+        raise InputError("BAD_RESULT", where, "the stored result cannot be read ({}); recompute it", error) from None
 
 
 def _within(tree: Any, place: Place) -> Any:

@@ -11,7 +11,7 @@ from xml.parsers import expat
 import FreeCAD as App
 
 from ...brep.files.apart import apart
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 
 CHUNK = 1 << 16
 LONGEST_HEAD = 1 << 20  # bytes of an XML before its first element
@@ -66,7 +66,8 @@ def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
         raise _Begun
 
     def refused(*_: object) -> None:
-        message = f"{name} in it has a document type, which no document of FreeCAD has, and is not read; save it again"
+        message = Text("{} in it has a document type, which no document of FreeCAD has, and is not read; save it again",
+                       name)
         raise InputError("BAD_FILE", where, message)
 
     parser.StartElementHandler, parser.StartDoctypeDeclHandler = begun, refused
@@ -79,4 +80,4 @@ def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
         except (_Begun, expat.ExpatError):  # what else is wrong with it FreeCAD tells
             return
     if size > LONGEST_HEAD:
-        raise InputError("BAD_FILE", where, f"{name} in it does not begin as XML; save it again")
+        raise InputError("BAD_FILE", where, "{} in it does not begin as XML; save it again", name)

@@ -66,7 +66,7 @@ def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
     if len(found) != 1:
         names = ", ".join(obj.Label for obj in known) or "none"
         asked = repr(object_name) if object_name else "one object that nothing else is made from"
-        raise InputError("NO_OBJECT", path, f"{asked} is not found among the objects with a shape ({names}); name one")
+        raise InputError("NO_OBJECT", path, "{} is not found among the objects with a shape ({}); name one", asked, names)
     if found[0] in shapes:
         return global_shape(found[0]).copy(), found[0].Label
     return placed_mesh(found[0].Mesh, outer_placement(found[0])), found[0].Label

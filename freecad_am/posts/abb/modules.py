@@ -12,7 +12,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 
 _DECLARED = re.compile(r"LOCAL (?:PERS (tooldata|wobjdata)|CONST (speeddata|zonedata)) (\w+):=(\[.*\]);$")
 _TRACK = re.compile(r"! eax_([a-f]) is the track in mm\b")
@@ -58,7 +58,7 @@ class Module:
         """The frames of a tool and a work object, of which the robot carries one."""
         if (tool, work_object) not in self._paired:
             if tool not in self.tools or work_object not in self.objects:
-                raise unreadable(where, f"{tool} is not a tool of the module, or {work_object} no work object")
+                raise unreadable(where, Text("{} is not a tool of the module, or {} no work object", tool, work_object))
             (on_robot, at), (held, seen) = self.tools[tool], self.objects[work_object]
             if on_robot == held:
                 raise unreadable(where, "the robot has to carry either the tool or the work object")
@@ -72,7 +72,7 @@ def modules(files: dict[str, bytes]) -> dict[str, Module]:
     for file in sorted(files):
         module = _module(file, files[file].decode("latin-1").replace("\r\n", "\n").split("\n"))
         if module.name in found or f"{module.name}.mod" != file.lower():
-            raise unreadable(file, f"its module is called {module.name}, and the file is not, or another one is too")
+            raise unreadable(file, Text("its module is called {}, and the file is not, or another one is too", module.name))
         found[module.name] = module
     return found
 
@@ -98,12 +98,12 @@ def _declare(module: Module, line: str, where: str) -> None:
     declared = _DECLARED.match(line)
     names = {*module.tools, *module.objects, *module.speeds, *module.zones}
     if declared is None or declared[3] in names:
-        raise unreadable(where, f"{line!r} is not understood, or declares a name again")
+        raise unreadable(where, Text("{!r} is not understood, or declares a name again", line))
     try:
         value = json.loads(declared[4].replace("TRUE", "true").replace("FALSE", "false"))
         _keep(module, declared[1] or declared[2], declared[3], value)
     except (ValueError, TypeError):
-        raise unreadable(where, f"the value of {declared[3]} is not understood") from None
+        raise unreadable(where, Text("the value of {} is not understood", declared[3])) from None
 
 
 def _keep(module: Module, kind: str, name: str, value: Any) -> None:
@@ -159,4 +159,4 @@ def turned(quaternion: Array) -> Array:
 
 def unreadable(where: str, why: str) -> InputError:
     """The error for what is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)

@@ -110,7 +110,7 @@ def _times(moves: Moves) -> Array:
     if moves.kind == DEPOSIT and seconds.min() < SHORTEST:
         raise InputError(
             "MOVE_TIME", place(moves),
-            f"a move takes {seconds.min():.3g} s, less than the {SHORTEST:g} s that can be written; use a larger chord error"
-            " or a lower speed",
+            "a move takes {:.3g} s, less than the {:g} s that can be written; use a larger chord error or a lower speed",
+            seconds.min(), SHORTEST,
         )
     return np.maximum(seconds, SHORTEST if moves.kind == DEPOSIT else SHORTEST_RAPID)

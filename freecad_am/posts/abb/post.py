@@ -125,7 +125,7 @@ def refuse_setup(
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
     if setup not in SETUPS:
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post abb cannot write {setup} ({motion} motion)")
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post abb cannot write {} ({} motion)", setup, motion)
 
 
 def _refuse(program: Program) -> None:

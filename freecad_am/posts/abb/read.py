@@ -16,6 +16,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
+from ...core.issues import Text
 from ...core.read_moves import Event, ReadMoves
 from .modules import Frames, Module, modules, turned, unreadable
 
@@ -93,7 +94,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     found = modules(files)
     first = [module for module in found.values() if module.routine.lower() == _ROUTINE]
     if len(first) != 1:
-        raise unreadable("program", f"{len(first)} modules have a routine main, expected one")
+        raise unreadable("program", Text("{} modules have a routine main, expected one", len(first)))
     run = _Run(found, slides=first[0].slides)
     _follow(first[0], run)
     if not run.time_or_speed:
@@ -124,7 +125,7 @@ def _follow(module: Module, run: _Run) -> None:
         elif line.startswith("!") or line == r"SingArea\Off;":
             continue
         elif run.moving:
-            raise unreadable(where, f"{line!r} is reached before the move before it ends")
+            raise unreadable(where, Text("{!r} is reached before the move before it ends", line))
         elif load := _LOAD.match(line):
             (_, called), (_, gone) = next(lines, (0, "")), next(lines, (0, ""))
             _load(module, load[1], called, gone, run, where)
@@ -136,9 +137,10 @@ def _load(module: Module, part: str, called: str, gone: str, run: _Run, where: s
     """A part is loaded, run and removed; the robot must not deposit meanwhile."""
     name, loaded = _RUN.match(called), run.found.get(part.lower())
     if name is None or gone != f'UnLoad "HOME:/{part}.mod";':
-        raise unreadable(where, f"{part} is loaded without being run and removed")
+        raise unreadable(where, Text("{} is loaded without being run and removed", part))
     if loaded is None or loaded.routine.lower() != name[1].lower() or loaded.name in run.followed or run.on:
-        raise unreadable(where, f"{part} is not there, has no routine {name[1]}, is run already, or loaded while depositing")
+        raise unreadable(where, Text("{} is not there, has no routine {}, is run already, or loaded while depositing", part,
+                                     name[1]))
     _follow(loaded, run)
 
 
@@ -158,10 +160,10 @@ def _other(line: str, run: _Run, where: str) -> None:
         run.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
     elif call := _CALL.match(line):
         if any(call[1].lower() in (module.routine.lower(), module.name) for module in run.found.values()):
-            raise unreadable(where, f"{call[1]} is a module or a routine of this program and is not loaded")
+            raise unreadable(where, Text("{} is a module or a routine of this program and is not loaded", call[1]))
         run.happens("call", call[1].upper())
     else:
-        raise unreadable(where, f"the instruction {line!r} is not understood")
+        raise unreadable(where, Text("the instruction {!r} is not understood", line))
 
 
 def _move(module: Module, move: re.Match[str], run: _Run, where: str) -> None:
@@ -170,9 +172,10 @@ def _move(module: Module, move: re.Match[str], run: _Run, where: str) -> None:
     if linear and not run.nearest:
         raise unreadable(where, "the configurations that its positions name are supervised, and are none")
     if speed not in module.speeds or (letter == "V") != linear:
-        raise unreadable(where, f"{speed} is not a speed of the module, or the move is told otherwise than by \\T or \\V")
+        raise unreadable(where, Text("{} is not a speed of the module, or the move is told otherwise than by \\T or \\V",
+                                     speed))
     if zone != "fine" and zone not in module.zones:
-        raise unreadable(where, f"{zone} is not a zone of the module")
+        raise unreadable(where, Text("{} is not a zone of the module", zone))
     frames = module.tool_and_object(tool, work_object, where)
     if run.frames is None:
         run.frames = frames

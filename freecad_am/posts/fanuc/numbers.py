@@ -35,7 +35,7 @@ def time_words(moves: Moves) -> list[str]:
     if seconds.max() > LONGEST_SEC:
         raise InputError(
             "MOVE_TIME", place(moves),
-            f"a move of {seconds.max():.0f} s is longer than {LONGEST_SEC:.0f} s; raise the speed or add points",
+            "a move of {:.0f} s is longer than {:.0f} s; raise the speed or add points", seconds.max(), LONGEST_SEC,
         )
     long = np.rint(seconds * 1000.0) > LONGEST_MSEC
     n = len(seconds)
@@ -43,8 +43,8 @@ def time_words(moves: Moves) -> list[str]:
     if ends[-1] < n and moves.kind != RAPID:
         raise InputError(
             "MOVE_TIME", place(moves),
-            f"{n} moves take {seconds.sum():.4g} s in all and cannot be shorter than 1 ms each; use a larger chord"
-            " error or a lower speed",
+            "{} moves take {:.4g} s in all and cannot be shorter than 1 ms each; use a larger chord error or a lower speed",
+            n, seconds.sum(),
         )
     # beyond the 1 ms that each move takes at least: what has accrued, never falling, never more than the whole
     spare = np.minimum(np.maximum.accumulate(np.maximum(ends - np.arange(1, n + 1), 0)), max(int(ends[-1]) - n, 0))
@@ -102,8 +102,8 @@ def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
         point, axis = np.argwhere(untold)[0]
         raise InputError(
             "TURN_NUMBER", place(moves),
-            f"axis {axis + 1} stands at {degrees[point, axis]:.1f} deg and its turn cannot be told reliably in a"
-            " Cartesian position; use `motion: joint`",
+            "axis {} stands at {:.1f} deg and its turn cannot be told reliably in a Cartesian position; use `motion: joint`",
+            axis + 1, degrees[point, axis],
         )
     wrists = np.where(moves.joints[:, 4] > 0.0, "F", "N").tolist()
     elbows = ["D" if elbow == "down" else "U" for _, elbow, _ in moves.configuration]

@@ -12,6 +12,7 @@ import numpy as np
 
 from freecad_am.core.types import Array, Index, Mask
 
+from ...core.issues import Text
 from .. import alike
 from .records import Records, records_of, unreadable
 
@@ -122,6 +123,6 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
         if row < count:
             statement = _LINE.match(lines[row])
             if statement is None:
-                raise unreadable(f"{file} line {number + row}", f"{lines[row].strip()!r} is not an instruction")
+                raise unreadable(f"{file} line {number + row}", Text("{!r} is not an instruction", lines[row].strip()))
             instructions.append(_Instruction(number + row, statement[1].strip()))
     return instructions, _Moves(*(getattr(moves, entry.name)[moving] for entry in dataclasses.fields(moves)))

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from ...core.controller import Controller
-from ...core.issues import InputError
+from ...core.issues import InputError, Text, Word
 from ...core.program import (
     FIRST_SHARE,
     LINEAR_MOVE,
@@ -127,7 +127,7 @@ def refuse_setup(
             " (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post fanuc cannot write {setup}")
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post fanuc cannot write {}", setup)
     if external:
         _refuse_coordinated(motion, external)
 
@@ -140,13 +140,15 @@ def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
            " are then seen from was not confirmed") if ROTARY in external else (
         "whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up,"
         " and was not confirmed")
-    raise InputError("COORDINATED_MOTION", "program.motion", f"{why}; use `motion: joint`, whose times hold the speed")
+    raise InputError("COORDINATED_MOTION", "program.motion", "{}; use `motion: joint`, whose times hold the speed",
+                     Word(why))
 
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     refuse_incomplete(program, "fanuc", AXES + len(program.external_kinds))
-    refuse_external(program, len(program.external_kinds), f"[2-{text.GROUPS}]", f"its motion group, 2 to {text.GROUPS}")
+    refuse_external(program, len(program.external_kinds), f"[2-{text.GROUPS}]",
+                    Text("its motion group, 2 to {}", text.GROUPS))
     if program.external_kinds:
         _refuse_coordinated(program.motion, program.external_kinds)
     refuse_named_track(program, "E1 of the robot's own motion group")
@@ -160,7 +162,7 @@ def _refuse(program: Program) -> None:
         if isinstance(block, WaitBelow) and block.below != round(block.below):
             raise InputError(
                 "ANALOGUE_INPUT", "process.cooling",
-                f"analogue inputs are whole numbers, not {block.below:.9g}; change below, gain or zero so that it is one",
+                "analogue inputs are whole numbers, not {:.9g}; change below, gain or zero so that it is one", block.below,
             )
     _refuse_continuous_steps(program)
 
@@ -176,9 +178,9 @@ def _refuse_continuous_steps(program: Program) -> None:
         run = program.moves[places[move + 1]]
         turn = math.degrees(joints[move + 1, axis] - joints[move, axis])
         raise InputError(
-            "ENDLESS_STEP", f"layer {run.layer} bead {run.bead}",
-            f"axis {axes[axis] + 1} turns {turn:.1f} deg in one move; an axis of continuous turn goes less than 180 deg"
-            " per move: add points, or limit the axis",
+            "ENDLESS_STEP", Text("layer {} bead {}", run.layer, run.bead),
+            "axis {} turns {:.1f} deg in one move; an axis of continuous turn goes less than 180 deg per move: add points, "
+            "or limit the axis", axes[axis] + 1, turn,
         )
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from freecad_am.core.types import Array, Index
 
+from ...core.issues import Text
 from ...core.read_moves import ARC, Configuration, Event, ReadMoves
 from .parsed import UNITS, Listing, listing_of, name_of
 from .records import unreadable
@@ -111,7 +112,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     called = {call.upper() for content in calling for call in _CALLS.findall(content)}
     main = [name for name in named if name not in called]
     if len(main) != 1:
-        raise unreadable("program", f"{len(main)} programs are called by none of the others, expected one")
+        raise unreadable("program", Text("{} programs are called by none of the others, expected one", len(main)))
     run = _Run()
     _follow(main[0], {name: (file, files[file]) for name, file in named.items()}, run, ())
     if not run.duration:
@@ -203,7 +204,7 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
         elif statement == "END" and position == len(listing.instructions) - 1:
             break
         elif not _HARMLESS.match(statement):
-            raise unreadable(f"{listing.file} line {number}", f"the instruction {statement!r} is not understood")
+            raise unreadable(f"{listing.file} line {number}", Text("the instruction {!r} is not understood", statement))
     run.take(listing)
 
 
@@ -218,7 +219,7 @@ def _switch(output: re.Match[str], where: str, run: _Run) -> None:
 def _frame(frame: re.Match[str], where: str, run: _Run) -> None:
     """A user or a tool frame is selected."""
     if run.frame.setdefault(frame[1], frame[2]) != frame[2]:
-        raise unreadable(where, f"a second U{frame[1]} is selected")
+        raise unreadable(where, Text("a second U{} is selected", frame[1]))
     run.recorded = ("", "")
 
 
@@ -263,12 +264,12 @@ def _refuse(listing: Listing, move: int, run: _Run) -> None:
     moves, records = listing.moves, listing.records
     where, unit, corner = _at(listing, int(moves.line[move])), int(moves.unit[move]), moves.corner[move]
     if moves.point[move] not in records.point:
-        raise unreadable(where, f"P[{moves.point[move]}] is not recorded")
+        raise unreadable(where, Text("P[{}] is not recorded", moves.point[move]))
     if run.cartesian != records.cartesian and run.duration:
         raise unreadable(where, "joint and Cartesian positions are mixed")
     if moves.straight[move] and not records.cartesian:
         raise unreadable(where, "a position is moved to in another way than it is recorded")
-    raise unreadable(where, f"{UNITS[unit]} or CNT{'' if np.isnan(corner) else int(corner)} is not understood here")
+    raise unreadable(where, Text("{} or CNT{} is not understood here", UNITS[unit], "" if np.isnan(corner) else int(corner)))
 
 
 def _select(listing: Listing, row: int, run: _Run, number: int) -> None:
@@ -278,7 +279,7 @@ def _select(listing: Listing, row: int, run: _Run, number: int) -> None:
         if frame not in ("F", run.frame.get(word)):
             raise unreadable(
                 _at(listing, number),
-                f"P[{listing.records.point[row]}] is recorded in another U{word} than the one selected",
+                Text("P[{}] is recorded in another U{} than the one selected", listing.records.point[row], word),
             )
     run.recorded = recorded
     run.numbers = float(run.frame.get("FRAME", "nan")), float(run.frame.get("TOOL", "nan"))

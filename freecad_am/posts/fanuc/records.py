@@ -11,7 +11,7 @@ import numpy as np
 
 from freecad_am.core.types import Array, Index
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 from .. import alike
 
 _RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
@@ -87,7 +87,7 @@ def _check_groups(file: str, lines: list[str], found: Records) -> None:
     """The groups that a program moves are those that it has positions of."""
     moved = _groups_of(lines)
     if len(found.point) and moved != {"1", found.group or "1"}:
-        raise unreadable(file, f"it moves groups {', '.join(sorted(moved))}, and has positions of others")
+        raise unreadable(file, Text("it moves groups {}, and has positions of others", ", ".join(sorted(moved))))
 
 
 def _with_more(file: str, text: str) -> Records:
@@ -99,7 +99,7 @@ def _with_more(file: str, text: str) -> Records:
         count = len(external)
         due = [(str(axis), "," if axis < count else "") for axis in range(1, count + 1)]
         if [(axis, comma) for axis, _, comma in external] != due or (group and (user, tool) != (other_user, other_tool)):
-            raise unreadable(file, f"the second group of P[{point}] is not understood")
+            raise unreadable(file, Text("the second group of P[{}] is not understood", point))
         texts = [*own, *([track] if track else []), *(value for _, value, _ in external)]
         points.append(int(point))
         values.append([float(value) for value in texts])
@@ -152,7 +152,7 @@ def _any_records(file: str, text: str, positions: int) -> Records:
         understood = {record[0] for record in found}
         bad = next((point for point in starts if point not in understood), starts[-1])
         number = next(n for n, line in enumerate(text.split("\n"), positions + 2) if re.match(rf"P\[{bad}\b", line))
-        raise unreadable(f"{file} line {number}", f"the record of P[{bad}] is not understood")
+        raise unreadable(f"{file} line {number}", Text("the record of P[{}] is not understood", bad))
     texts = " ".join(chain.from_iterable([record[-6:] for record in found]))
     decimals = min(map(len, _DECIMALS.findall(texts)), default=0)
     return Records(
@@ -163,4 +163,4 @@ def _any_records(file: str, text: str, positions: int) -> Records:
 
 def unreadable(where: str, why: str) -> InputError:
     """What is raised for a text that is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)

@@ -104,7 +104,7 @@ def refuse_setup(
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP, REMOTE_TCP or JOINT_DEPOSIT for what cannot be said to this controller."""
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post kuka cannot write {setup}")
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post kuka cannot write {}", setup)
     if setup == "part-on-robot":
         raise InputError(
             "REMOTE_TCP", "cell.setup",
@@ -132,7 +132,7 @@ def _refuse(program: Program) -> None:
         if number > last:
             raise InputError(
                 "UNSUPPORTED_FRAME", f"program.{what}",
-                f"the controller has numbers up to {last}, not {number}; use one of these",
+                "the controller has numbers up to {}, not {}; use one of these", last, number,
             )
     refuse_continuous(program)
     refuse_without_speeds(program, axes)
@@ -147,8 +147,8 @@ def _refuse_schedules(program: Program) -> None:
     own = range(program.schedule_output, program.schedule_output + text.BITS)
     if _scheduled(program) and program.deposit_output in own:
         raise InputError(
-            "SCHEDULE", "program.schedule.output", f"$OUT[{own[0]}] to $OUT[{own[-1]}] tell the schedule, and one of them "
-            "switches the deposit; use other ones, or another program.deposit_output",
+            "SCHEDULE", "program.schedule.output", "$OUT[{}] to $OUT[{}] tell the schedule, and one of them switches the "
+            "deposit; use other ones, or another program.deposit_output", own[0], own[-1],
         )
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 from ...core.read_moves import Event, ReadMoves
 
 _N = r"(-?\d+\.\d+)"
@@ -97,7 +97,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     called = {call[1].lower() for _, lines in found.values() for line in lines if (call := _CALLED.match(line))}
     main = [name for name in found if name not in called]
     if len(main) != 1:
-        raise _not_read("program", f"{len(main)} programs are called by none of the others, expected one")
+        raise _not_read("program", Text("{} programs are called by none of the others, expected one", len(main)))
     run = _Run(found)
     _go(main[0], run)
     if not run.speed:
@@ -181,7 +181,7 @@ def _done(line: str, run: _Run, where: str) -> None:
         run.standing = _stopped(run, where)
         run.happens("input", float(awaited[1]))
     elif not run.standing:
-        raise _not_read(where, f"{line!r} is read ahead of the motion: no wait stands before it")
+        raise _not_read(where, Text("{!r} is read ahead of the motion: no wait stands before it", line))
     elif switched := _SWITCHED.match(line):
         if run.output not in ("", switched[1]):
             raise _not_read(where, "a second output is switched")
@@ -191,11 +191,11 @@ def _done(line: str, run: _Run, where: str) -> None:
         if call[1].lower() not in run.files:
             run.happens("call", call[1].upper())
         elif call[1].lower() in run.followed or run.on:
-            raise _not_read(where, f"{call[1]} is run already, or called while depositing")
+            raise _not_read(where, Text("{} is run already, or called while depositing", call[1]))
         else:
             _go(call[1].lower(), run)
     else:
-        raise _not_read(where, f"the instruction {line!r} is not understood")
+        raise _not_read(where, Text("the instruction {!r} is not understood", line))
 
 
 def _stopped(run: _Run, where: str) -> bool:
@@ -213,7 +213,7 @@ def _moved(line: str, run: _Run, where: str) -> None:
     if not needed <= set(state):
         raise _not_read(where, "the module does not set all that the move counts on")
     if not straight and not 1.0 <= state["percent"] <= 100.0:
-        raise _not_read(where, f"{state['percent']:.0f} % of the joint speeds is none of 1 to 100")
+        raise _not_read(where, Text("{:.0f} % of the joint speeds is none of 1 to 100", state["percent"]))
     match = straight or _TO_AXES.match(line)
     assert match is not None
     texts = match.groups()[:6]
@@ -249,7 +249,7 @@ def _external_axes(numbers: tuple[int, ...], share: float, run: _Run, where: str
     if not in_order or bool(moved) != bool(unit) or len(run.slides) > 1 or not {*run.slides} <= {*numbers}:
         raise _not_read(where, "the axes beside the robot are not told in order, or BASE is not coupled to what they move")
     if any(run.state.get(f"E{number}") != share for number in numbers):
-        raise _not_read(where, f"axes beside the robot do not run at {share:.0f} % of their speeds")
+        raise _not_read(where, Text("axes beside the robot do not run at {:.0f} % of their speeds", share))
     run.unit, run.numbers = unit, numbers
 
 
@@ -286,4 +286,4 @@ def _about(axis: int, angle: Array) -> Array:
 
 
 def _not_read(where: str, why: str) -> InputError:
-    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)

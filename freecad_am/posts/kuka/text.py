@@ -140,8 +140,8 @@ class Lines:
         if wrong.any():
             raise InputError(
                 "JOINT_SPEED", place(moves),
-                f"a rapid would need {percent[wrong][0]:.3g} % of the largest joint speed, and KRL is told whole percents of"
-                f" {LEAST_PERCENT} to 100; use another rapid speed",
+                "a rapid would need {:.3g} % of the largest joint speed, and KRL is told whole percents of {} to 100; use "
+                "another rapid speed", percent[wrong][0], LEAST_PERCENT,
             )
         return [int(value) for value in np.clip(np.rint(percent), LEAST_PERCENT, 100)]
 

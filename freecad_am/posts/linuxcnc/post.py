@@ -126,19 +126,19 @@ def _refuse(program: Program) -> None:
                       any(run.wire is not None for run in program.moves))
     if scheduled and fed and program.schedule_output == program.nc.wire_output:
         raise InputError(
-            "SCHEDULE", "program.schedule.output", f"analogue output {program.schedule_output} tells the speed of the wire; "
-            "use another one for schedules",
+            "SCHEDULE", "program.schedule.output", "analogue output {} tells the speed of the wire; use another one for "
+            "schedules", program.schedule_output,
         )
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
-            f"digital outputs are 1 to {LAST_PIN} (motion.digital-out-00 is number 1), not {program.deposit_output}",
+            "digital outputs are 1 to {} (motion.digital-out-00 is number 1), not {}", LAST_PIN, program.deposit_output,
         )
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_PIN:
             raise InputError(
                 "DEPOSIT_INPUT", "process.between_layers.input",
-                f"digital inputs are 1 to {LAST_PIN} (motion.digital-in-00 is number 1), not {block.number}",
+                "digital inputs are 1 to {} (motion.digital-in-00 is number 1), not {}", LAST_PIN, block.number,
             )
     refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
     if program.motion == "cartesian":
@@ -154,8 +154,8 @@ def _refuse_cartesian(program: Program) -> None:
     if not 1 <= program.user_frame <= len(OFFSETS):
         raise InputError(
             "UNSUPPORTED_FRAME", "program.user_frame",
-            f"work offset {program.user_frame} is not there for the part; use 1 to {len(OFFSETS)} (G54 to G59.2; the ninth,"
-            f" {MACHINE_OFFSET}, is set to zero for moves of the axes)",
+            "work offset {} is not there for the part; use 1 to {} (G54 to G59.2; the ninth, {}, is set to zero for moves "
+            "of the axes)", program.user_frame, len(OFFSETS), MACHINE_OFFSET,
         )
     if program.carried is not None:
         _refuse_tilt(program.carried)
@@ -167,9 +167,9 @@ def _refuse_tilt(carried: tuple[float, ...]) -> None:
         x, y, z, rx, ry, rz = (*carried[:3], *(math.degrees(angle) for angle in carried[3:]))
         raise InputError(
             "UNSUPPORTED_FRAME", "program.origin",
-            f"a work offset of LinuxCNC turns about Z alone, and the part leans on the table by RX {rx:.4g} and RY {ry:.4g} "
-            f"deg; enter an upright origin, as cell.platform: [{x:.6g}, {y:.6g}, {z:.6g}, 0, 0, {rz + 0.0:.6g}], or use "
-            "`motion: joint`",
+            "a work offset of LinuxCNC turns about Z alone, and the part leans on the table by RX {:.4g} and RY {:.4g} deg; "
+            "enter an upright origin, as cell.platform: [{:.6g}, {:.6g}, {:.6g}, 0, 0, {:.6g}], or use `motion: joint`", rx,
+            ry, x, y, z, rz + 0.0,
         )
 
 

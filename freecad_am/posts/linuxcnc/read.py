@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
+from ...core.issues import Text
 from ...core.read_moves import ReadMoves
 from ..nc.read import AXES, TIME, TIP, Shape, Track, unreadable
 
@@ -71,7 +72,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         if not (lines[0][1] == f"O<{name}> SUB" and lines[-2][1] == f"O<{name}> ENDSUB"):
             main.append(name)
     if len(main) != 1:
-        raise unreadable("program", f"there are {len(main)} programs that are not subs, expected one")
+        raise unreadable("program", Text("there are {} programs that are not subs, expected one", len(main)))
     state = _State(programs)
     _follow(main[0], programs[main[0]], state, ())
     if state.track.on or state.loop[0]:
@@ -106,7 +107,7 @@ def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tup
             continue
         if sub := _SUB.match(text):
             if sub[2] != "CALL":
-                raise unreadable(where, f"{text!r} is not understood here")
+                raise unreadable(where, Text("{!r} is not understood here", text))
             _call(where, sub[1], state, (*callers, name))
         elif _ZERO.match(text):
             state.zeroed = {word[0] for word in text.split()[3:]}
@@ -174,7 +175,7 @@ def _cooled(where: str, text: str, state: _State) -> bool:
     elif loop and not loop[2] and sampled and state.loop[0] == loop[1]:
         state.loop = "", ""
     elif loop or (state.loop[0] and not _DWELL.match(text)):
-        raise unreadable(where, f"{text!r} in or about a loop that waits for an analogue input")
+        raise unreadable(where, Text("{!r} in or about a loop that waits for an analogue input", text))
     else:
         return bool(state.loop[0])
     return True
@@ -198,7 +199,7 @@ def _line(where: str, text: str, state: _State) -> None:
     for token in text.split():
         if word := _WORD.match(token):
             if word[1] in words:
-                raise unreadable(where, f"{word[1]} stands there twice")
+                raise unreadable(where, Text("{} stands there twice", word[1]))
             words[word[1]] = word[2]
         elif token == "G1":
             state.linear = True
@@ -210,7 +211,7 @@ def _line(where: str, text: str, state: _State) -> None:
             state.offset = token
             state.track.frame = _OFFSETS.index(token) + 1.0
         elif token not in _PLAIN:
-            raise unreadable(where, f"{token!r} is not understood")
+            raise unreadable(where, Text("{!r} is not understood", token))
     if words:
         _move(where, words, state)
         state.shape = Shape.of(text)
@@ -248,7 +249,7 @@ def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None
             state.off_word = state.off_word or text
         name, wrong = "M", text not in (state.on_word, state.off_word) or output[3] in ("0", "1", "2", "6", "30")
     if wrong or state.output not in ("", name):
-        raise unreadable(where, f"{text!r} is not understood, or a second output is switched")
+        raise unreadable(where, Text("{!r} is not understood, or a second output is switched", text))
     state.output, state.track.on = name, on
     if output[1] not in ("62", "63"):  # these wait for the next move instead
         state.track.rests()

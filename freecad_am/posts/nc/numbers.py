@@ -138,8 +138,8 @@ def _inverse_times(moves: Moves) -> Array:
     if wrong.any():
         raise InputError(
             "MOVE_TIME", place(moves),
-            f"a move of {moves.duration[wrong][0]:.4g} s cannot be written; moves take {60.0 / FASTEST:.2g} to"
-            f" {60.0 / SLOWEST:.0f} s: use another speed or a larger chord error",
+            "a move of {:.4g} s cannot be written; moves take {:.2g} to {:.0f} s: use another speed or a larger chord error",
+            moves.duration[wrong][0], 60.0 / FASTEST, 60.0 / SLOWEST,
         )
     return inverse
 
@@ -151,6 +151,7 @@ def _tip_feeds(moves: Moves) -> Array:
     if wrong.any():
         raise InputError(
             "MOVE_SPEED", place(moves),
-            f"{moves.speed[wrong][0]:.4g} mm/s cannot be written; use {SLOWEST / 60.0:.2g} to {FASTEST / 60.0:.0f} mm/s",
+            "{:.4g} mm/s cannot be written; use {:.2g} to {:.0f} mm/s", moves.speed[wrong][0], SLOWEST / 60.0,
+            FASTEST / 60.0,
         )
     return feeds

@@ -25,8 +25,8 @@ def refuse_table(program: Program, post: str) -> None:
     if sorted(linear) != ["X", "Y", "Z"] or not set(rotary) <= set("ABC") or len(set(rotary)) != len(rotary):
         raise InputError(
             "UNSUPPORTED_AXES", "cell.machine",
-            f"the post {post} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has"
-            f" {' '.join(program.axis_names)}: name its joints mx my mz and a, b or c",
+            "the post {} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has {}: name its joints "
+            "mx my mz and a, b or c", post, " ".join(program.axis_names),
         )
     if program.motion == "cartesian" and any(
         run.position is None or run.direction is None for run in program.moves if run.kind == DEPOSIT
@@ -43,11 +43,11 @@ def refuse_words(program: Program, taken: frozenset[str]) -> None:
     for key, word in words.items():
         if not re.fullmatch(r"M\d{1,3}|H\d{1,2}=\d{1,5}", word):
             raise InputError("DEPOSIT_WORD", key,
-                             f"{word!r} is not a word such as M7 or H2=1; give one for on and one for off")
+                             "{!r} is not a word such as M7 or H2=1; give one for on and one for off", word)
         if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in taken or (word.startswith("H") and "H" in taken):
-            raise InputError("DEPOSIT_WORD", key, f"{word} means something else to the controller; use another word")
+            raise InputError("DEPOSIT_WORD", key, "{} means something else to the controller; use another word", word)
     if program.nc.deposit_on == program.nc.deposit_off:
-        raise InputError("DEPOSIT_WORD", key, f"{word} cannot switch both on and off; give two different words")
+        raise InputError("DEPOSIT_WORD", key, "{} cannot switch both on and off; give two different words", word)
 
 
 def refuse_wire_output(program: Program, last: int) -> None:
@@ -55,7 +55,7 @@ def refuse_wire_output(program: Program, last: int) -> None:
     if any(run.wire is not None for run in program.moves) and program.nc.wire_output > last:
         raise InputError(
             "WIRE_OUTPUT", "program.nc.wire_output",
-            f"the controller's program sets analogue outputs 1 to {last}, not {program.nc.wire_output}; use one of these",
+            "the controller's program sets analogue outputs 1 to {}, not {}; use one of these", last, program.nc.wire_output,
         )
 
 
@@ -63,7 +63,8 @@ def refuse_setup(post: str, motion: str, setup: str) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what is not a machine with rotary axes; both motions of these can be said."""
     if setup != "rotary-table":
         raise InputError(
-            "UNSUPPORTED_SETUP", "cell.setup", f"the post {post} cannot write {setup} ({motion} motion), only rotary-table"
+            "UNSUPPORTED_SETUP", "cell.setup", "the post {} cannot write {} ({} motion), only rotary-table", post, setup,
+            motion
         )
 
 

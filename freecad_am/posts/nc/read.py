@@ -206,4 +206,4 @@ def _durations(
 
 def unreadable(where: str, why: str) -> InputError:
     """The error for what is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)

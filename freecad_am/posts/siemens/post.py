@@ -123,15 +123,15 @@ def _refuse(program: Program) -> None:
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_OUTPUT:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
-            f"H words have address extensions to {LAST_OUTPUT}, not {program.deposit_output}; use another output, or"
-            " program.nc.deposit_on and deposit_off",
+            "H words have address extensions to {}, not {}; use another output, or program.nc.deposit_on and deposit_off",
+            LAST_OUTPUT, program.deposit_output,
         )
     common.refuse_words(program, _TAKEN)
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_INPUT:
             raise InputError(
                 "DEPOSIT_INPUT", "process.between_layers.input",
-                f"the controller's program reads inputs 1 to {LAST_INPUT}, not {block.number}; use one of these",
+                "the controller's program reads inputs 1 to {}, not {}; use one of these", LAST_INPUT, block.number,
             )
     refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
     _refuse_continuous_steps(program)
@@ -142,8 +142,8 @@ def _refuse_schedules(program: Program) -> None:
     own = program.nc.deposit_on or f"H{program.deposit_output}="
     if any(isinstance(block, Schedule) for block in program.blocks) and own.startswith(f"H{program.schedule_output}="):
         raise InputError(
-            "SCHEDULE", "program.schedule.output", f"H{program.schedule_output} switches the deposit; use another one for "
-            "schedules",
+            "SCHEDULE", "program.schedule.output", "H{} switches the deposit; use another one for schedules",
+            program.schedule_output,
         )
 
 
@@ -157,8 +157,8 @@ def _refuse_continuous_steps(program: Program) -> None:
         places = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
         raise InputError(
             "ENDLESS_STEP", place(program.moves[places[move + 1]]),
-            f"axis {program.axis_names[axes[axis]]} turns {steps[move, axis]:.1f} deg in one move; an axis without end goes"
-            " less than 180 deg per move: add points, or limit the axis",
+            "axis {} turns {:.1f} deg in one move; an axis without end goes less than 180 deg per move: add points, or "
+            "limit the axis", program.axis_names[axes[axis]], steps[move, axis],
         )
 
 

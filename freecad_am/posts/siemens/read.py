@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
+from ...core.issues import Text, Word
 from ...core.read_moves import ReadMoves
 from ..nc.read import SLIDES, TIME, TIP, Shape, Track, unreadable
 
@@ -68,7 +69,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     """
     main = [name for name in files if name.upper().endswith(".MPF")]
     if len(main) != 1 or any(not name.upper().endswith((".MPF", ".SPF")) for name in files):
-        raise unreadable("program", f"there are {len(main)} main programs, expected one with its parts")
+        raise unreadable("program", Text("there are {} main programs, expected one with its parts", len(main)))
     programs = {name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()}
     words = {text for blocks in programs.values() for _, text in blocks}
     # an H word that is ever 0 switches; others tell schedules, which begin with 1
@@ -101,7 +102,7 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
     end = "M17" if callers else "M30"
     blocks = state.files[name]
     if not blocks or blocks[-1][1] != end or name in callers:
-        raise unreadable(name, f"it does not end with {end}, or calls itself")
+        raise unreadable(name, Text("it does not end with {}, or calls itself", Word(end)))
     for where, text in blocks[:-1]:
         words = None if state.shape is None or state.waiting else state.shape.words(text)
         if state.shape is not None and words is not None:
@@ -112,7 +113,7 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
             if text == "ENDWHILE":
                 state.waiting = False
             elif not _DWELL.match(text):
-                raise unreadable(where, f"{text!r} in a loop that waits for an input")
+                raise unreadable(where, Text("{!r} in a loop that waits for an input", text))
         elif given := _WAIT.match(text):
             state.waiting = True
             state.track.happens("input", float(given[1]))
@@ -145,7 +146,7 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
         if found := _WORD.match(token) or shorter:
             address, value = (group for group in found.groups() if group is not None)
             if address in words:
-                raise unreadable(where, f"{address} stands there twice")
+                raise unreadable(where, Text("{} stands there twice", address))
             words[address] = value
         elif token == "G1":
             state.linear = True
@@ -155,13 +156,13 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
             rest.append(token)
     if words:
         if rest:
-            raise unreadable(where, f"{rest[0]!r} with a move is not understood")
+            raise unreadable(where, Text("{!r} with a move is not understood", rest[0]))
         _move(where, words, state, "G9" in text.split())
         state.shape = Shape.of(text, "G9")
     elif len(rest) == 1:
         _other(where, rest[0], state, callers)
     elif rest:
-        raise unreadable(where, f"{text!r} is not understood")
+        raise unreadable(where, Text("{!r} is not understood", text))
 
 
 def _mode(token: str, state: _State) -> bool:
@@ -198,7 +199,7 @@ def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None
     if not state.linear or state.units != _UNITS:
         raise unreadable(where, "a move before G1, G90 and G710 are said")
     if state.corners and not any(state.corners == {word, *others} for word, others in _PAIRED.items()):
-        raise unreadable(where, f"{' '.join(sorted(state.corners))} do not belong together")
+        raise unreadable(where, Text("{} do not belong together", " ".join(sorted(state.corners))))
     if state.tip:
         known = state.workpiece and state.group and state.offset
         if state.feed != "G94" or not known or words.keys() != _TIP_WORDS:
@@ -225,14 +226,14 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
         state.track.happens("schedule", float(output[3]), float(output[4]))
     elif output:
         if output[5] in ("0", "1", "2", "6", "17", "30"):
-            raise unreadable(where, f"{token!r} is not understood")
+            raise unreadable(where, Text("{!r} is not understood", token))
         _switch(where, token, output, state)
     elif token in state.files:
         if state.track.on or state.tip:
             raise unreadable(where, "another program is called within a bead")
         _follow(token, state, callers)
     elif not _NAME.match(token) or state.track.on or state.tip or state.compress:
-        raise unreadable(where, f"{token!r} is not understood")
+        raise unreadable(where, Text("{!r} is not understood", token))
     else:
         # a program of the controller; what it leaves set is not known
         state.units, state.offset, state.group, state.linear, state.corners = set(), "", False, False, set()

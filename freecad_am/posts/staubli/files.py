@@ -12,7 +12,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 
 _NAMESPACE = "{http://www.staubli.com/robotics/VAL3/"
 PROJECT, DATA, PROGRAM = (_NAMESPACE + space + "}" for space in ("Project/3", "Data/2", "Program/2"))
@@ -82,14 +82,14 @@ def _parsed(file: str, files: dict[str, bytes]) -> ElementTree.Element:
     try:
         return ElementTree.fromstring(files[file])
     except ElementTree.ParseError as error:
-        raise unreadable(file, f"it is not well-formed XML ({error})") from None
+        raise unreadable(file, Text("it is not well-formed XML ({})", error)) from None
 
 
 def _statements(name: str, file: str, files: dict[str, bytes]) -> list[tuple[int, str]]:
     program = _parsed(file, files).find(f"{PROGRAM}Program")
     code = None if program is None else program.findtext(f"{PROGRAM}Code")
     if program is None or code is None or program.get("name") != name:
-        raise unreadable(file, f"it does not hold the code of a program {name}")
+        raise unreadable(file, Text("it does not hold the code of a program {}", name))
     lines = [(number, line.strip()) for number, line in enumerate(code.split("\n"), 1)]
     lines = [(number, line) for number, line in lines if line and (not line.startswith("//") or _LAYER.match(line))]
     if len(lines) < 2 or lines[0][1] != "begin" or lines[-1][1] != "end":
@@ -103,7 +103,7 @@ def _data(file: str, files: dict[str, bytes]) -> dict[str, Data]:
         name, values = str(element.get("name")), [dict(value.attrib) for value in element.iterfind(f"{DATA}Value")]
         keys = [value.pop("key", "") for value in values]
         if name in found or keys != [str(key) for key in range(len(values))] or element.get("size") != str(len(values)):
-            raise unreadable(file, f"the values of {name} are not those from 0 to its size, each once")
+            raise unreadable(file, Text("the values of {} are not those from 0 to its size, each once", name))
         found[name] = Data(str(element.get("type")), tuple(values))
     return found
 
@@ -139,4 +139,4 @@ def poses(values: Array) -> Array:
 
 def unreadable(where: str, why: str) -> InputError:
     """The error for what is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from freecad_am.core.types import Array
 
+from ...core.issues import Text, Word
 from ...core.read_moves import ReadMoves
 from .files import AXES, POSE, Application, Data, numbers, poses, rotations, unreadable
 
@@ -75,20 +76,21 @@ class _Values:
         """(4, 4) the frame that the points of an array are in; it must stand in the world, and the arm stay as it is."""
         for value in app.data[name].values:
             if any(value.get(word, f"{word[0]}same") != f"{word[0]}same" for word in ("shoulder", "elbow", "wrist")):
-                raise unreadable(where, f"a point of {name} asks for another configuration of the arm")
-        return self._one(app, name, "frame", "world[0]", where, f"the points of {name} are not all in one frame")
+                raise unreadable(where, Text("a point of {} asks for another configuration of the arm", name))
+        return self._one(app, name, "frame", "world[0]", where, Text("the points of {} are not all in one frame", name))
 
     def carrier(self, app: Application, name: str, where: str) -> Array:
         """(4, 4) what the tools of an array stand on: the flange, or one other tool that stands on it."""
         if self.father(app, name) == _FLANGE:
             return np.eye(4)
-        return self._one(app, name, "tool", _FLANGE, where, f"the tools of {name} are not all on one tool")
+        return self._one(app, name, "tool", _FLANGE, where, Text("the tools of {} are not all on one tool", name))
 
     def _one(self, app: Application, name: str, kind: str, ground: str, where: str, otherwise: str) -> Array:
         match = re.fullmatch(r"(\w+)\[0\]", self.father(app, name))
         data = app.data.get(match[1], Data("", ())) if match else Data("", ())
         if match is None or data.kind != kind or len(data.values) != 1 or self.father(app, match[1]) != ground:
-            raise unreadable(where, f"{otherwise} that stands {'in the world' if kind == 'frame' else 'on the flange'}")
+            raise unreadable(where, Text("{} that stands {}", otherwise,
+                                         Word("in the world" if kind == "frame" else "on the flange")))
         found: Array = poses(self.six(app, match[1]))[0]
         return found
 

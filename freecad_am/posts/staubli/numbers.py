@@ -81,8 +81,8 @@ class Descriptors:
         if wrong.any():
             raise InputError(
                 "JOINT_SPEED", place(moves),
-                f"a move would need {percent[wrong][0]:.4g} % of the largest joint speed, which cannot be written; use"
-                f" another speed, so that it is {LEAST_PERCENT} to 100 %",
+                "a move would need {:.4g} % of the largest joint speed, which cannot be written; use another speed, so that "
+                "it is {} to 100 %", percent[wrong][0], LEAST_PERCENT,
             )
         return np.where(share > 0.0, np.clip(percent, LEAST_PERCENT, 100.0), 100.0)
 
@@ -104,7 +104,7 @@ def _speeds(moves: Moves) -> Array:
     fits = (moves.speed >= SLOWEST) & (moves.speed < float(UNLIMITED))
     if not fits.all():
         raise InputError(
-            "MOVE_SPEED", place(moves), f"{moves.speed[~fits][0]:.4g} mm/s cannot be written; use at least {SLOWEST} mm/s"
+            "MOVE_SPEED", place(moves), "{:.4g} mm/s cannot be written; use at least {} mm/s", moves.speed[~fits][0], SLOWEST
         )
     return moves.speed
 

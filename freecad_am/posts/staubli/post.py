@@ -110,7 +110,7 @@ def refuse_setup(
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
     if setup not in SETUPS:
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post staubli cannot write {setup} ({motion} motion)")
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post staubli cannot write {} ({} motion)", setup, motion)
 
 
 def _refuse(program: Program) -> None:
@@ -124,7 +124,8 @@ def _refuse(program: Program) -> None:
     for block in program.blocks:
         if isinstance(block, Call) and re.fullmatch(rf"{program.name}\d*", program_name(block.program, block.where), re.I):
             raise InputError(
-                "PROGRAM_NAME", block.where, f"{block.program!r} may be a program of this very job; call one of another name"
+                "PROGRAM_NAME", block.where, "{!r} may be a program of this very job; call one of another name",
+                block.program
             )
 
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.issues import Text, Word
 from ...core.read_moves import Event, ReadMoves
 from .files import Application, Data, applications, unreadable
 from .moves import Step, moves_of
@@ -59,7 +60,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     found = applications(files)
     outer = [folder for folder in found if not any(folder.startswith(f"{other}/") for other in found)]
     if len(outer) != 1:
-        raise unreadable("program", f"there are {len(outer)} applications, expected one with its parts")
+        raise unreadable("program", Text("there are {} applications, expected one with its parts", len(outer)))
     run = _Run(found)
     _follow(found[outer[0]], "start", run, ())
     if not run.steps:
@@ -85,10 +86,10 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
     """Carry out the statements of a program in order, and of those it calls."""
     here = (app.folder, name)
     if name not in app.programs or here in callers:
-        raise unreadable(app.folder, f"{name} is not a program of it, or calls itself")
+        raise unreadable(app.folder, Text("{} is not a program of it, or calls itself", name))
     statements = iter(app.programs[name])
     for number, line in statements:
-        where = f"{app.folder}/{name}.pgx line {number}"
+        where = Text("{}/{}.pgx line {}", app.folder, name, number)
         if loop := _FOR.match(line):
             (_, inside), (_, end) = next(statements, (0, "")), next(statements, (0, ""))
             if not _MOVE.match(inside) or end != "endFor" or int(loop[1]) > int(loop[2]):
@@ -103,7 +104,7 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
         elif layer := _LAYER.match(line):
             run.happens("layer", float(layer[1]))
         elif run.moving:
-            raise unreadable(where, f"{line!r} does not wait for the moves before it")
+            raise unreadable(where, Text("{!r} does not wait for the moves before it", line))
         elif load := _LOAD.match(line):
             _load(app, load[1], load[2], statements, run, where)
         elif call := _CALL.match(line):
@@ -124,18 +125,18 @@ def _load(
     if not rest[0].startswith("popUpMsg(") or rest[1:] != ["return", "endIf"]:
         raise unreadable(where, "a part is loaded without stopping where it cannot be")
     if run.on or f"{app.folder}/{part}" not in run.found or alias not in app.libraries:
-        raise unreadable(where, f"{part} is loaded while depositing, is not there, or {alias} is not a library")
+        raise unreadable(where, Text("{} is loaded while depositing, is not there, or {} is not a library", part, alias))
     run.loaded[app.folder, alias] = f"{app.folder}/{part}"
 
 
 def _library(app: Application, alias: str, run: _Run, where: str) -> Application | None:
     """The application behind an alias; None for one that stands elsewhere on the controller."""
     if alias not in app.libraries:
-        raise unreadable(where, f"{alias} is not a library of the project")
+        raise unreadable(where, Text("{} is not a library of the project", alias))
     if (app.folder, alias) in run.loaded:
         return run.found[run.loaded[app.folder, alias]]
     if not app.libraries[alias].startswith("Disk://"):
-        raise unreadable(where, f"{alias} is called before it is loaded")
+        raise unreadable(where, Text("{} is called before it is loaded", alias))
     return None
 
 
@@ -151,13 +152,14 @@ def _other(app: Application, line: str, run: _Run, where: str) -> None:
     elif wait := _WAIT.match(line):
         run.happens("input", _number(_link(app, wait[1], "I", where), where))
     else:
-        raise unreadable(where, f"the instruction {line!r} is not understood")
+        raise unreadable(where, Text("the instruction {!r} is not understood", line))
 
 
 def _link(app: Application, name: str, letter: str, where: str) -> str:
     data = app.data.get(name, Data("", ()))
     if data.kind != "dio" or len(data.values) != 1 or f"%{letter}" not in data.values[0].get("link", ""):
-        raise unreadable(where, f"{name} is not a digital {'output' if letter == 'Q' else 'input'} of the project")
+        raise unreadable(where, Text("{} is not a digital {} of the project", name,
+                                     Word("output" if letter == "Q" else "input")))
     return data.values[0]["link"]
 
 
@@ -165,7 +167,7 @@ def _number(link: str, where: str) -> float:
     """The number of an input or output, from 1."""
     number = _NUMBER.match(link)
     if number is None:
-        raise unreadable(where, f"{link!r} has no number")
+        raise unreadable(where, Text("{!r} has no number", link))
     return float(number[1]) + 1.0
 
 
@@ -179,7 +181,7 @@ def _move(app: Application, line: str, counter: Indices, run: _Run, where: str) 
         data = app.data.get(name, Data("", ()))
         taken = _indices(index, counter)
         if data.kind != kind or taken is None or taken.min() < 0 or taken.max() >= len(data.values):
-            raise unreadable(where, f"{name} is not {kind} data of the project, or has not so many values")
+            raise unreadable(where, Text("{} is not {} data of the project, or has not so many values", name, kind))
         rows.append(taken)
     run.moving = True
     run.moves += len(rows[0])

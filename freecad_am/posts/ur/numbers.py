@@ -72,9 +72,9 @@ def _radii(program: Program, ways: Array) -> Array:
         run = moves[int(np.searchsorted(np.cumsum([len(run) for run in moves]), first, side="right"))]
         raise InputError(
             "BLEND_RADIUS", place(run),
-            f"the tool goes {adjacent[first]:.3g} mm beside a point that is not stopped at, too little for a blend "
-            "radius, and the robot would stop there with the deposit on; use a larger strategy.chord_error, or "
-            "`program.blend: 0` to stop at every point",
+            "the tool goes {:.3g} mm beside a point that is not stopped at, too little for a blend radius, and the robot "
+            "would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at "
+            "every point", adjacent[first],
         )
     return radii
 
@@ -85,8 +85,8 @@ def _times(moves: Moves) -> Array:
     if moves.kind != RAPID and seconds.min() < CYCLE:
         raise InputError(
             "MOVE_TIME", place(moves),
-            f"a move takes {1000.0 * seconds.min():.3g} ms, less than the {1000.0 * CYCLE:.0f} ms in which the controller"
-            " steps; use a larger strategy.chord_error or a lower process.travel_speed",
+            "a move takes {:.3g} ms, less than the {:.0f} ms in which the controller steps; use a larger "
+            "strategy.chord_error or a lower process.travel_speed", 1000.0 * seconds.min(), 1000.0 * CYCLE,
         )
     times: Array = np.maximum(seconds, SHORTEST)
     return times
@@ -97,7 +97,7 @@ def _speeds(moves: Moves) -> Array:
     if not fits.all():
         raise InputError(
             "MOVE_SPEED", place(moves),
-            f"{moves.speed[~fits][0]:.4g} mm/s cannot be written; use {SLOWEST} to {FASTEST:.0f} mm/s",
+            "{:.4g} mm/s cannot be written; use {} to {:.0f} mm/s", moves.speed[~fits][0], SLOWEST, FASTEST,
         )
     return moves.speed
 

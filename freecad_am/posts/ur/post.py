@@ -128,7 +128,7 @@ def refuse_setup(
             " URScript holds; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post ur cannot write {setup}")
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post ur cannot write {}", setup)
 
 
 def _refuse(program: Program) -> None:
@@ -144,15 +144,15 @@ def _refuse(program: Program) -> None:
     if not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
-            f"digital outputs are 1 to {LAST_PIN} (1 to 8 are digital_out[0] to [7], 9 to {LAST_PIN} the configurable ones),"
-            f" not {program.deposit_output}",
+            "digital outputs are 1 to {} (1 to 8 are digital_out[0] to [7], 9 to {} the configurable ones), not {}",
+            LAST_PIN, LAST_PIN, program.deposit_output,
         )
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_PIN:
             raise InputError(
                 "DEPOSIT_INPUT", "process.between_layers.input",
-                f"digital inputs are 1 to {LAST_PIN} (1 to 8 are digital_in[0] to [7], 9 to {LAST_PIN} the configurable"
-                f" ones), not {block.number}",
+                "digital inputs are 1 to {} (1 to 8 are digital_in[0] to [7], 9 to {} the configurable ones), not {}",
+                LAST_PIN, LAST_PIN, block.number,
             )
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 from ...core.read_moves import Event, ReadMoves
 
 _N = r"-?\d+\.\d+"
@@ -84,17 +84,17 @@ class _Run:
 
 def unreadable(where: str, why: str) -> InputError:
     """What is raised for a text that is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
     """All moves of the script in the order of execution. Raises InputError UNREADABLE_PROGRAM, naming file and line."""
     if len(files) != 1:
-        raise unreadable("program", f"there are {len(files)} files, expected one script")
+        raise unreadable("program", Text("there are {} files, expected one script", len(files)))
     ((file, content),) = files.items()
     name, main = _parsed(file, content)
     if not re.fullmatch(rf"(?:.*/)?{name}\.script", file):
-        raise unreadable(file, f"its function is called {name}")
+        raise unreadable(file, Text("its function is called {}", name))
     run = _Run(file)
     _follow(name, main, {}, run, ())
     if not run.deposit:
@@ -120,13 +120,13 @@ def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
             if depth == 2 and line == "  end":
                 here, depth = main, 1
                 continue
-            raise unreadable(where, f"{line!r} stands outside of its function")
+            raise unreadable(where, Text("{!r} stands outside of its function", line))
         inner = _DEF.match(text)
         if inner is None:
             here.lines.append(_Line(number, text))
             continue
         if depth == 2 or inner[1] in main.inside or inner[1] == title[1]:
-            raise unreadable(where, f"{inner[1]} is defined again, or within a part")
+            raise unreadable(where, Text("{} is defined again, or within a part", inner[1]))
         here = main.inside[inner[1]] = _Function(number)
         depth = 2
     if depth == 2:
@@ -160,9 +160,9 @@ def _follow(name: str, function: _Function, known: dict[str, _Function], run: _R
             run.happens("below", 1.0 + float(below[1]), float(below[2]), digits=0.5 * 10.0 ** -len(below[3]))
         elif call := _CALL.match(text):
             if call[1] in (*callers, name):
-                raise unreadable(where, f"{call[1]} calls itself")
+                raise unreadable(where, Text("{} calls itself", call[1]))
             if call[1] in known and line.number < known[call[1]].begins:
-                raise unreadable(where, f"{call[1]} is called before it is defined")
+                raise unreadable(where, Text("{} is called before it is defined", call[1]))
             if call[1] in known:
                 _follow(call[1], known[call[1]], known, run, (*callers, name))
             else:
@@ -170,7 +170,7 @@ def _follow(name: str, function: _Function, known: dict[str, _Function], run: _R
         elif layer := _LAYER.match(text):
             run.happens("layer", float(layer[1]))
         elif not text.startswith("# "):
-            raise unreadable(where, f"the instruction {text!r} is not understood")
+            raise unreadable(where, Text("the instruction {!r} is not understood", text))
 
 
 def _loop(lines: Iterator[_Line], where: str) -> None:

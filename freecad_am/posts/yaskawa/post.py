@@ -18,7 +18,7 @@ import numpy as np
 from freecad_am.core.types import Array
 
 from ...core.controller import Controller
-from ...core.issues import InputError
+from ...core.issues import InputError, Text, Word
 from ...core.program import (
     DEPOSIT,
     FIRST_SHARE,
@@ -133,7 +133,7 @@ def refuse_setup(
             " point, whose instruction is not documented well enough to write it; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post yaskawa cannot write {setup}")
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post yaskawa cannot write {}", setup)
     if external:
         _refuse_coordinated(motion, external)
 
@@ -147,7 +147,7 @@ def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
         why = "over a part on a positioner are coordinated motion (SMOVL), and what their speed is of"
     raise InputError(
         "COORDINATED_MOTION", "program.motion",
-        f"linear moves {why} was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it",
+        "linear moves {} was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it", Word(why),
     )
 
 
@@ -158,10 +158,10 @@ def _refuse(program: Program) -> None:
     if program.external_kinds:
         _refuse_coordinated(program.motion, program.external_kinds)
         refuse_external(program, MOST_EXTERNAL, r"ST[1-9]\d?", "the name of its station, such as ST1")
-        refuse_named_track(program, f"the base axis {BASE} of the robot")
+        refuse_named_track(program, Text("the base axis {} of the robot", BASE))
         if program.first_external != 1:
             raise InputError("UNSUPPORTED_AXES", "program.axes.first", "a position of a station or of base axes has a value "
-                             f"for each of them from the first one on; use 1, not {program.first_external}")
+                             "for each of them from the first one on; use 1, not {}", program.first_external)
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE, LAST_FILE)
@@ -175,7 +175,7 @@ def _refuse(program: Program) -> None:
     if not program.dry_run and program.deposit_output > OUTPUTS:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
-            f"digital outputs are 1 to {OUTPUTS}, not {program.deposit_output}; use one of these",
+            "digital outputs are 1 to {}, not {}; use one of these", OUTPUTS, program.deposit_output,
         )
 
 
@@ -240,8 +240,8 @@ def _percent(program: Program, moves: Moves, steps: Array, first: bool) -> Array
     if wrong.any():
         raise InputError(
             "JOINT_SPEED", place(moves),
-            f"a move would need {percent[wrong][0]:.4g} % of the largest joint speed, which is told in steps of"
-            f" {STEP_PERCENT} %; use another speed, so that it is {LEAST_PERCENT} to 100 %",
+            "a move would need {:.4g} % of the largest joint speed, which is told in steps of {} %; use another speed, so "
+            "that it is {} to 100 %", percent[wrong][0], STEP_PERCENT, LEAST_PERCENT,
         )
     percent = np.where(share > 0.0, np.clip(percent, STEP_PERCENT, 100.0), 100.0)
     if first:
@@ -256,8 +256,8 @@ def _path_speeds(program: Program, moves: Moves) -> list[str]:
     if not fits.all():
         raise InputError(
             "MOVE_SPEED", place(moves),
-            f"{moves.speed[~fits][0]:.4g} mm/s cannot be written in {program.speed_unit}; use {least:.3g} to"
-            f" {FASTEST:.0f} mm/s",
+            "{:.4g} mm/s cannot be written in {}; use {:.3g} to {:.0f} mm/s", moves.speed[~fits][0], program.speed_unit,
+            least, FASTEST,
         )
     return [f"V={speed:.{decimals}f}" for speed in (moves.speed / unit).tolist()]
 

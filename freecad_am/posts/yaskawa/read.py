@@ -16,7 +16,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.issues import InputError
+from ...core.issues import InputError, Text
 from ...core.read_moves import ARC, Event, ReadMoves
 
 _NAME = re.compile(r"//NAME ([A-Z][A-Z0-9_]{0,31})$")
@@ -87,7 +87,7 @@ _WORDS = 4  # of a move besides its pulses
 
 def unreadable(where: str, why: str) -> InputError:
     """What is raised for a text that is not understood."""
-    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
+    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
@@ -99,12 +99,12 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     for file in sorted(files):
         name, job = _job(file, files[file])
         if not re.fullmatch(rf"(?:.*/)?{name}\.JBI", file):
-            raise unreadable(file, f"its job is called {name}")
+            raise unreadable(file, Text("its job is called {}", name))
         jobs[name] = job
     called = {call[1] for job in jobs.values() for line in job.lines if (call := _CALL.match(line))}
     main = [name for name in jobs if name not in called]
     if len(main) != 1:
-        raise unreadable("program", f"{len(main)} jobs are called by none of the others, expected one")
+        raise unreadable("program", Text("{} jobs are called by none of the others, expected one", len(main)))
     run = _Run()
     _follow(main[0], jobs, run, ())
     if not run.deposit:
@@ -152,7 +152,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
         for number, line in enumerate(lines[at : at + points]):
             point = _POINT.match(line)
             if point is None or int(point[1]) != number:
-                raise unreadable(f"{file} line {at + number + 1}", f"{line!r} is not position {number}")
+                raise unreadable(f"{file} line {at + number + 1}", Text("{!r} is not position {}", line, number))
             values[number] = [float(value) for value in point.groups()[1:]]
         at += points
     counts = {letters: int(number) for letters, number in zip(_EXTERNAL, count.groups()[1:])}
@@ -178,7 +178,7 @@ def _external_pulses(file: str, letters: str, lines: list[str], at: int) -> Arra
     for number, line in enumerate(lines):
         point = _EXTERNAL[letters].match(line)
         if point is None or int(point[1]) != number or (rows and len(rows[0]) != point[2].count(",") + 1):
-            raise unreadable(f"{file} line {at + number + 1}", f"{line!r} is not position {number} of {letters}")
+            raise unreadable(f"{file} line {at + number + 1}", Text("{!r} is not position {} of {}", line, number, letters))
         rows.append([float(value) for value in point[2].split(",")])
     return np.array(rows)
 
@@ -224,7 +224,7 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
             else:
                 run.happens("call", call[1])
         elif not text.startswith("'") or len(text) >= _LINE:
-            raise unreadable(where, f"the instruction {text!r} is not understood")
+            raise unreadable(where, Text("the instruction {!r} is not understood", text))
         else:
             _remark(text, run, where)
 
@@ -244,7 +244,7 @@ def _remark(text: str, run: _Run, where: str) -> None:
     elif ratio := _PER_UNIT.match(text):
         of, axis = ratio[1].split()
         if run.per_unit.setdefault(axis, float(ratio[2])) != float(ratio[2]) or float(ratio[2]) == 0.0:
-            raise unreadable(where, f"the pulses per {of} of {axis} differ, or are none")
+            raise unreadable(where, Text("the pulses per {} of {} differ, or are none", of, axis))
         run.slides |= {axis} if of == "mm" else set()
     elif unit := _UNIT.match(text):
         if run.unit not in ("", unit[1]):
@@ -262,10 +262,10 @@ def _move(job: _Job, text: str, run: _Run, where: str) -> None:
     move = joint or line
     if move is None or int(move[1]) >= len(job.points) or _numbers(move) != (
             move[1] if job.track else None, move[1] if job.station else None):
-        raise unreadable(where, f"the move {text!r} is not understood, or its position is not there")
+        raise unreadable(where, Text("the move {!r} is not understood, or its position is not there", text))
     value = float(move[4])
     if value <= 0.0 or (joint and value > 100.0):
-        raise unreadable(where, f"the speed {move[4]} is none")
+        raise unreadable(where, Text("the speed {} is none", move[4]))
     external = job.track, job.station
     if run.external not in (None, external) or run.axes not in (0, job.points.shape[1]):
         raise unreadable(where, "moves with another track or station than before are mixed")

@@ -35,13 +35,13 @@ def curves_of(data: bytes, where: str) -> tuple[BeadCurve, ...]:
         found = list(_beads(data))
     except (ValueError, IndexError, struct.error) as error:
         raise InputError(
-            CODE, where, f"it is not a toolpath of AdaOne, or it is damaged ({error}); export it again"
+            CODE, where, "it is not a toolpath of AdaOne, or it is damaged ({}); export it again", error
         ) from None
     if not found:
         raise InputError(CODE, where, "no segment of it deposits, so there is no bead; export a toolpath that deposits")
     for _, points, _ in found:
         if not (np.isfinite(points).all() and np.abs(points).max() <= MAX_MM):
-            raise InputError(CODE, where, f"a position is not a number of at most {MAX_MM:g} mm; export it again")
+            raise InputError(CODE, where, "a position is not a number of at most {:g} mm; export it again", MAX_MM)
     numbers = {layer: k for k, layer in enumerate(sorted({layer for layer, _, _ in found}))}
     return tuple(BeadCurve(points, directions, numbers[layer]) for layer, points, directions in found)
 

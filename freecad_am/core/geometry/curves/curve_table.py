@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...issues import InputError
+from ...issues import InputError, Text, Word
 from ...types import Array
 from .bead_curves import BeadCurve
 
@@ -27,14 +27,14 @@ def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
     while lines and not lines[-1].strip():
         lines.pop()
     if not lines:
-        raise InputError(CODE, where, f"it has no points; {FORM}")
+        raise InputError(CODE, where, "it has no points; {}", FORM)
     separator = ";" if ";" in lines[0] else ","
     columns, first = _columns(_cells(lines[0], separator), where)
     numbers = [
         _numbers(_cells(line, separator), columns, f"{where} line {k}") for k, line in enumerate(lines[first:], first + 1)
     ]
     if not numbers:
-        raise InputError(CODE, where, f"it has no points; {FORM}")
+        raise InputError(CODE, where, "it has no points; {}", FORM)
     rows = np.array(numbers)
     bead = rows[:, columns.index("bead")] if "bead" in columns else np.zeros(len(rows))
     starts = np.flatnonzero(np.r_[True, np.diff(bead) != 0.0])
@@ -42,7 +42,7 @@ def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
     for start, end in zip(starts, [*starts[1:], len(rows)]):
         at = f"{where} line {first + 1 + int(start)}"
         if bead[start] in known:
-            raise InputError(CODE, at, f"bead {bead[start]:g} begins again; keep the lines of a bead together")
+            raise InputError(CODE, at, "bead {:g} begins again; keep the lines of a bead together", bead[start])
         known.add(float(bead[start]))
         found.append(_curve(rows[start:end], columns, at, first + 1 + int(start), where))
     return tuple(found)
@@ -58,25 +58,27 @@ def _columns(cells: Sequence[str], where: str) -> tuple[tuple[str, ...], int]:
     if any(name in COLUMNS for name in names):
         wanted = BY_COUNT.get(len(names))
         if set(names) != set(wanted or ()):
-            raise InputError(CODE, f"{where} line 1", f"its columns are {', '.join(cells)}; {FORM}")
+            raise InputError(CODE, f"{where} line 1", "its columns are {}; {}", ", ".join(cells), FORM)
         return names, 1
     if len(cells) not in BY_COUNT:
-        raise InputError(CODE, f"{where} line 1", f"it has {len(cells)} columns; {FORM}")
+        raise InputError(CODE, f"{where} line 1", "it has {} columns; {}", len(cells), FORM)
     return BY_COUNT[len(cells)], 0
 
 
 def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[float]:
     if len(cells) != len(columns) or not all(cells):
-        lacking = "it is empty" if not any(cells) else f"it has {sum(map(bool, cells))} numbers in place of {len(columns)}"
-        raise InputError(CODE, where, f"{lacking}; fill the gap, or leave the line out")
+        lacking = "it is empty" if not any(cells) else Text("it has {} numbers in place of {}", sum(map(bool, cells)),
+                                                            len(columns))
+        raise InputError(CODE, where, "{}; fill the gap, or leave the line out", Word(lacking))
     found = []
     for cell, name in zip(cells, columns):
         try:
             number = float(cell)
         except ValueError:
-            raise InputError(CODE, where, f"{cell[:40]!r} is not a number; give {name} as a number with a point") from None
+            raise InputError(CODE, where, "{!r} is not a number; give {} as a number with a point", cell[:40],
+                             name) from None
         if not math.isfinite(number) or abs(number) > MAX_MM:
-            raise InputError(CODE, where, f"{name} is {number:g}; give a number of at most {MAX_MM:g}")
+            raise InputError(CODE, where, "{} is {:g}; give a number of at most {:g}", name, number, MAX_MM)
         found.append(number)
     return found
 

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...types import Array
 from .bead_curves import BeadCurve
 
@@ -83,7 +83,7 @@ class _Reader:
         else:
             words = words[1:]
         if name in REFUSED or name.split(".")[0] in REFUSED:
-            raise self._error(f"{name}: {REFUSED.get(name) or REFUSED[name.split('.')[0]]}")
+            raise self._error(Text("{}: {}", name, REFUSED.get(name) or REFUSED[name.split(".")[0]]))
         if name in ("G0", "G1", "G2", "G3"):
             self.motion = name
             self._moved(name, dict(words))
@@ -116,7 +116,7 @@ class _Reader:
             if axis not in self.at:
                 continue
             if not math.isfinite(value) or abs(value) > MAX_MM:
-                raise self._error(f"{axis} is {value:g}; give a number of at most {MAX_MM:g}")
+                raise self._error(Text("{} is {:g}; give a number of at most {:g}", axis, value, MAX_MM))
             absolute = self.absolute_e if axis == "E" else self.absolute
             before = self.at[axis]
             self.at[axis] = value if absolute else before + value
@@ -130,7 +130,7 @@ class _Reader:
             self._end()
             return
         if len(self.known) < 3:
-            raise self._error("it extrudes before the program says where: X, Y and Z are to be told first; " + FORM)
+            raise self._error(Text("it extrudes before the program says where: X, Y and Z are to be told first; {}", FORM))
         if not self.run:
             self.run = [start]
         self.run += way
@@ -142,8 +142,8 @@ class _Reader:
         radius = float(np.hypot(*one))
         if radius < APART or abs(radius - float(np.hypot(*other))) > max(ARC_END, 1e-3 * radius):
             raise self._error(
-                f"the ends of the arc are {radius:.4g} and {np.hypot(*other):.4g} mm from its middle; give I and J from its "
-                "start to its middle"
+                Text("the ends of the arc are {:.4g} and {:.4g} mm from its middle; give I and J from its start to its "
+                    "middle", radius, np.hypot(*other))
             )
         turn = math.atan2(other[1], other[0]) - math.atan2(one[1], one[0])
         turn = -(-turn % (2.0 * math.pi)) if name == "G2" else turn % (2.0 * math.pi)
@@ -164,11 +164,12 @@ class _Reader:
         if "I" in words or "J" in words:
             return np.asarray(start[:2] + np.array([words.get("I", 0.0), words.get("J", 0.0)]))
         if "R" not in words:
-            raise self._error(f"{name} has neither I and J nor R; an arc needs its middle or its radius")
+            raise self._error(Text("{} has neither I and J nor R; an arc needs its middle or its radius", name))
         radius, chord = words["R"], end[:2] - start[:2]
         length = float(np.hypot(*chord))
         if length < APART or abs(2.0 * radius) < length * (1.0 - 1e-6):
-            raise self._error(f"a radius of {radius:g} mm makes no arc between points {length:.4g} mm apart; give I and J")
+            raise self._error(Text("a radius of {:g} mm makes no arc between points {:.4g} mm apart; give I and J", radius,
+                                   length))
         away = math.sqrt(max(radius * radius - 0.25 * length * length, 0.0))
         left = np.array([-chord[1], chord[0]]) / length
         side = (1.0 if name == "G3" else -1.0) * (1.0 if radius > 0.0 else -1.0)
@@ -191,7 +192,7 @@ class _Reader:
         """The beads, each with its layer."""
         self._end()
         if not self.beads:
-            raise InputError(CODE, self.where, f"no move of it extrudes, so there is no bead; {FORM}")
+            raise InputError(CODE, self.where, "no move of it extrudes, so there is no bead; {}", FORM)
         texts = [comments for comments, _ in self.beads]
         keys: Iterable[float] = texts if self.comments else [round(float(points[0, 2]), 3) for _, points in self.beads]
         layers, layer, before = [], -1, math.nan

@@ -16,8 +16,8 @@ def refuse_scale(scale: float, path: str, key: str) -> None:
     """InputError BAD_VALUE naming `key` where `scale`, mm a unit of a file, is not a length or the file tells its unit."""
     if not (math.isfinite(scale) and scale > 0.0):
         raise InputError("BAD_VALUE", key,
-                         f"{scale:g} mm is not a unit; give the length of one unit of the file, as 25.4 mm")
+                         "{:g} mm is not a unit; give the length of one unit of the file, as 25.4 mm", scale)
     if scale != 1.0 and not path.lower().endswith(UNTOLD):
         raise InputError(
-            "BAD_VALUE", key, f"{os.path.basename(path)} tells its unit itself; leave out the scale, it is for STL and OBJ"
+            "BAD_VALUE", key, "{} tells its unit itself; leave out the scale, it is for STL and OBJ", os.path.basename(path)
         )

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...types import Array, Index, Mask
 from ..formatting import place
 from ..walls.surface import dot
@@ -36,7 +36,7 @@ def turned_alike(vertices: Array, corners: Index, edges: Edges, label: str, mess
     wrong = ways[0] == ways[1]
     if wrong.any():
         where = place(vertices[edges.ends[np.argmax(wrong)]].mean(axis=0))
-        raise InputError("NOT_ORIENTABLE", label, f"the mesh has no inside, as at {where}; model the solid again")
+        raise InputError("NOT_ORIENTABLE", label, "the mesh has no inside, as at {}; model the solid again", where)
     return turned
 
 
@@ -49,7 +49,7 @@ def alike_across(corners: Index, edges: Edges, two: Index, messages: list[str]) 
     if not against.any():
         return corners
     flip = _flips(len(corners), one, other, against)
-    messages.append(f"{int(min(flip.sum(), (~flip).sum()))} triangles were turned to agree with their neighbours")
+    messages.append(Text("{} triangles were turned to agree with their neighbours", int(min(flip.sum(), (~flip).sum()))))
     return np.where(flip[:, None], corners[:, ::-1], corners)
 
 
@@ -79,7 +79,7 @@ def solids_of(vertices: Array, corners: Index, messages: list[str]) -> tuple[Sol
     volume = np.array([SolidMesh(vertices, some).volume for some in pieces])
     bulky = np.abs(volume) > FLAT * np.linalg.norm(high - low, axis=1) ** 3
     if not bulky.all():
-        messages.append(f"{int((~bulky).sum())} pieces that enclose nothing were dropped")
+        messages.append(Text("{} pieces that enclose nothing were dropped", int((~bulky).sum())))
     about = {}
     for k in np.flatnonzero(bulky & (volume < 0.0)).tolist():
         wider = np.flatnonzero((low < low[k]).all(axis=1) & (high > high[k]).all(axis=1) & bulky & (volume > 0.0))
@@ -89,7 +89,7 @@ def solids_of(vertices: Array, corners: Index, messages: list[str]) -> tuple[Sol
     outer = [k for k in np.flatnonzero(bulky).tolist() if k not in about]
     turned = [k for k in outer if volume[k] < 0.0]
     if turned:
-        many = f"{len(turned)} solids were inside out and were turned"
+        many = Text("{} solids were inside out and were turned", len(turned))
         messages.append("a solid was inside out and was turned" if len(turned) == 1 else many)
     found = []
     for k in outer:

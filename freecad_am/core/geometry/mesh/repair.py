@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...issues import NOTE, WARNING, InputError, Issue
+from ...issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ...types import Array, Index
 from ..formatting import place
 from .crossing import crossings
@@ -64,7 +64,7 @@ def repaired(points: Array, triangles: Index, label: str, hole: float = 0.0, cro
             solid.refuse_crossing(label, WELDS[-1])
     issues = []
     if messages:
-        issues.append(Issue(NOTE, "MESH_REPAIRED", f"{label}: {'; '.join(messages[:MOST_NAMED])}"))
+        issues.append(Issue(NOTE, "MESH_REPAIRED", Text("{}: {}", label, Text.joined("; ", messages[:MOST_NAMED]))))
     return Repaired(solids, (*issues, *mended_issues(label, mended)))
 
 
@@ -72,7 +72,7 @@ def mended_issues(label: str, mended: list[str]) -> tuple[Issue, ...]:
     """What was mended, and where, as an issue; none for nothing."""
     if not mended:
         return ()
-    return (Issue(WARNING, "MENDED", f"{label}: {'; '.join(mended[:MOST_NAMED])}"),)
+    return (Issue(WARNING, "MENDED", Text("{}: {}", label, Text.joined("; ", mended[:MOST_NAMED]))),)
 
 
 class Connected(NamedTuple):
@@ -112,7 +112,8 @@ def connected_triangles(points: Array, triangles: Index, label: str, hole: float
             f"{len(small)} holes were closed, the largest {widest.size:.3g} mm across at {place(widest.middle)}"
         )
     vertices, corners = filled(found.vertices, found.triangles, small)
-    issues = (Issue(NOTE, "MESH_REPAIRED", f"{label}: {'; '.join(messages[:MOST_NAMED])}"),) if messages else ()
+    issues = (Issue(NOTE, "MESH_REPAIRED", Text("{}: {}", label,
+                                                Text.joined("; ", messages[:MOST_NAMED]))),) if messages else ()
     return Connected(vertices, corners, issues, tuple(mended))
 
 
@@ -122,8 +123,8 @@ def crossing_messages(solid: SolidMesh, least: float) -> list[str]:
     if not len(found.pairs):
         return []
     return [
-        f"{len(found.pairs)} pairs of triangles cross, as at {place(found.places[found.length.argmax()])}, and what any of "
-        "them enclose counts as inside"
+        Text("{} pairs of triangles cross, as at {}, and what any of them enclose counts as inside", len(found.pairs),
+            place(found.places[found.length.argmax()]))
     ]
 
 
@@ -140,23 +141,23 @@ def _mended(
     if large and not (before.count == 1).any():
         where = place(vertices[before.ends[np.argmax(before.count > 2)]].mean(axis=0))
         raise InputError(
-            "NON_MANIFOLD", label, f"three or more triangles share an edge: {int((before.count > 2).sum())} edges, the "
-            f"first at {where}; repair the mesh (Mesh, Analyze)",
+            "NON_MANIFOLD", label, "three or more triangles share an edge: {} edges, the first at {}; repair the mesh "
+            "(Mesh, Analyze)", int((before.count > 2).sum()), where,
         )
     if large:
         raise InputError(
-            "OPEN_MESH", label, f"the mesh has a hole: {len(large[0].loop)} edges, {large[0].size:.4g} mm across, at "
-            f"{place(large[0].middle)}" + (f", and {len(large) - 1} more" if len(large) > 1 else "") + (
-                f"; up to strategy.mend, {size:g} mm, holes are closed" if size else ""
-            ) + "; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one",
+            "OPEN_MESH", label, "the mesh has a hole: {} edges, {:.4g} mm across, at {}{}{}; fill holes (Mesh, Close holes) "
+            "or export it again, or deposit it as a wall if it is one", len(large[0].loop), large[0].size,
+            place(large[0].middle), Word(Text(", and {} more", len(large) - 1) if len(large) > 1 else ""),
+            Word(Text("; up to strategy.mend, {:g} mm, holes are closed", size) if size else ""),
         )
     if found.split:
         at = place(vertices[before.ends[np.argmax(before.count > 2)]].mean(axis=0))
-        mended.append(f"{found.split} edges of more than two triangles were divided, as at {at}")
+        mended.append(Text("{} edges of more than two triangles were divided, as at {}", found.split, at))
     if open_:
         widest = open_[0]
         mended.append(
-            f"{len(open_)} holes were closed, the largest {widest.size:.3g} mm across at {place(widest.middle)}"
+            Text("{} holes were closed, the largest {:.3g} mm across at {}", len(open_), widest.size, place(widest.middle))
         )
     vertices, corners = filled(found.vertices, found.triangles, open_)
     for _ in range(ROUNDS):
@@ -176,7 +177,7 @@ def _closed(points: Array, triangles: Index, messages: list[str]) -> tuple[Array
         vertices, corners = _welded(points, triangles, weld, notes)
         corners = _patched(corners, notes)
         if weld > WELDS[0]:
-            notes.insert(0, f"points up to {weld:g} mm apart were made one")
+            notes.insert(0, Text("points up to {:g} mm apart were made one", weld))
         left = int((Edges(corners).count != 2).sum()) if len(corners) else len(triangles)
         if best is None or left < best[0]:
             best = (left, vertices, corners, notes)
@@ -196,7 +197,7 @@ def _welded(points: Array, triangles: Index, weld: float, notes: list[str]) -> t
     corners = same[triangles]
     whole = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
     if not whole.all():
-        notes.append(f"{int((~whole).sum())} triangles without an area were dropped")
+        notes.append(Text("{} triangles without an area were dropped", int((~whole).sum())))
     corners = corners[whole]
     # triangles of the same three points: what is left when opposite ones cancel
     ranked = np.sort(corners, axis=1)
@@ -209,7 +210,7 @@ def _welded(points: Array, triangles: Index, weld: float, notes: list[str]) -> t
     if len(kept) < MOSTLY * (number.max(initial=-1) + 1):  # every triangle from both sides, as for display
         kept = np.unique(number, return_index=True)[1]
     if len(kept) < len(corners):
-        notes.append(f"{len(corners) - len(kept)} triangles that were there twice were dropped")
+        notes.append(Text("{} triangles that were there twice were dropped", len(corners) - len(kept)))
     corners = corners[np.sort(kept)]
     used, index = np.unique(corners, return_inverse=True)
     return points[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
@@ -238,5 +239,5 @@ def _patched(corners: Index, notes: list[str]) -> Index:
     known = {tuple(sorted(corner)) for corner in corners[np.isin(corners, start).all(axis=1)].tolist()}
     if any(tuple(sorted(corner)) in known for corner in missing):
         return corners  # the border of a loose triangle
-    notes.append(f"{len(missing)} missing triangles were put in")
+    notes.append(Text("{} missing triangles were put in", len(missing)))
     return np.vstack([corners, np.array(missing, dtype=np.intp)])

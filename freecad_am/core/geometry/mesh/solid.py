@@ -52,20 +52,20 @@ class SolidMesh:
         ):
             if wrong.any():
                 where = place(self.vertices[edges.ends[np.argmax(wrong)]].mean(axis=0))
-                raise InputError(code, label, f"{what}: {int(wrong.sum())} edges, the first at {where}; {cure}")
+                raise InputError(code, label, "{}: {} edges, the first at {}; {}", what, int(wrong.sum()), where, cure)
         half = np.stack([self.triangles, np.roll(self.triangles, -1, axis=1)], axis=2)
         sense = np.where(half[..., 0] < half[..., 1], 1, -1)
         total = np.bincount(edges.of.ravel(), weights=sense.ravel(), minlength=len(edges.ends))
         if (total != 0).any():
             where = place(self.vertices[edges.ends[np.argmax(total != 0)]].mean(axis=0))
             raise InputError(
-                "INSIDE_OUT", label, f"neighbouring triangles face opposite ways, for instance at {where}; turn them alike "
-                "(Mesh, Harmonize normals)",
+                "INSIDE_OUT", label, "neighbouring triangles face opposite ways, for instance at {}; turn them alike (Mesh, "
+                "Harmonize normals)", where,
             )
         if self.volume <= 0.0:
             raise InputError(
-                "INSIDE_OUT", label, f"the solid is turned inside out (volume {self.volume:.4g} mm3, near "
-                f"{place(self.vertices.mean(axis=0))}); flip its normals (Mesh, Flip normals)",
+                "INSIDE_OUT", label, "the solid is turned inside out (volume {:.4g} mm3, near {}); flip its normals (Mesh, "
+                "Flip normals)", self.volume, place(self.vertices.mean(axis=0)),
             )
 
     def refuse_crossing(self, label: str, least: float) -> None:
@@ -74,9 +74,9 @@ class SolidMesh:
         if len(found.pairs):
             where = place(found.places[found.length.argmax()])
             raise InputError(
-                "SELF_CROSSING", label, f"it cuts itself: {len(found.pairs)} pairs of its triangles cross, for instance at "
-                f"{where}, so that what is inside is not known; fuse what overlaps where the part was drawn, or repair the "
-                "mesh (Mesh, Analyze, Self-intersections)",
+                "SELF_CROSSING", label, "it cuts itself: {} pairs of its triangles cross, for instance at {}, so that what "
+                "is inside is not known; fuse what overlaps where the part was drawn, or repair the mesh (Mesh, Analyze, "
+                "Self-intersections)", len(found.pairs), where,
             )
 
     def searched(self, edge: float) -> Search:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...issues import NOTE, InputError, Issue
+from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array, Mask
 from ..curves.plane_curve import doubled_area, nearest_of, winding
 from ..curves.polyline import turn_segments
@@ -164,10 +164,10 @@ class Mended(NamedTuple):
         """What a user should know."""
         found = []
         if self.changed > 0.0:
-            text = f"contours that cross or touch were mended; {self.changed:.3g} mm^2 changed"
+            text = Text("contours that cross or touch were mended; {:.3g} mm^2 changed", self.changed)
             found.append(Issue(NOTE, "REGION_MENDED", text, layer))
         if self.dropped > 0.0:
-            found.append(Issue(NOTE, "REGION_SLIVERS", f"slivers of {self.dropped:.3g} mm^2 were dropped", layer))
+            found.append(Issue(NOTE, "REGION_SLIVERS", Text("slivers of {:.3g} mm^2 were dropped", self.dropped), layer))
         return tuple(found)
 
 

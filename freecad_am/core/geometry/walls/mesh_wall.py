@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from ...issues import NOTE, InputError, Issue
+from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array, Index, Mask
 from ..formatting import deviation, place
 from ..mesh.collapsed import collapsed
@@ -84,8 +84,8 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
         return wall
     farthest = wall.samples[np.argmax(np.linalg.norm(wall.vertices - wall.samples, axis=1))]
     return replace(wall, issues=(*wall.issues, Issue(
-        NOTE, "SMOOTHED", f"{label}: where facets meet at an angle the wall runs smoothly, up to {deviation(off)} mm off "
-        f"them, at {place(farthest)}",
+        NOTE, "SMOOTHED", Text("{}: where facets meet at an angle the wall runs smoothly, up to {} mm off them, at {}",
+            label, deviation(off), place(farthest)),
     )))
 
 
@@ -98,8 +98,8 @@ def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) 
         )
     if made is None:
         raise InputError(
-            "TOO_FINE", label, f"with edges of {edge:.3g} mm, a layer height, the mesh of the wall has more than "
-            f"{MAX_TRIANGLES} triangles; use a larger layer height, or deposit the wall in parts",
+            "TOO_FINE", label, "with edges of {:.3g} mm, a layer height, the mesh of the wall has more than {} triangles; "
+            "use a larger layer height, or deposit the wall in parts", edge, MAX_TRIANGLES,
         )
     vertices, corners, owner = made
     corners, owner = collapsed(vertices, corners, owner, COLLAPSE * edge, edge)
@@ -138,13 +138,14 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
         plain = uncrossed(found.vertices, found.triangles, crossed.pairs, mend, WELDS[-1])
         if plain is None:
             raise InputError(
-                "SELF_INTERSECTION", label, f"the wall cuts itself: {len(crossed.pairs)} pairs of its triangles cross, for "
-                f"instance at {at}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with "
-                "holes of up to strategy.mend closed",
+                "SELF_INTERSECTION", label, "the wall cuts itself: {} pairs of its triangles cross, for instance at {}; "
+                "repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with holes of up to "
+                "strategy.mend closed", len(crossed.pairs), at,
             )
         size = max((hole.size for hole in plain.closed), default=0.0)
         mended.append(
-            f"{plain.cut_out} triangles that cross were cut out, as at {at}, which left holes of up to {size:.3g} mm across"
+            Text("{} triangles that cross were cut out, as at {}, which left holes of up to {:.3g} mm across", plain.cut_out,
+                at, size)
         )
         found = found._replace(vertices=plain.vertices, triangles=plain.triangles)
     return _Read(found.vertices, found.triangles, (*found.issues, *mended_issues(label, mended)))

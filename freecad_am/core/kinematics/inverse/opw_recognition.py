@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from ...geometry import frames
-from ...issues import InputError
+from ...issues import InputError, Text, Word
 from ...types import Array
 from ..chain import Chain, JointFrames
 from .opw import OpwArm
@@ -59,15 +59,16 @@ def recognise(chain: Chain) -> OpwArm:
         if track_of(chain):
             raise refused("its first axis slides and carries the six that turn, as a track does; let the machine begin with "
                           "the robot, and name the track in `cell.external` with `carries: robot`")
-        raise refused(f"it has {chain.axes} axes, {slides} of which slide; a robot that can be planned has six that turn")
+        raise refused(Text("it has {} axes, {} of which slide; a robot that can be planned has six that turn", chain.axes,
+                           slides))
     at_rest = chain.frames(np.zeros(6))
     centre = _wrist_centre(at_rest)
     arm = _arm(at_rest, centre)
     q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
     off = np.abs(arm.forward(q) - chain.forward(q))
     if off[:, :3, 3].max() > POSITION or off[:, :3, :3].max() > ROTATION:
-        raise refused(f"its closed form is {off[:, :3, 3].max():.3g} mm and {off[:, :3, :3].max():.2g} (entries of the "
-                       "rotation) off; give the geometry with more digits")
+        raise refused(Text("its closed form is {:.3g} mm and {:.2g} (entries of the rotation) off; give the geometry with "
+                           "more digits", off[:, :3, 3].max(), off[:, :3, :3].max()))
     return arm
 
 
@@ -94,10 +95,11 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
     for first, second in ((0, 1), (2, 3), (3, 4), (4, 5)):
         off = math.asin(min(1.0, abs(float(z[first] @ z[second]))))
         if off > STRAIGHT:
-            raise refused(f"axes {first + 1} and {second + 1} are {90.0 - math.degrees(off):.6g} deg apart, not 90 deg")
+            raise refused(Text("axes {} and {} are {:.6g} deg apart, not 90 deg", first + 1, second + 1,
+                               90.0 - math.degrees(off)))
     off = math.asin(min(1.0, float(np.linalg.norm(np.cross(z[1], z[2])))))
     if off > STRAIGHT:
-        raise refused(f"axes 2 and 3 are not parallel, but {math.degrees(off):.6g} deg apart")
+        raise refused(Text("axes 2 and 3 are not parallel, but {:.6g} deg apart", math.degrees(off)))
     # the point of axis 5 next to axis 4, and how far both others pass it by
     across = p[3] - p[4]
     centre: Array = p[4] + z[4] * float(z[4] @ across)
@@ -105,8 +107,8 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         to = centre - p[axis]
         off = float(np.linalg.norm(to - z[axis] * float(z[axis] @ to)))
         if off > NEAR_MM:
-            raise refused(f"the wrist is not spherical: axis {axis + 1} passes {off:.6g} mm beside the point where axes "
-                           f"{'5 and 6' if axis == 3 else '4 and 5'} meet")
+            raise refused(Text("the wrist is not spherical: axis {} passes {:.6g} mm beside the point where axes {} meet",
+                               axis + 1, off, Word("5 and 6" if axis == 3 else "4 and 5")))
     return centre
 
 
@@ -192,4 +194,4 @@ def clean(value: float) -> float:
 
 
 def refused(reason: str, where: str = "geometry") -> InputError:
-    return InputError("NO_CLOSED_FORM", where, f"this cannot be planned for: {reason}")
+    return InputError("NO_CLOSED_FORM", where, "this cannot be planned for: {}", reason)

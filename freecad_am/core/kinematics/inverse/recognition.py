@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry import frames
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
 from . import opw_recognition
@@ -80,7 +80,8 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     for first, second in ((0, 1), (2, 3)):
         if not _square(z[first], z[second]):
             off = math.degrees(math.acos(min(1.0, abs(float(z[first] @ z[second])))))
-            raise opw_recognition.refused(f"axes {first + 1} and {second + 1} are {off:.6g} deg apart, not 90 deg")
+            raise opw_recognition.refused(Text("axes {} and {} are {:.6g} deg apart, not 90 deg", first + 1, second + 1,
+                                               off))
     if not _parallel(z[1], z[2]):
         raise opw_recognition.refused("axes 2 and 3 are not parallel")
     point = None if _parallel(z[3], z[4]) else _meeting(p[3], z[3], p[4], z[4])
@@ -90,9 +91,9 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     ahead = np.cross(normal, (0.0, 0.0, 1.0))
     plane = np.stack([ahead, (0.0, 0.0, 1.0)])
     shoulder, elbow, centre = (plane @ at for at in (p[1], p[2], point))
-    offset = float(normal @ point)
-    if abs(offset) > NEAR_MM:
-        raise opw_recognition.refused(f"the wrist is not spherical, and axis 4 passes {abs(offset):.6g} mm beside axis 1")
+    if abs(offset := float(normal @ point)) > NEAR_MM:
+        raise opw_recognition.refused(Text("the wrist is not spherical, and axis 4 passes {:.6g} mm beside axis 1",
+                                           abs(offset)))
     upper, fore = elbow - shoulder, centre - elbow
     away = point - p[5] - z[5] * float(z[5] @ (point - p[5]))
     if min(np.hypot(*upper), np.hypot(*fore), np.linalg.norm(away)) < NEAR_MM:

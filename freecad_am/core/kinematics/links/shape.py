@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...issues import Text
 from ...types import Array
 from ..machines.file import Node
 
@@ -45,18 +46,18 @@ def shape_of(node: Node) -> LinkShape:
     node.only("file", "origin", "rpy", "scale", "colour")
     path = Path(node["file"].text())
     if path.suffix.lower() not in FORMATS:
-        raise node["file"].bad(f"{path.name} is not a shape that can be drawn; use {', '.join(FORMATS)}")
+        raise node["file"].bad(Text("{} is not a shape that can be drawn; use {}", path.name, ", ".join(FORMATS)))
     pose = np.eye(4)
     if node.has("origin") or node.has("rpy"):
         pose = node.pose()
     scale = node["scale"].number() if node.has("scale") else 1.0
     if scale <= 0.0:
-        raise node["scale"].bad(f"{scale:g} is not a scale; give 1 for mm, 1000 for m")
+        raise node["scale"].bad(Text("{:g} is not a scale; give 1 for mm, 1000 for m", scale))
     colour = None
     if node.has("colour"):
         values = node["colour"].numbers(3)
         if ((values < 0.0) | (values > 1.0)).any():
-            raise node["colour"].bad(f"{node['colour'].value} is not a colour; give red, green and blue from 0 to 1")
+            raise node["colour"].bad(Text("{} is not a colour; give red, green and blue from 0 to 1", node["colour"].value))
         colour = (float(values[0]), float(values[1]), float(values[2]))
     file = path if path.is_absolute() else node.path.parent / path
     return LinkShape(file, pose, scale, colour, f"{node.path}: {node.key}.file")

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from ...geometry import frames
+from ...issues import Text
 from ..chain import Chain
 from ..inverse.opw import OpwArm
 from .file import Node
@@ -22,7 +23,7 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
     of its closed form where it has one."""
     poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
     if len(poses) < 3:
-        raise node.bad(f"there are {len(poses)}; a machine needs at least 3 joint vectors with their flange poses")
+        raise node.bad(Text("there are {}; a machine needs at least 3 joint vectors with their flange poses", len(poses)))
     q = np.array([pose["q"].numbers(chain.axes) for pose in poses]) * np.where(chain.sliding, 1.0, math.radians(1.0))
     if not (q == 0.0).all(axis=1).any():
         raise node.bad("the pose at all zeros is missing")
@@ -38,8 +39,8 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
         if wrong.any():
             index = int(np.argmax(wrong))
             raise poses[index].bad(
-                f"{solver_gives} a flange {position[index]:.6g} mm and "
-                f"{rotation[index]:.3g} (largest entry of the rotation) from it; correct the geometry or the pose"
+                Text("{} a flange {:.6g} mm and {:.3g} (largest entry of the rotation) from it; correct the geometry or the "
+                    "pose", solver_gives, position[index], rotation[index])
             )
 
 
@@ -53,6 +54,6 @@ def _within(pose: Node) -> tuple[float, float]:
     for key, most in zip(("mm", "deg"), MOST_ROUNDING, strict=True):
         value = node[key].number()
         if not 0.0 <= value <= most:
-            raise node[key].bad(f"{value:g} is more than the rounding of a display leaves; give 0 to {most:g}")
+            raise node[key].bad(Text("{:g} is more than the rounding of a display leaves; give 0 to {:g}", value, most))
         found.append(value)
     return max(found[0], POSITION_TOLERANCE), max(math.radians(found[1]), ROTATION_TOLERANCE)

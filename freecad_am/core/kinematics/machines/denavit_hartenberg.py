@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry import frames
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
 
@@ -79,11 +79,11 @@ def _check(table: Table) -> None:
     if not table.rows:
         raise InputError("BAD_TABLE", "table", "there is no row; give one per joint")
     for number, row in enumerate(table.rows, 1):
-        where = f"table, row {number}"
+        where = Text("table, row {}", number)
         if not np.isfinite([row.theta, row.d, row.a, row.alpha]).all():
             raise InputError("BAD_TABLE", where, "theta, d, a and alpha must be numbers")
         if row.sign not in (1, -1):
-            raise InputError("BAD_TABLE", where, f"{row.sign} is not a sign; use 1 or -1")
+            raise InputError("BAD_TABLE", where, "{} is not a sign; use 1 or -1", row.sign)
 
 
 def _row(row: Row, modified: bool) -> tuple[Array, Array]:

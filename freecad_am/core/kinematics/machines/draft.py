@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...geometry import frames
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
 from ..inverse.opw import OpwArm
@@ -131,7 +131,7 @@ def text(draft: Draft) -> str:
     """The machine file. Raises InputError: BAD_NAME; NO_CLOSED_FORM; BAD_MACHINE naming the key that is wrong, such as check
     poses that are missing or missed."""
     if not NAME.fullmatch(draft.id):
-        raise InputError("BAD_NAME", "id", f"{draft.id!r} cannot be the name of a machine; use a to z, digits and -")
+        raise InputError("BAD_NAME", "id", "{!r} cannot be the name of a machine; use a to z, digits and -", draft.id)
     if not draft.title:
         raise InputError("BAD_NAME", "title", "it is empty; give maker and model")
     content: dict[str, Any] = {
@@ -177,7 +177,7 @@ def _shown(machine: Machine) -> Shown:
         shown = Shown(signs, zeros, coupling)
         if 0 not in signs and np.allclose(pendant.matrix(shown, machine.chain)[0], machine.controller_matrix):
             return shown
-    raise InputError("BAD_MACHINE", f"{machine.id}: controller.matrix",
+    raise InputError("BAD_MACHINE", Text("{}: controller.matrix", machine.id),
                      "it is none of signs and a coupling of axes 2 and 3; copy the file itself")
 
 

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
 from ..inverse import recognition
@@ -27,13 +27,14 @@ def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
     node = controller["pulses_per_degree"]
     pulses = node.numbers(count)
     if (pulses == 0.0).any():
-        raise node.bad(f"{node.value} has a 0; give the pulses of a degree of each axis, negative where they count down")
+        raise node.bad(Text("{} has a 0; give the pulses of a degree of each axis, negative where they count down",
+                            node.value))
     return tuple(pulses.tolist())
 
 
 def speed_unit_of(node: Node) -> str:
     if node.text() not in SPEED_UNITS:
-        raise node.bad(f"{node.value!r} is not a unit of path speeds; use {', '.join(SPEED_UNITS)}")
+        raise node.bad(Text("{!r} is not a unit of path speeds; use {}", node.value, ", ".join(SPEED_UNITS)))
     return node.text()
 
 
@@ -48,14 +49,14 @@ def unit_of(node: Node) -> Array:
     axis = node.numbers(3)
     length = float(np.linalg.norm(axis))
     if abs(length - 1.0) > 1e-6:
-        raise node.bad(f"{node.value} is not a unit vector")
+        raise node.bad(Text("{} is not a unit vector", node.value))
     return axis / length
 
 
 def slides(joint: Node) -> bool:
     kind = joint["type"].text() if joint.has("type") else "revolute"
     if kind not in ("revolute", "prismatic"):
-        raise joint["type"].bad(f"{kind!r} is not a type of joint; use revolute or prismatic")
+        raise joint["type"].bad(Text("{!r} is not a type of joint; use revolute or prismatic", kind))
     return kind == "prismatic"
 
 
@@ -64,7 +65,7 @@ def most_of(joint: Node, key: str, what: str) -> float:
         return math.inf
     most = joint[key].number()
     if most <= 0.0:
-        raise joint[key].bad(f"{most:g} is not {what}; give more than 0, or null where not known")
+        raise joint[key].bad(Text("{:g} is not {}; give more than 0, or null where not known", most, what))
     return most
 
 
@@ -90,16 +91,16 @@ def opw_arm(node: Node, count: int) -> OpwArm:
     lengths = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
     node.only(*lengths, "offsets", "signs")
     if count != 6:
-        raise node.bad(f"the closed form is for six joints, there are {count}")
+        raise node.bad(Text("the closed form is for six joints, there are {}", count))
     signs = node["signs"].numbers(6)
     if (np.abs(signs) != 1.0).any():
-        raise node["signs"].bad(f"{node['signs'].value} must be 1 or -1 each")
+        raise node["signs"].bad(Text("{} must be 1 or -1 each", node["signs"].value))
     offsets = node["offsets"].numbers(6)
     if (np.abs(offsets) > 180.0).any():
-        raise node["offsets"].bad(f"{node['offsets'].value} must lie within +-180")
+        raise node["offsets"].bad(Text("{} must lie within +-180", node["offsets"].value))
     for name in ("c2", "c3"):
         if node[name].number() <= 0.0:
-            raise node[name].bad(f"{node[name].value} is not the length of an arm; give more than 0 mm")
+            raise node[name].bad(Text("{} is not the length of an arm; give more than 0 mm", node[name].value))
     return OpwArm(
         **{name: node[name].number() for name in lengths},
         offsets=tuple(np.radians(offsets).tolist()), signs=tuple(int(sign) for sign in signs),

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...geometry import frames
 from ...geometry.file_content import content
-from ...issues import InputError
+from ...issues import InputError, Text, Word
 from ...types import Array
 
 LARGEST = 16  # MB
@@ -36,10 +36,10 @@ class Node:
     def only(self, *known: str) -> Node:
         """Itself, if it is an object without unknown keys."""
         if not isinstance(self.value, dict):
-            raise self.bad(f"{_short(self.value)} is not an object with the keys {', '.join(known)}")
+            raise self.bad(Text("{} is not an object with the keys {}", _short(self.value), ", ".join(known)))
         for key in self.value:
             if key not in known:
-                raise self.bad(f"the key {key!r} is not known; use {', '.join(known)}")
+                raise self.bad(Text("the key {!r} is not known; use {}", key, ", ".join(known)))
         return self
 
     def has(self, key: str) -> bool:
@@ -48,25 +48,26 @@ class Node:
 
     def __getitem__(self, key: str) -> Node:
         if not isinstance(self.value, dict) or key not in self.value:
-            raise self.bad(f"the key {key!r} is missing")
+            raise self.bad(Text("the key {!r} is missing", key))
         return Node(self.value[key], self.path, f"{self.key}.{key}".lstrip("."))
 
     def items(self, length: int | None = None) -> list[Node]:
         """The parts of a list, of `length` where given."""
         if not isinstance(self.value, list) or (length is not None and len(self.value) != length):
-            raise self.bad(f"{_short(self.value)} is not a list" + (f" of {length}" if length is not None else ""))
+            raise self.bad(Text("{} is not a list{}", _short(self.value),
+                                Word(Text(" of {}", length) if length is not None else "")))
         return [Node(value, self.path, f"{self.key}[{index}]") for index, value in enumerate(self.value)]
 
     def pairs(self) -> Iterator[tuple[str, Node]]:
         """The keys and values of an object."""
         if not isinstance(self.value, dict):
-            raise self.bad(f"{_short(self.value)} is not an object")
+            raise self.bad(Text("{} is not an object", _short(self.value)))
         return ((key, self[key]) for key in self.value)
 
     def text(self) -> str:
         """A text that is not empty."""
         if not isinstance(self.value, str) or not self.value:
-            raise self.bad(f"{_short(self.value)} is not a text")
+            raise self.bad(Text("{} is not a text", _short(self.value)))
         return self.value
 
     def texts(self) -> tuple[str, ...]:
@@ -76,7 +77,7 @@ class Node:
     def number(self) -> float:
         """A finite number."""
         if isinstance(self.value, bool) or not isinstance(self.value, (int, float)) or not abs(self.value) <= LARGEST_NUMBER:
-            raise self.bad(f"{_short(self.value)} is not a number")
+            raise self.bad(Text("{} is not a number", _short(self.value)))
         return float(self.value)
 
     def numbers(self, length: int) -> Array:
@@ -93,7 +94,7 @@ class Node:
             return -math.inf, math.inf
         lower, upper = (item.number() for item in self.items(2))
         if not lower < upper:
-            raise self.bad(f"{_short(self.value)} is not a range; give the smaller one first, or null for endless")
+            raise self.bad(Text("{} is not a range; give the smaller one first, or null for endless", _short(self.value)))
         return lower * unit, upper * unit
 
     def matrix(self, rows: int, columns: int) -> Array:
@@ -112,7 +113,7 @@ def read(path: Path) -> Node:
     except RecursionError:
         raise InputError("BAD_MACHINE", str(path), "it is nested too deeply to be a machine file") from None
     except (OSError, ValueError) as error:
-        raise InputError("BAD_MACHINE", str(path), f"cannot be read as a machine file: {error}") from None
+        raise InputError("BAD_MACHINE", str(path), "cannot be read as a machine file: {}", error) from None
 
 
 def _short(value: Any) -> str:

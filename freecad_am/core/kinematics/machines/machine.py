@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.located import is_there, located
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...types import Array
 from ..arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement
 from ..chain import Chain
@@ -123,7 +123,7 @@ class Machine:
         """The set of limits of that name; InputError 'UNKNOWN_LIMITS' when there is none."""
         if name not in self.limit_sets:
             raise InputError(
-                "UNKNOWN_LIMITS", "cell.limits", f"{self.id} has no limits {name!r}; use {', '.join(self.limit_sets)}"
+                "UNKNOWN_LIMITS", "cell.limits", "{} has no limits {!r}; use {}", self.id, name, ", ".join(self.limit_sets)
             )
         return self.limit_sets[name]
 
@@ -173,7 +173,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
     if text.lower().endswith(".json"):
         path = Path(text).expanduser()
         if not is_there(path):
-            raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no machine file {text}")
+            raise InputError("UNKNOWN_MACHINE", "cell.machine", "there is no machine file {}", text)
         return _parse(read(path))
     meant = reference(text)
     if meant is not None:
@@ -181,7 +181,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
     path = file_of(text, folders)
     machine = _built_in(path, located(path).stat().st_mtime_ns) if path.parent == BUILT_IN else _parse(read(path))
     if machine.id != text:
-        raise InputError("BAD_MACHINE", f"{path}: id", f"{machine.id!r} is not the name of the file, {text!r}")
+        raise InputError("BAD_MACHINE", f"{path}: id", "{!r} is not the name of the file, {!r}", machine.id, text)
     return machine
 
 
@@ -197,7 +197,7 @@ def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
         path = Path(folder).expanduser() / f"{name}.json"
         if path.stem == name and is_there(path):  # a name may be too long for a file
             return path
-    raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{name!r} is not known; {_near(name, sorted(_files(folders)))}")
+    raise InputError("UNKNOWN_MACHINE", "cell.machine", "{!r} is not known; {}", name, _near(name, sorted(_files(folders))))
 
 
 def parse(text: str, path: Path) -> Machine:
@@ -219,7 +219,7 @@ def _near(name: str, names: list[str]) -> str:
     import difflib  # only when a name was wrong: starting is most of a small job's time
 
     near = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
-    return f"did you mean {', '.join(near)}?" if near else f"known are {', '.join(names)}"
+    return Text("did you mean {}?", ", ".join(near)) if near else Text("known are {}", ", ".join(names))
 
 
 def _parse(top: Node) -> Machine:
@@ -260,7 +260,7 @@ def _parse(top: Node) -> Machine:
         shapes=shapes, payload=entry.payload_of(top), bodies=link_bodies(top, links, shapes),
     )
     if MAKER not in machine.limit_sets:
-        raise top["limits"].bad(f"the set {MAKER!r} is missing")
+        raise top["limits"].bad(Text("the set {!r} is missing", MAKER))
     if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
         raise controller["matrix"].bad("the matrix has no inverse")
     for array in (machine.base, machine.max_speed, machine.max_acceleration, machine.max_jerk, machine.controller_matrix,
@@ -273,8 +273,8 @@ def _parse(top: Node) -> Machine:
 def _calibrated(machine: Machine, path: Path) -> Machine:
     """The machine with the joint frames that were measured of one robot, and the inverse of these."""
     if not isinstance(machine.arm, ParallelAxesArm):
-        raise InputError("BAD_CALIBRATION", "cell.machine", f"{machine.title} takes no calibration; those of Universal "
-                         "Robots do: leave it out")
+        raise InputError("BAD_CALIBRATION", "cell.machine", "{} takes no calibration; those of Universal Robots do: leave "
+                         "it out", machine.title)
     poses, robot = calibration.read(path)
     chain = calibration.calibrated(machine.chain, machine.base, poses, path)
     text = f"{path.name} ({robot})" if robot else path.name

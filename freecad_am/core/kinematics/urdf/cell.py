@@ -15,7 +15,7 @@ import numpy as np
 
 from ...geometry import frames
 from ...geometry.located import is_there
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...parameters.external import MORE, PART, ROBOT, WHERE, External, Pose
 from ...types import Array
 from .elements import CODE
@@ -91,11 +91,12 @@ class UrdfCell:
         others = [way for way in self.farthest if way[: len(robot)] != robot]
         for way in others:
             if way[0] == robot[0]:
-                self._refuse(f"{way[-1]!r} is carried by {way[0]!r}, as the robot is; a positioner must stand on the floor")
+                self._refuse(Text("{!r} is carried by {!r}, as the robot is; a positioner must stand on the floor", way[-1],
+                                  way[0]))
         if len(others) > 1:
             names = ", ".join(" - ".join(way) for way in others)
-            self._refuse(f"{len(others)} chains move beside the robot ({names}), and one can carry the part; name it in "
-                         f"`{WHERE}`, with base and tip")
+            self._refuse(Text("{} chains move beside the robot ({}), and one can carry the part; name it in `{}`, with base "
+                              "and tip", len(others), names, WHERE))
         return others[0] if others else ()
 
     def _tip(self, way: Way) -> str:
@@ -122,12 +123,12 @@ class UrdfCell:
 
     def _no_robot(self) -> str:
         longest = max(self.farthest, key=len, default=())
-        return (f"there is no robot in it: no chain has six turning axes on nothing but axes that slide; the longest is "
-                f"{' - '.join(longest) or 'none'}")
+        return Text("there is no robot in it: no chain has six turning axes on nothing but axes that slide; the longest is "
+                    "{}", " - ".join(longest) or "none")
 
     def _several(self, robots: Sequence[Way]) -> str:
-        return (f"there are {len(robots)} robots in it, the last axes of which are {', '.join(one[-1] for one in robots)}; "
-                f"name one in `cell.machine`, with base and tip, and what stands beside it in `{WHERE}`")
+        return Text("there are {} robots in it, the last axes of which are {}; name one in `cell.machine`, with base and "
+                    "tip, and what stands beside it in `{}`", len(robots), ", ".join(one[-1] for one in robots), WHERE)
 
     def _refuse(self, message: str) -> NoReturn:
         raise InputError(CODE, self.urdf.path.name, message)
@@ -139,10 +140,10 @@ def texts_of(meant: Reference) -> tuple[str, str]:
     Raises InputError BAD_URDF where they cannot be told apart, BAD_VALUE where links of one of them are named.
     """
     if meant.base is not None or meant.tip is not None:
-        raise InputError("BAD_VALUE", WHERE, f"{WHOLE} takes all of the file; leave out base and tip of the machine, or "
-                         "name the mechanisms one by one")
+        raise InputError("BAD_VALUE", WHERE, "{} takes all of the file; leave out base and tip of the machine, or name the "
+                         "mechanisms one by one", WHOLE)
     if not is_there(meant.file):
-        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no URDF {meant.file}")
+        raise InputError("UNKNOWN_MACHINE", "cell.machine", "there is no URDF {}", meant.file)
     found = UrdfCell(meant.file)
     external = f"{MORE} ".join(map(str, found.external()))
     return str(found.machine()), external or "none"
@@ -152,8 +153,8 @@ def texts_of_machine(machine: object) -> tuple[str, str]:
     """The same of what a cell names as its machine; InputError BAD_VALUE where that is no URDF."""
     meant = reference(machine) if isinstance(machine, str) else None
     if meant is None:
-        raise InputError("BAD_VALUE", WHERE, f"{WHOLE} is for a machine that is the URDF of the whole cell, such as "
-                         "machine: bay.urdf; or give a list of mechanisms")
+        raise InputError("BAD_VALUE", WHERE, "{} is for a machine that is the URDF of the whole cell, such as machine: "
+                         "bay.urdf; or give a list of mechanisms", WHOLE)
     return texts_of(meant)
 
 

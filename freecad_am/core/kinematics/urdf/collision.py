@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ...issues import Text
 from ...types import Array
 from ..links import bodies
 from ..links.bodies import Pieces
@@ -85,5 +86,5 @@ def _solid(element: Element) -> Solid | None:
 
 def _sizes(element: Element, sizes: Array) -> Array:
     if (sizes <= 0.0).any():
-        raise element.bad(f"<{element.tag}> has a size that is not larger than 0")
+        raise element.bad(Text("<{}> has a size that is not larger than 0", element.tag))
     return sizes

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...geometry import frames
 from ...geometry.file_content import content
-from ...issues import InputError
+from ...issues import InputError, Text, Word
 from ...types import Array
 
 CODE = "BAD_URDF"
@@ -47,22 +47,22 @@ class Element:
         """The first child of that tag, which must be there."""
         found = self.first(tag)
         if found is None:
-            name = f" {self.attributes['name']!r}" if "name" in self.attributes else ""
-            raise self.bad(f"<{self.tag}>{name} has no <{tag}>")
+            name = Text(" {!r}", self.attributes["name"]) if "name" in self.attributes else ""
+            raise self.bad(Text("<{}>{} has no <{}>", self.tag, Word(name), tag))
         return found
 
     def text(self, name: str) -> str:
         """An attribute that must be there and not be empty."""
         value = self.attributes.get(name, "").strip()
         if not value:
-            raise self.bad(f"<{self.tag}> has no {name}")
+            raise self.bad(Text("<{}> has no {}", self.tag, name))
         return value
 
     def words(self, name: str, count: int, default: str) -> list[str]:
         """So many words of an attribute, or of the default where it is left out."""
         words = self.attributes.get(name, default).split()
         if len(words) != count:
-            raise self.bad(f"{name}={self.attributes.get(name, '')!r} of <{self.tag}> is not {count} numbers")
+            raise self.bad(Text("{}={!r} of <{}> is not {} numbers", name, self.attributes.get(name, ""), self.tag, count))
         return words
 
     def number(self, name: str, default: str | None = None) -> float:
@@ -94,7 +94,8 @@ class Element:
             value = math.nan
         if not math.isfinite(value):
             raise self.bad(
-                f"{name}={self.attributes.get(name, word)!r} of <{self.tag}> holds {word!r}, which is not a number"
+                Text("{}={!r} of <{}> holds {!r}, which is not a number", name, self.attributes.get(name, word), self.tag,
+                    word)
             )
         return value
 
@@ -110,7 +111,7 @@ def read(path: Path) -> Element:
         stack.append(element)
 
     def refuse(name: str, *_: object) -> None:
-        raise InputError(CODE, f"{path.name}: line {parser.CurrentLineNumber}", f"entities such as {name!r} are not read")
+        raise InputError(CODE, f"{path.name}: line {parser.CurrentLineNumber}", "entities such as {!r} are not read", name)
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda _: stack.pop()
@@ -118,10 +119,10 @@ def read(path: Path) -> Element:
     try:
         parser.Parse(content(path, LARGEST, CODE, str(path)), True)
     except OSError as error:
-        raise InputError(CODE, str(path), f"cannot be read: {error.strerror or error}") from None
+        raise InputError(CODE, str(path), "cannot be read: {}", error.strerror or error) from None
     except xml.parsers.expat.ExpatError as error:
         text = xml.parsers.expat.errors.messages[error.code]
-        raise InputError(CODE, f"{path.name}: line {error.lineno}", f"this is not XML: {text}") from None
+        raise InputError(CODE, f"{path.name}: line {error.lineno}", "this is not XML: {}", text) from None
     return stack[0].children[0]
 
 

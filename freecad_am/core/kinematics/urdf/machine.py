@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...geometry.located import is_there
-from ...issues import InputError
+from ...issues import InputError, Text, Word
 from ...parameters.external import WHERE
 from ...types import Array
 from ..chain import Chain
@@ -35,11 +35,10 @@ def described(meant: Reference) -> tuple[Description, SerialArm | None]:
         return found, closed_form(found.chain)
     except InputError as error:
         track = opw_recognition.track_of(found.chain)
-        begin = "" if not track else (
-            f"; the robot begins at the link {robot.moved_by(found.joints[track - 1])!r}; or write `external: {WHOLE}`, "
-            "which takes track and positioner of the file")
+        begin = "" if not track else Text("; the robot begins at the link {!r}; or write `external: {}`, which takes track "
+                                          "and positioner of the file", robot.moved_by(found.joints[track - 1]), WHOLE)
         raise InputError(
-            error.code, "cell.machine", f"{robot.path.name} from {base} to {tip}: {error.message}{begin}"
+            error.code, "cell.machine", "{} from {} to {}: {}{}", robot.path.name, base, tip, error.message, Word(begin)
         ) from None
 
 
@@ -60,17 +59,17 @@ def _ends(meant: Reference, where: str) -> tuple[Urdf, str, str]:
     """A file, and the links that a chain begins and ends with: those that are meant, or that the file proposes."""
     path = Path(meant.file).expanduser()
     if not is_there(path):
-        raise InputError("UNKNOWN_MACHINE", where, f"there is no URDF {meant.file}")
+        raise InputError("UNKNOWN_MACHINE", where, "there is no URDF {}", meant.file)
     robot = Urdf(path)
     base = meant.base or robot.bases()[0]
     tips = robot.tips(base) if base in robot.links else []
     for link in (base, meant.tip):
         if link is not None and link not in robot.links:
             known = ", ".join(robot.links)
-            raise InputError("BAD_URDF", where, f"{path.name} has no link {link!r}; it has {known}")
+            raise InputError("BAD_URDF", where, "{} has no link {!r}; it has {}", path.name, link, known)
     if meant.tip is None and not tips:
-        raise InputError("BAD_URDF", where, f"no joint of {path.name} moves anything against {base!r}; name "
-                         "another link as base")
+        raise InputError("BAD_URDF", where, "no joint of {} moves anything against {!r}; name another link as base",
+                         path.name, base)
     return robot, base, meant.tip or tips[0]
 
 

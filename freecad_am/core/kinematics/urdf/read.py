@@ -15,7 +15,7 @@ import numpy as np
 
 from ...geometry import frames
 from ...geometry.located import is_there, located
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
 from ..links.bodies import Pieces
@@ -63,7 +63,7 @@ class Urdf:
             raise InputError(CODE, self.path.name, "this is xacro; make a URDF of it first, with the program xacro of ROS")
         self.top = urdf_xml.read(self.path)
         if self.top.tag != "robot":
-            raise self.top.bad(f"this is <{self.top.tag}>, not the <robot> of a URDF")
+            raise self.top.bad(Text("this is <{}>, not the <robot> of a URDF", self.top.tag))
         # what xacro wrote may still name its namespace
         if any(child.tag.startswith("xacro:") for child in self.top.children):
             raise self.top.bad("this is xacro; make a URDF of it first, with the program xacro of ROS")
@@ -74,10 +74,10 @@ class Urdf:
             for end in ("parent", "child"):
                 link = joint.one(end).text("link")
                 if link not in self.links:
-                    raise joint.one(end).bad(f"there is no link {link!r}")
+                    raise joint.one(end).bad(Text("there is no link {!r}", link))
             child = joint.one("child").text("link")
             if child in self.parent:
-                raise joint.bad(f"the link {child!r} is moved by {self.parent[child].text('name')!r} already")
+                raise joint.bad(Text("the link {!r} is moved by {!r} already", child, self.parent[child].text("name")))
             self.parent[child] = joint
 
     def _named(self, tag: str) -> dict[str, Element]:
@@ -85,10 +85,10 @@ class Urdf:
         for element in self.top.all(tag):
             name = element.text("name")
             if name in found:
-                raise element.bad(f"there is a {tag} {name!r} already, in line {found[name].line}")
+                raise element.bad(Text("there is a {} {!r} already, in line {}", tag, name, found[name].line))
             found[name] = element
         if not found:
-            raise self.top.bad(f"there is no <{tag}>")
+            raise self.top.bad(Text("there is no <{}>", tag))
         return found
 
     def bases(self) -> list[str]:
@@ -138,7 +138,7 @@ class Urdf:
         joints = list(self._between(base, tip))
         moving = [joint for joint in joints if joint.text("type") != FIXED]
         if not moving:
-            raise InputError(CODE, self.path.name, f"no joint moves {tip!r} against {base!r}; choose another link")
+            raise InputError(CODE, self.path.name, "no joint moves {!r} against {!r}; choose another link", tip, base)
         origins, rest = [], np.eye(4)
         for joint in joints:
             rest = rest @ joint.pose()
@@ -162,7 +162,7 @@ class Urdf:
         while link in self.parent:
             link = self.parent[link].one("parent").text("link")
             if link in found:
-                raise self.parent[link].bad(f"the link {link!r} carries itself")
+                raise self.parent[link].bad(Text("the link {!r} carries itself", link))
             found.append(link)
         return found
 
@@ -177,16 +177,16 @@ class Urdf:
         """The joints from a link to another, in order."""
         above = [tip, *self.above(tip)]
         if base not in above:
-            raise InputError(CODE, self.path.name, f"the link {base!r} does not carry {tip!r}; choose others")
+            raise InputError(CODE, self.path.name, "the link {!r} does not carry {!r}; choose others", base, tip)
         for link in reversed(above[: above.index(base)]):
             joint = self.parent[link]
             kind = joint.text("type")
             if kind not in (*MOVING, FIXED):
-                raise joint.bad(f"the joint {joint.text('name')!r} is {kind}; "
-                                f"only {', '.join(MOVING)} and fixed ones are read")
+                raise joint.bad(Text("the joint {!r} is {}; only {} and fixed ones are read", joint.text("name"), kind,
+                                     ", ".join(MOVING)))
             mimic = joint.first("mimic")
             if mimic is not None:
-                raise mimic.bad(f"the joint {joint.text('name')!r} follows another one, which a serial chain cannot")
+                raise mimic.bad(Text("the joint {!r} follows another one, which a serial chain cannot", joint.text("name")))
             yield joint
 
     def _makers(self, base: str) -> Array | None:
@@ -256,7 +256,7 @@ def _turned_out(rest: Array, axis: Array, tip: str, notes: list[str]) -> Array:
     of ROS-Industrial has its X outwards, where tool0 has its Z."""
     if _along(rest[:3, 2], axis) or not _along(rest[:3, 0], axis):
         return rest
-    notes.append(f"the X of {tip} points out of the flange, not its Z: it is turned there, as tool0 stands to flange")
+    notes.append(Text("the X of {} points out of the flange, not its Z: it is turned there, as tool0 stands to flange", tip))
     inwards = float(rest[:3, 0] @ rest[:3, 3]) < -BEHIND_MM
     return np.asarray(rest @ frames.pose(frames.about_y(-0.5 * math.pi if inwards else 0.5 * math.pi), (0.0, 0.0, 0.0)))
 
@@ -266,7 +266,7 @@ def _axis(joint: Element) -> Array:
     axis = np.array([1.0, 0.0, 0.0]) if element is None else element.numbers("xyz", 3, "1 0 0")
     length = float(np.linalg.norm(axis))
     if length < 1e-9:
-        raise (element or joint).bad(f"the axis of {joint.text('name')!r} has no direction")
+        raise (element or joint).bad(Text("the axis of {!r} has no direction", joint.text("name")))
     return np.asarray(axis / length)
 
 
@@ -277,7 +277,8 @@ def _limits(joint: Element) -> tuple[float, float, float]:
     unit = 1000.0 if kind == "prismatic" else 1.0
     if limit is None:
         if kind != "continuous":
-            raise joint.bad(f"the joint {joint.text('name')!r} has no <limit>; one that turns without end is continuous")
+            raise joint.bad(Text("the joint {!r} has no <limit>; one that turns without end is continuous",
+                                 joint.text("name")))
         return -math.inf, math.inf, math.inf
     values = []
     for name in ("lower", "upper", "velocity"):
@@ -287,5 +288,6 @@ def _limits(joint: Element) -> tuple[float, float, float]:
     if kind == "continuous":
         lower, upper = -math.inf, math.inf
     if not lower < upper:
-        raise limit.bad(f"the limits of {joint.text('name')!r} run from {lower:g} to {upper:g}; give the lower one first")
+        raise limit.bad(Text("the limits of {!r} run from {:g} to {:g}; give the lower one first", joint.text("name"), lower,
+                             upper))
     return lower, upper, speed if speed > 0.0 else math.inf

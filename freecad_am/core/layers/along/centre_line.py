@@ -17,7 +17,7 @@ from ...geometry.mesh.facets import doubled_areas
 from ...geometry.mesh.refined import Edges
 from ...geometry.mesh.solid import SolidMesh
 from ...geometry.obstacles import Body
-from ...issues import InputError
+from ...issues import InputError, Text
 from ...types import Array, Index
 from .guide_edges import Nodes
 
@@ -136,14 +136,14 @@ def centre_line(bodies: Sequence[Body], start: Array, way: Array, depth: float) 
     length = np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum()
     led = float(length * np.mean(areas)) / SolidMesh(bodies[0].vertices, bodies[0].triangles).volume
     if not LED < led < 2.0 - LED:
-        raise _not_found(name, f"the line of {length:.4g} mm leads through {100.0 * led:.3g} % of the volume")
+        raise _not_found(name, Text("the line of {:.4g} mm leads through {:.3g} % of the volume", length, 100.0 * led))
     return nodes
 
 
 def _not_found(name: str, why: str) -> InputError:
     return InputError(
-        "GUIDE_NOT_FOUND", "strategy.guide", f"auto finds no centre line of {name} from where it stands: {why}; choose an "
-        "edge, a wire or a sketch as guide, or set strategy.direction so that the part stands on one of its ends",
+        "GUIDE_NOT_FOUND", "strategy.guide", "auto finds no centre line of {} from where it stands: {}; choose an edge, a "
+        "wire or a sketch as guide, or set strategy.direction so that the part stands on one of its ends", name, why,
     )
 
 

@@ -19,7 +19,7 @@ from ...geometry.mesh.split_edges import split
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import Region
-from ...issues import ERROR, InfeasibleError, InputError, Issue
+from ...issues import ERROR, InfeasibleError, InputError, Issue, Text
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
 from ...types import Array, Index
@@ -69,9 +69,9 @@ def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> list[
     number = planes.count(top, strategy)
     if not number:
         raise InputError(
-            "TOO_LOW", "strategy.layer_height", f"{height:g} mm is too much for {', '.join(body.name for body in bodies)}, "
-            f"{top:.4g} mm long along the guide: no layer is cut in its {strategy.cut_at}; give at most "
-            f"{0.99 * top / max(strategy.share_of_cut, 0.001):.3g} mm",
+            "TOO_LOW", "strategy.layer_height", "{:g} mm is too much for {}, {:.4g} mm long along the guide: no layer is "
+            "cut in its {}; give at most {:.3g} mm", height, ", ".join(body.name for body in bodies), top, strategy.cut_at,
+            0.99 * top / max(strategy.share_of_cut, 0.001),
         )
     heights: Array = height * (np.arange(number, dtype=np.float64) + strategy.share_of_cut)
     cuts = [
@@ -133,9 +133,9 @@ def _refuse_tight(
     spot = points[worst] if bent[worst] > TIGHTEST else points[side[np.argmax(leaps), 0]]
     foot = base.placed(guide.at(guide.distance(spot[None]))[0])[0]
     raise InputError(
-        "GUIDE_TIGHT", name, f"the guide bends more tightly at {place(foot)} than the part is wide there: planes normal to "
-        f"it cross one another within the part, at {place(base.placed(spot[None])[0])}; choose a guide nearer to the inside "
-        "of the bend or with a larger radius, or strategy.layers: geodesic",
+        "GUIDE_TIGHT", name, "the guide bends more tightly at {} than the part is wide there: planes normal to it cross one "
+        "another within the part, at {}; choose a guide nearer to the inside of the bend or with a larger radius, or "
+        "strategy.layers: geodesic", place(foot), place(base.placed(spot[None])[0]),
     )
 
 
@@ -166,14 +166,14 @@ def _refuse_uneven(made: Sequence[Slice], base: Base, strategy: SolidParameters)
     spot = rings[int(np.abs(off).argmax())]
     at = place(base.placed(worst.surface.wrap(spot[None]).points)[0])
     need = float(np.abs(off).max()) / height
-    message = (
-        f"{len(uneven)} of {len(made)} layers are not as high everywhere as asked for: layer {worst.layer} is "
-        f"{worst.heights[0]:.3g} to {worst.heights[2]:.3g} mm high, farthest off the {height:g} mm at {at}; strategy.band "
-        f"allows {100.0 * strategy.band:.3g} %, and {100.0 * need:.3g} % would be needed: raise it, or choose a guide in "
-        "the middle of the part or one that bends less"
+    message = Text(
+        "{} of {} layers are not as high everywhere as asked for: layer {} is {:.3g} to {:.3g} mm high, farthest off the "
+        "{:g} mm at {}; strategy.band allows {:.3g} %, and {:.3g} % would be needed: raise it, or choose a guide in the "
+        "middle of the part or one that bends less", len(uneven), len(made), worst.layer, worst.heights[0], worst.heights[2],
+        height, at, 100.0 * strategy.band, 100.0 * need
     )
     raise InfeasibleError(
-        HEIGHT, f"{base.name} layer {worst.layer}", message, (Issue(ERROR, HEIGHT, message, worst.layer),)
+        HEIGHT, f"{base.name} layer {worst.layer}", message, issues=(Issue(ERROR, HEIGHT, message, worst.layer),)
     )
 
 
@@ -186,7 +186,7 @@ def _refuse_outside(found: Sequence[Region], surface: AlongLayer, base: Base, la
     away = float(hull.equations[:, 2].max())
     if away > BEYOND * float(np.ptp(points, axis=0).max()):
         raise InputError(
-            "GUIDE_OUTSIDE", "strategy.guide", f"the guide leaves the part: at layer {layer} it is {away:.3g} mm beside it, "
-            f"at {place(base.placed(surface.pose[:3, 3]))}; choose a guide in the part or along one of its edges, or "
-            "guide: auto",
+            "GUIDE_OUTSIDE", "strategy.guide", "the guide leaves the part: at layer {} it is {:.3g} mm beside it, at {}; "
+            "choose a guide in the part or along one of its edges, or guide: auto", layer, away,
+            place(base.placed(surface.pose[:3, 3])),
         )

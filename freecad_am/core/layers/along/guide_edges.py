@@ -51,9 +51,9 @@ def chained(edges: Sequence[Nodes]) -> Nodes:
                 float(np.linalg.norm(edge.points[k] - end)) for edge in left for k in (0, -1) for end in ends
             )
             raise InputError(
-                "GUIDE_OPEN", WHERE, f"its edges are not one curve: {len(left)} of {len(edges)} do not go on from where the "
-                f"others end, at {place(ends[0])} and {place(ends[1])}, and the nearest is {away:.3g} mm off; choose edges "
-                "that meet end to end",
+                "GUIDE_OPEN", WHERE, "its edges are not one curve: {} of {} do not go on from where the others end, at {} "
+                "and {}, and the nearest is {:.3g} mm off; choose edges that meet end to end", len(left), len(edges),
+                place(ends[0]), place(ends[1]), away,
             )
         k, behind, edge = found
         left.pop(k)
@@ -61,8 +61,8 @@ def chained(edges: Sequence[Nodes]) -> Nodes:
     _refuse_corners(chain)
     if np.linalg.norm(chain[0].points[0] - chain[-1].points[-1]) < TOUCHING:
         raise InputError(
-            "GUIDE_CLOSED", WHERE, f"it comes back to where it begins, at {place(chain[0].points[0])}: the last layer would "
-            "lie on the first; leave an edge of it out",
+            "GUIDE_CLOSED", WHERE, "it comes back to where it begins, at {}: the last layer would lie on the first; leave "
+            "an edge of it out", place(chain[0].points[0]),
         )
     return Nodes(
         np.vstack([chain[0].points[:1], *(edge.points[1:] for edge in chain)]),
@@ -76,11 +76,11 @@ def _refuse_corners(chain: Sequence[Nodes]) -> None:
         at = place(after.points[0])
         if turn > BACK:
             raise InputError(
-                "GUIDE_DOUBLES_BACK", WHERE, f"it turns back by {np.degrees(turn):.4g} deg at {at}: layers would go through "
-                "what was deposited; choose edges that lead on",
+                "GUIDE_DOUBLES_BACK", WHERE, "it turns back by {:.4g} deg at {}: layers would go through what was "
+                "deposited; choose edges that lead on", np.degrees(turn), at,
             )
         if turn > CORNER:
             raise InputError(
-                "GUIDE_CORNER", WHERE, f"it has a corner of {np.degrees(turn):.3g} deg at {at}, where layers would have no "
-                "height on the inside; round it with a radius, or choose guide: auto",
+                "GUIDE_CORNER", WHERE, "it has a corner of {:.3g} deg at {}, where layers would have no height on the "
+                "inside; round it with a radius, or choose guide: auto", np.degrees(turn), at,
             )

@@ -11,7 +11,7 @@ from ...geometry.curves.guide import guide
 from ...geometry.formatting import place
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
-from ...issues import NOTE, Issue
+from ...issues import NOTE, Issue, Text
 from ...parameters.filled import SolidParameters
 from ...types import Array
 from ..planes.stacking import stacked
@@ -50,6 +50,6 @@ def _note(nodes: Nodes, label: str) -> Issue:
     length = float(np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum())
     turn = np.degrees(np.arccos(np.clip((nodes.tangents[1:] * nodes.tangents[:-1]).sum(axis=1), -1.0, 1.0)).sum())
     return Issue(
-        NOTE, "GUIDE", f"layers of {label} stand normal to its centre line, {length:.4g} mm from {place(nodes.points[0])} "
-        f"to {place(nodes.points[-1])}, which turns by {turn:.3g} deg in all",
+        NOTE, "GUIDE", Text("layers of {} stand normal to its centre line, {:.4g} mm from {} to {}, which turns by {:.3g} "
+            "deg in all", label, length, place(nodes.points[0]), place(nodes.points[-1]), turn),
     )

@@ -11,7 +11,7 @@ import numpy as np
 from ...geometry.mesh.solid import Search, SolidMesh
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Group
-from ...issues import NOTE, WARNING, InputError, Issue
+from ...issues import NOTE, WARNING, InputError, Issue, Text
 from ...parameters.filled import SolidParameters
 from ...types import Array
 from ..charts.layer import ChartLayer
@@ -55,8 +55,8 @@ def _refuse(strategy: SolidParameters) -> None:
     ):
         if given:
             raise InputError(
-                "NOT_FOR_FAMILY", f"strategy.{key}", f"it is for plane layers, not for curved ones; use {instead}, or "
-                "layers: planes",
+                "NOT_FOR_FAMILY", f"strategy.{key}", "it is for plane layers, not for curved ones; use {}, or layers: "
+                "planes", instead,
             )
 
 
@@ -78,8 +78,8 @@ def _field(
         if not len(start):
             away = min(float(np.abs(_to(chosen, one.vertices, near)).min()) for one in solids)
             raise InputError(
-                "NOT_STANDING", "strategy.start_faces", f"no face of {name} lies on the faces chosen to start from, which "
-                f"are {away:.4g} mm away; choose faces that it touches, or none",
+                "NOT_STANDING", "strategy.start_faces", "no face of {} lies on the faces chosen to start from, which are "
+                "{:.4g} mm away; choose faces that it touches, or none", name, away,
             )
     try:
         found = field(solids, start, step, through=strategy.layers == "geodesic")
@@ -91,8 +91,8 @@ def _field(
         ) from None
     if found.lost > LOST:
         raise InputError(
-            "NOT_CONNECTED", name, f"{100.0 * found.lost:.3g} % of it hang together with nothing that stands on the "
-            "platform or the substrate; deposit these by themselves, or set strategy.direction",
+            "NOT_CONNECTED", name, "{:.3g} % of it hang together with nothing that stands on the platform or the substrate; "
+            "deposit these by themselves, or set strategy.direction", 100.0 * found.lost,
         )
     return found
 
@@ -103,8 +103,8 @@ def _step(volume: float, name: str, strategy: SolidParameters) -> float:
     step = max(FINE * height, float(np.cbrt(volume / MAX_NODES)))
     if step > COARSE * height:
         raise InputError(
-            "TOO_FINE", "strategy.layer_height", f"{height:g} mm is too fine for curved layers of {name}, "
-            f"{volume / 1000.0:.4g} cm3; give at least {step / COARSE:.2g} mm, or layers: planes",
+            "TOO_FINE", "strategy.layer_height", "{:g} mm is too fine for curved layers of {}, {:.4g} cm3; give at least "
+            "{:.2g} mm, or layers: planes", height, name, volume / 1000.0, step / COARSE,
         )
     return step
 
@@ -134,6 +134,6 @@ def _stretched(piece: Piece, layer: int) -> Issue:
     share = 100.0 * piece.stretch
     return Issue(
         NOTE if piece.stretch <= 3.0 * REPORTED_DISTORTION else WARNING, "DISTORTED",
-        "a curved layer cannot be laid flat without "
-        f"distortion: beads are up to {share:.2g} % nearer together or farther apart than the bead spacing", layer,
+        Text("a curved layer cannot be laid flat without distortion: beads are up to {:.2g} % nearer together or farther "
+            "apart than the bead spacing", share), layer,
     )

@@ -131,7 +131,7 @@ def _refuse_folded(mesh: Mesh, above: Mesh, layer: int, label: str, strategy: Cl
         return
     at = int(np.argmin(np.where(big, share, np.inf)))
     raise InputError(
-        "FOLDED", "strategy.layers", f"layer {layer} of {label} would lie {layer * strategy.layer_height:.4g} mm above the "
-        f"faces, as far as a hollow reaches at {place(mesh.vertices[mesh.faces[at]].mean(axis=0))}, and fold there; lay at "
-        f"most {layer} layer(s), or leave out what is so hollow",
+        "FOLDED", "strategy.layers", "layer {} of {} would lie {:.4g} mm above the faces, as far as a hollow reaches at {}, "
+        "and fold there; lay at most {} layer(s), or leave out what is so hollow", layer, label,
+        layer * strategy.layer_height, place(mesh.vertices[mesh.faces[at]].mean(axis=0)), layer,
     )

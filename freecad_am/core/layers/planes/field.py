@@ -48,10 +48,10 @@ def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Itera
     number = count(top, strategy)
     if not number:
         raise InputError(
-            "TOO_LOW", "strategy.layer_height", f"{strategy.layer_height:g} mm is too much for "
-            f"{', '.join(body.name for body in bodies)}, {top:.4g} mm high along strategy.direction (the highest place is "
-            f"at {_highest(base, local)}): no layer is cut in its {strategy.cut_at}; give at most "
-            f"{0.99 * top / max(strategy.share_of_cut, 0.001):.3g} mm",
+            "TOO_LOW", "strategy.layer_height", "{:g} mm is too much for {}, {:.4g} mm high along strategy.direction (the "
+            "highest place is at {}): no layer is cut in its {}; give at most {:.3g} mm", strategy.layer_height,
+            ", ".join(body.name for body in bodies), top, _highest(base, local), strategy.cut_at,
+            0.99 * top / max(strategy.share_of_cut, 0.001),
         )
     heights: Array = strategy.layer_height * (np.arange(number, dtype=np.float64) + strategy.share_of_cut)
     cuts = [

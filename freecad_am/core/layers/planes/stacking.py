@@ -15,7 +15,7 @@ from ...geometry.mesh.facets import doubled_areas
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ...geometry.plane import Plane
-from ...issues import NOTE, Issue
+from ...issues import NOTE, Issue, Text, Word
 from ...parameters.filled import SolidParameters
 from ...types import Array
 
@@ -147,10 +147,10 @@ def _note(found: Sequence[Stacked], label: str, lean: float) -> Issue:
     chosen = found[0]
     upright_one = next(one for one in found if one.way is AXES[0] or np.array_equal(one.way, AXES[0]))
     other = "" if chosen is upright_one else (
-        f"; along (0, 0, 1) it would be {upright_one.area:.4g} mm^2 and {upright_one.height:.4g} mm"
+        Text("; along (0, 0, 1) it would be {:.4g} mm^2 and {:.4g} mm", upright_one.area, upright_one.height)
     )
     x, y, z = (round(float(value), 6) + 0.0 for value in chosen.way)
     return Issue(
-        NOTE, "DIRECTION", f"{label} is stacked along ({x:g}, {y:g}, {z:g}): {chosen.area:.4g} mm^2 of it lean over nothing "
-        f"by more than {lean:.4g} deg, and it is {chosen.height:.4g} mm high{other}",
+        NOTE, "DIRECTION", Text("{} is stacked along ({:g}, {:g}, {:g}): {:.4g} mm^2 of it lean over nothing by more than "
+            "{:.4g} deg, and it is {:.4g} mm high{}", label, x, y, z, chosen.area, lean, chosen.height, Word(other)),
     )

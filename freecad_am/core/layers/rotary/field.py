@@ -83,8 +83,8 @@ def _refuse_apex(loops: Sequence[Loop], surface: Developable, base: Base, where:
         z = float(round_it[:, 2].mean()) if surface.is_cylinder else surface.height
         at = place(base.placed(np.array([[0.0, 0.0, z]]))[0])
         raise InputError(
-            "APEX_INSIDE", where, f"the solid reaches over the end of the hub's axis, at {at}, where equidistant surfaces "
-            "have an apex or an end; let it end beside the axis",
+            "APEX_INSIDE", where, "the solid reaches over the end of the hub's axis, at {}, where equidistant surfaces have "
+            "an apex or an end; let it end beside the axis", at,
         )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from ...collision.bead_ends import LINK_GRAIN, Beads
 from ...geometry.cylinders import Cylinder
 from ...geometry.obstacles import Body
-from ...issues import ERROR, Issue
+from ...issues import ERROR, Issue, Text, Word
 from ...kinematics.cell import Cell
 from ...kinematics.links.contact import BASE, PART, TORCH, ArmContact, Touches
 from ...kinematics.links.nozzle_body import NOZZLE
@@ -89,12 +89,13 @@ def clearance_issue(
     if link == NOZZLE:
         moved = "lift the part over it by cell.platform, or move it in cell.external" if stands else (
             "move it in cell.obstacles, the part or cell.deposition_point")
-        return Issue(ERROR, CODE, f"the nozzle touches {what}{where}; {moved}", layer, bead)
+        return Issue(ERROR, CODE, Text("the nozzle touches {}{}; {}", what, Word(where), Word(moved)), layer, bead)
     name = (
-        "the part" if link == PART else "the torch" if link == TORCH else "the base" if link == BASE else f"link {link}"
+        "the part" if link == PART else "the torch" if link == TORCH else "the base" if link == BASE else Text("link {}",
+            link)
     )
     remedy = "move one of them in cell.external or the part" if stands else "move the part or cell.deposition_point"
     return Issue(
-        ERROR, CODE, f"{name} comes nearer than {cell.arm_clearance:g} mm to {what}, or touches it"
-        f"{where}; {remedy}, try another cell.branch, or lower cell.arm_clearance", layer, bead,
+        ERROR, CODE, Text("{} comes nearer than {:g} mm to {}, or touches it{}; {}, try another cell.branch, or lower "
+            "cell.arm_clearance", Word(name), cell.arm_clearance, what, Word(where), Word(remedy)), layer, bead,
     )

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.columns import dots, lengths
-from ...issues import ERROR, Issue
+from ...issues import ERROR, Issue, Text
 from ...kinematics.cell import Cell
 from ...motion import AT_END, AT_START, MIDDLE
 from ...parameters.ramp import SHORTEST, ramp
@@ -52,8 +52,8 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
     along = np.r_[0.0, np.cumsum(lengths(np.diff(path.bead.points, axis=0)))]
     if used > along[-1] + END_MM:
         return path, [Issue(
-            ERROR, CODE, f"start and end take {used:.4g} mm of this bead of {along[-1]:.4g} mm; make process.start "
-            "and process.end shorter, or those of its class", path.layer, path.index,
+            ERROR, CODE, Text("start and end take {:.4g} mm of this bead of {:.4g} mm; make process.start and process.end "
+                "shorter, or those of its class", used, along[-1]), path.layer, path.index,
         )]
     stretches = _stretches(path.bead, float(along[-1]))
     borders = _borders(stretches, along)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.ramps import below
-from ...issues import ERROR, WARNING, Issue
+from ...issues import ERROR, WARNING, Issue, Text, Word
 from ...kinematics.cell import Cell
 from ...toolpath import Bead, SpeedLaw
 from ...types import Array
@@ -46,7 +46,8 @@ def rings_slowed(
     slowest = min(float(path.bead.speed.min()) for path in slowed)
     return result, [Issue(
         WARNING, SLOWED,
-        f"{len(slowed)} bead(s) where the wall closes are run at down to {slowest:.3g} mm/s: the axes turn no faster",
+        Text("{} bead(s) where the wall closes are run at down to {:.3g} mm/s: the axes turn no faster", len(slowed),
+            slowest),
         slowed[0].layer, slowed[0].index,
     )]
 
@@ -86,9 +87,9 @@ def corners_slowed(
     worst = min(places, key=lambda place: place.speed)
     return result, [Issue(
         WARNING, SLOWED,
-        f"at {len(places)} short places, {sum(place.length for place in places):.3g} mm in all, the deposit is slowed, here "
-        f"to {worst.speed:.3g} mm/s, for the axes go no faster; up to {max(place.pile for place in places):.2g} mm of the "
-        f"bead more than meant lie there{_growth(places, worst, law)}",
+        Text("at {} short places, {:.3g} mm in all, the deposit is slowed, here to {:.3g} mm/s, for the axes go no faster; "
+            "up to {:.2g} mm of the bead more than meant lie there{}", len(places), sum(place.length for place in places),
+            worst.speed, max(place.pile for place in places), _growth(places, worst, law)),
         worst.path.layer, worst.path.index, worst.point,
     )]
 
@@ -154,9 +155,9 @@ def _growth(places: Sequence[_Place], worst: _Place, law: SpeedLaw | None) -> st
     if law is None or not wider > 0.0:
         return ""
     higher = max(place.higher for place in places)
-    beyond = f"; slower than {law.slowest:.3g} mm/s nothing was measured" if worst.speed < law.slowest * JUST else ""
-    return f": it is up to {wider:.2g} mm wider there" + (
-        f" and {higher:.2g} mm higher" if higher > 0.0 else "") + f", by the bead model{beyond}"
+    beyond = Text("; slower than {:.3g} mm/s nothing was measured", law.slowest) if worst.speed < law.slowest * JUST else ""
+    return Text(": it is up to {:.2g} mm wider there{}, by the bead model{}", wider,
+                Word(Text(" and {:.2g} mm higher", higher) if higher > 0.0 else ""), Word(beyond))
 
 
 def _width(bead: Bead, segments: slice, layer_height: float) -> float:
@@ -194,8 +195,9 @@ def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
             able = path.bead.speed[point + 1] / ratio[point, axis]
             found.append(Issue(
                 ERROR, "SPEED",
-                f"axis {cell.machine.axes[axis]} would move at {speed[point, axis] / value:.0f} {unit}/s, it can do "
-                f"{cell.machine.max_speed[axis] / value:.0f}; {_advice(path.bead, int(point) + 1, float(able))}",
+                Text("axis {} would move at {:.0f} {}/s, it can do {:.0f}; {}", cell.machine.axes[axis],
+                    speed[point, axis] / value, unit, cell.machine.max_speed[axis] / value, _advice(path.bead,
+                        int(point) + 1, float(able))),
                 path.layer, path.index, int(point) + 1,
             ))
     return found
@@ -203,9 +205,9 @@ def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
 
 def _advice(bead: Bead, point: int, able: float) -> str:
     if bead.height is None:
-        return f"lower the travel speed to {able:.2f} mm/s"
-    return (
-        f"it could at {able:.2f} mm/s, but the bead model asks for {bead.speed[point]:.3g} mm/s and too much would pile up: "
-        "turn the torch more slowly (build_direction.max_turn), lean it less, mount the part otherwise, or ask for a wider "
-        "bead (process.bead_width), which is laid more slowly"
+        return Text("lower the travel speed to {:.2f} mm/s", able)
+    return Text(
+        "it could at {:.2f} mm/s, but the bead model asks for {:.3g} mm/s and too much would pile up: turn the torch more "
+        "slowly (build_direction.max_turn), lean it less, mount the part otherwise, or ask for a wider bead "
+        "(process.bead_width), which is laid more slowly", able, bead.speed[point]
     )

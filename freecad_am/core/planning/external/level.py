@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ...issues import ERROR, Issue
+from ...issues import ERROR, Issue, Text
 from ...kinematics.cell import Cell
 from ...kinematics.external import ExternalAxes, tilt_from
 from ...toolpath import Bead, Toolpath
@@ -94,13 +94,15 @@ def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
 def _not_level(turning: bool, tilt: float, most: float, *place: int) -> Issue:
     leans, allowed = math.degrees(tilt), math.degrees(most)
     if not turning:
-        return Issue(ERROR, "NOT_LEVEL", f"the tool axis would be {leans:.3g} deg from the vertical, "
-                     f"build_direction.max_from_vertical allows {allowed:.3g} deg, and nothing turns the part; put it on a "
-                     "positioner, or allow more", *place)
+        return Issue(
+            ERROR, "NOT_LEVEL", Text("the tool axis would be {:.3g} deg from the vertical, "
+                "build_direction.max_from_vertical allows {:.3g} deg, and nothing turns the part; put it on a positioner, "
+                "or allow more", leans, allowed), *place
+        )
     return Issue(
-        ERROR, "NOT_LEVEL", f"the tool axis would be {leans:.3g} deg from the vertical, "
-        f"build_direction.max_from_vertical allows {allowed:.3g} deg; the positioner cannot turn the "
-        "part so far: mount the part otherwise, or allow more", *place,
+        ERROR, "NOT_LEVEL", Text("the tool axis would be {:.3g} deg from the vertical, build_direction.max_from_vertical "
+            "allows {:.3g} deg; the positioner cannot turn the part so far: mount the part otherwise, or allow more", leans,
+            allowed), *place,
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...geometry import frames
 from ...geometry.obstacles import enclosed
+from ...issues import Text
 from ...kinematics import external, offered
 from ...kinematics.arrangement import of_setup
 from ...kinematics.machines import machine as machines
@@ -29,7 +30,7 @@ Cells = Iterator[tuple[str, CellParameters]]
 AHEAD = ((0.75, 0.0), (0.6, 0.0), (0.9, 0.0), (0.75, 300.0), (0.6, -300.0))
 TRIED = 2  # positioners, the likeliest
 TRACK_SHARE = 0.6  # of the reach; along a part as long as that a track may help
-NOT_LEVEL, AUTO = "NOT_LEVEL", " and `cell.branch: auto`"
+NOT_LEVEL, AUTO = "NOT_LEVEL", "{} and `cell.branch: auto`"
 
 
 def moved(settings: CellParameters, folders: Sequence[str]) -> Cells:
@@ -47,7 +48,7 @@ def moved(settings: CellParameters, folders: Sequence[str]) -> Cells:
             x, y, z, a, b, c = named[k].pose
             moved = np.round((x, y, z) + (place - face))
             others[k] = dataclasses.replace(named[k], pose=(float(moved[0]), float(moved[1]), float(moved[2]), a, b, c))
-        remedy = " and ".join(f"`{WHERE}[{k}].pose: {_shown(others[k].pose)}`" for k in carriers)
+        remedy = Text.joined(" and ", (Text("`{}[{}].pose: {}`", WHERE, k, _shown(others[k].pose)) for k in carriers))
         yield remedy, dataclasses.replace(settings, external=_text(others))
 
 
@@ -69,7 +70,7 @@ def added(
             for place in _before(robot, platform[:2], float(face[2]))[:3]:
                 x, y, _ = place - face
                 one = External(suited.id, (float(round(x)), float(round(y)), 0.0, 0.0, 0.0, 0.0), PART)
-                yield _key_text(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
+                yield Text(AUTO, _key_text(one)), dataclasses.replace(settings, external=_text([one]), branch="auto")
         return
     spans = np.ptp(points, axis=0)
     longest = int(spans.argmax())
@@ -80,7 +81,7 @@ def added(
     for track in offered.tracks(robot, folders)[:1]:
         height = float(track.chain.forward(np.zeros(1))[2, 3])
         one = External(track.id, (0.0, 0.0, -height, 0.0, 0.0, turn), ROBOT)
-        yield _key_text(one) + AUTO, dataclasses.replace(settings, external=_text([one]), branch="auto")
+        yield Text(AUTO, _key_text(one)), dataclasses.replace(settings, external=_text([one]), branch="auto")
 
 
 def weight(toolpath: Toolpath, process: ProcessParameters) -> float:

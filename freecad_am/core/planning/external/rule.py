@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...issues import ERROR, NOTE, InputError, Issue, has_errors
+from ...issues import ERROR, NOTE, InputError, Issue, Text, has_errors
 from ...kinematics.cell import Cell
 from ...parameters.joints import LEVEL, JointParameters
 from ...toolpath import Toolpath
@@ -28,13 +28,13 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
         return False, []
     if cell.external is None:
         return False, [Issue(
-            NOTE, "NOT_USED", f"joints.external_axes: {parameters.external_axes} is of no effect without cell.external; "
-            "leave it out",
+            NOTE, "NOT_USED", Text("joints.external_axes: {} is of no effect without cell.external; leave it out",
+                parameters.external_axes),
         )]
     if parameters.method != METHOD:
         raise InputError(
-            "NOT_FOR_SETUP", "joints.external_axes", f"{parameters.external_axes} are polynomials per bead, the method "
-            f"{parameters.method} has none; use method: {METHOD}, or external_axes: {LEVEL}",
+            "NOT_FOR_SETUP", "joints.external_axes", "{} are polynomials per bead, the method {} has none; use method: {}, "
+            "or external_axes: {}", parameters.external_axes, parameters.method, METHOD, LEVEL,
         )
     return True, []
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.angles import TURN, shortest
-from ...issues import ERROR, Issue
+from ...issues import ERROR, Issue, Text
 from ...toolpath import Bead
 from ...types import Array
 from ..beads.chord_error import ROUNDING, deviation, leaning
@@ -58,7 +58,7 @@ def plan(
     helped: tuple[list[int], list[int]] = [], []
     before, index = np.zeros(task.cell.machine.chain.axes), 0
     for number, (bead, (layer, _)) in enumerate(zip(beads, places, strict=True)):
-        progress(number / len(beads), f"bead {number + 1} of {len(beads)}")
+        progress(number / len(beads), Text("bead {} of {}", number + 1, len(beads)))
         index = index if paths and paths[-1].layer == layer else 0
         runs = _within_stroke(task, bead, before)
         if len(runs) > 1 or runs[0].bead.points[0].tolist() != bead.points[0].tolist():
@@ -108,8 +108,8 @@ def _run(task: Task, bead: Bead, before: Array) -> _Run:
 
 def _not_straight(point: int, away: float, leans: float, layer: int, bead: int) -> Issue:
     return Issue(
-        ERROR, "NOT_STRAIGHT", f"the axes leave the bead by {away:.3g} mm, its direction by {math.degrees(leans):.3g} deg "
-        "between two points however many are added: near a pole; tilt away from it", layer, bead, point,
+        ERROR, "NOT_STRAIGHT", Text("the axes leave the bead by {:.3g} mm, its direction by {:.3g} deg between two points "
+            "however many are added: near a pole; tilt away from it", away, math.degrees(leans)), layer, bead, point,
     )
 
 

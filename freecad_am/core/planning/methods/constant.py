@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.angles import TURN, shortest
 from ...geometry.ties import first_most
-from ...issues import NOTE, Issue
+from ...issues import NOTE, Issue, Text
 from ...toolpath import Bead
 from ...types import Array
 from .. import criteria
@@ -43,11 +43,11 @@ def plan(
         rz, margin, served = best_rz(task, coarse, task.thresholds(coarse), clear)
         if not served:
             issues.append(Issue(
-                NOTE, "RZ_CONSTANT", f"none of {LOOKED} values of RZ keeps the links clear in the whole job; joints.method: "
-                "layer-by-layer chooses one for each bead"))
+                NOTE, "RZ_CONSTANT", Text("none of {} values of RZ keeps the links clear in the whole job; joints.method: "
+                    "layer-by-layer chooses one for each bead", LOOKED)))
         if margin < 0.0:
-            issues.append(Issue(NOTE, "RZ_CONSTANT", f"none of {TRIED} values of RZ serves for the whole job; the "
-                                f"nearest to it is {np.degrees(rz):.1f} deg"))
+            issues.append(Issue(NOTE, "RZ_CONSTANT", Text("none of {} values of RZ serves for the whole job; the nearest to "
+                                                          "it is {:.1f} deg", TRIED, np.degrees(rz))))
     else:
         rz = float(wanted)
     progress(0.7, "following the beads")

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...issues import InputError
+from ...issues import InputError, Word
 from ...motion import AT_END, AT_START, MIDDLE, Roles
 from ...parameters.process import ProcessParameters
 from ...parameters.program import ProgramParameters
@@ -24,9 +24,9 @@ def deposited(
     moves, numbers = zip(*runs, strict=True)
     if None in numbers and (process.scheduled or by == ARC):
         raise InputError(
-            "NO_SCHEDULE", "process.schedule", f"beads of the class {name or 'of an earlier version'} have no schedule, "
-            f"{'which arc instructions name' if by == ARC else 'and would be laid by that of the bead before'}; give "
-            f"process.schedule, or one in process.classes.{name}",
+            "NO_SCHEDULE", "process.schedule", "beads of the class {} have no schedule, {}; give process.schedule, or one "
+            "in process.classes.{}", name or "of an earlier version",
+            Word("which arc instructions name" if by == ARC else "and would be laid by that of the bead before"), name,
         )
     if len(set(numbers)) > 1 and by != OUTPUT and not parameters.dry_run:
         raise InputError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...issues import ERROR, NOTE, Issue
+from ...issues import ERROR, NOTE, Issue, Text
 from ...kinematics.cell import Cell
 from ..joint_path import BeadPath
 from .retract_ways import ASKED, LIMIT, SINGULAR, Failure, Leg
@@ -28,8 +28,9 @@ def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
     """About a bead on the rapid way to which the nozzle would meet what the names tell."""
     return Issue(
         ERROR, "RAPID_COLLISION",
-        f"on its way from the bead before the nozzle would meet {', '.join(names)} at every retract distance and direction "
-        "tried, and no way round was found; move the seam or the part, or take a more slender nozzle", layer, bead,
+        Text("on its way from the bead before the nozzle would meet {} at every retract distance and direction tried, and "
+            "no way round was found; move the seam or the part, or take a more slender nozzle", ", ".join(names)), layer,
+            bead,
     )
 
 
@@ -53,16 +54,16 @@ def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
         alone = failure.label < limits.axes
         unit, per = (machine.units[failure.label], float(machine.unit_values[failure.label])) if alone else (
             "deg", float(machine.unit_values[-1]))
-        text = (
-            f"{limits.labels[failure.label]} would be at {failure.value / per:.2f} {unit} on the retract before or after "
-            f"the bead, its limit is {failure.bound / per:g} {unit}, and no other height, direction or rotation keeps "
-            "within limits; lower process.between_layers.lift or move the part in the cell"
+        text: str = Text(
+            "{} would be at {:.2f} {} on the retract before or after the bead, its limit is {:g} {}, and no other height, "
+            "direction or rotation keeps within limits; lower process.between_layers.lift or move the part in the cell",
+            limits.labels[failure.label], failure.value / per, unit, failure.bound / per, unit
         )
     elif failure.kind == SINGULAR:
-        text = (
-            f"condition {failure.value:.4f} on a rapid move before or after the bead is below the {failure.bound:g} "
-            "allowed, and no other height, direction or rotation is farther from a singularity; lower "
-            "joints.min_condition or move the part in the cell"
+        text = Text(
+            "condition {:.4f} on a rapid move before or after the bead is below the {:g} allowed, and no other height, "
+            "direction or rotation is farther from a singularity; lower joints.min_condition or move the part in the cell",
+            failure.value, failure.bound
         )
     else:
         text = ("the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower "
@@ -84,16 +85,16 @@ def _raised(ways: RapidWays) -> list[Issue]:
     notes = []
     if raised:
         notes.append(Issue(
-            NOTE, "RAPID_LIFTED", f"before {len(raised)} beads the tool is withdrawn by up to {highest:.3g} mm instead of "
-            f"{ways.retract:g} mm to pass clear", raised[0]))
+            NOTE, "RAPID_LIFTED", Text("before {} beads the tool is withdrawn by up to {:.3g} mm instead of {:g} mm to pass "
+                "clear", len(raised), highest, ways.retract), raised[0]))
     if aside:
         notes.append(Issue(
-            NOTE, "RAPID_ASIDE", f"before {len(aside)} beads the tool is retracted in another direction than along its "
-            "axis, or turned on the way, to pass clear", aside[0]))
+            NOTE, "RAPID_ASIDE", Text("before {} beads the tool is retracted in another direction than along its axis, or "
+                "turned on the way, to pass clear", len(aside)), aside[0]))
     if ways.led.ways:
         notes.append(Issue(
-            NOTE, "RAPID_ROUND", f"before {len(ways.led.ways)} beads the rapid way is led round what is in the way of all "
-            "retracts, by places between", ways.place(ways.led.ways[0]).layer))
+            NOTE, "RAPID_ROUND", Text("before {} beads the rapid way is led round what is in the way of all retracts, by "
+                "places between", len(ways.led.ways)), ways.place(ways.led.ways[0]).layer))
     return notes
 
 
@@ -109,7 +110,8 @@ def _others(ways: RapidWays) -> list[Issue]:
     leaning = sum(leg.choice.direction != ASKED.direction for _, leg in other)
     turning = sum((leg.choice.turn, leg.choice.lean) != (ASKED.turn, ASKED.lean) for _, leg in other)
     return [Issue(
-        NOTE, "RAPID_OTHER", f"at {len(other)} ends of beads the retract of {ways.retract:g} mm would leave limits, reach "
-        f"or condition; it is {min(heights):.3g} to {max(heights):.3g} mm there, {leaning} times in another direction than "
-        f"along the tool axis and {turning} times with the tool turned", ways.beads[other[0][0] // 2].layer,
+        NOTE, "RAPID_OTHER", Text("at {} ends of beads the retract of {:g} mm would leave limits, reach or condition; it is "
+            "{:.3g} to {:.3g} mm there, {} times in another direction than along the tool axis and {} times with the tool "
+            "turned", len(other), ways.retract, min(heights), max(heights), leaning, turning),
+            ways.beads[other[0][0] // 2].layer,
     )]

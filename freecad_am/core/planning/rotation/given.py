@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ...issues import WARNING, Issue
+from ...issues import WARNING, Issue, Text
 from ...parameters.joints import JointParameters, given_polynomials
 from ...toolpath import Bead
 from ..joint_path import BeadPath
@@ -49,10 +49,10 @@ def paths(
 def not_used(parameters: JointParameters, places: Sequence[Place]) -> list[Issue]:
     """A warning of polynomials given for beads that are not there, or to a method that takes none."""
     if parameters.given and parameters.method != METHOD:
-        return [Issue(WARNING, "GIVEN_NOT_USED", f"joints.given is of no effect on the method {parameters.method}; use "
-                      f"{METHOD}, or take it out")]
+        return [Issue(WARNING, "GIVEN_NOT_USED", Text("joints.given is of no effect on the method {}; use {}, or take it "
+                                                      "out", parameters.method, METHOD))]
     lost = sorted(place for place in given_polynomials(parameters.given) if place is not None and place not in set(places))
     if not lost:
         return []
     named = ", ".join(f"{layer}/{bead}" for layer, bead in lost[:5]) + (" ..." if len(lost) > 5 else "")
-    return [Issue(WARNING, "GIVEN_NOT_USED", f"joints.given names beads that are not there: {named}; take them out")]
+    return [Issue(WARNING, "GIVEN_NOT_USED", Text("joints.given names beads that are not there: {}; take them out", named))]

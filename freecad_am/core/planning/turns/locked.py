@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...issues import ERROR, NOTE, InputError, Issue
+from ...issues import ERROR, NOTE, InputError, Issue, Text, Word
 from ...kinematics.cell import Cell
 from ...kinematics.inverse.five_axis import FiveAxis
 from ...parameters.joints import JointParameters
@@ -62,10 +62,10 @@ def as_held(
 def _missed(cell: Cell, lock: Lock, worst: tuple[float, int, int, int], allowed: float) -> Issue:
     name, (missed, *place) = cell.machine.axes[FiveAxis(cell.machine.chain).turning[lock.axis]], worst
     stands, off, most = (math.degrees(angle) for angle in (lock.angle, missed, allowed))
-    text = f"axis {name} stands at {stands:.4g} deg; the tool is up to {off:.3g} deg off the direction asked for"
+    text = Text("axis {} stands at {:.4g} deg; the tool is up to {:.3g} deg off the direction asked for", name, stands, off)
     if missed <= allowed:
         return Issue(NOTE, "FOUR_AXES", text, *place)
     return Issue(
-        ERROR, "FOUR_AXES", f"{text}, more than joints.max_residual allows ({most:.3g} deg); lock the other axis, elsewhere "
-        "or none", *place,
+        ERROR, "FOUR_AXES", Text("{}, more than joints.max_residual allows ({:.3g} deg); lock the other axis, elsewhere or "
+            "none", Word(text), most), *place,
     )

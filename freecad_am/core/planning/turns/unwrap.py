@@ -15,7 +15,7 @@ import numpy as np
 
 from ...geometry.angles import TURN, shortest
 from ...geometry.ties import first_least
-from ...issues import NOTE, WARNING, Issue
+from ...issues import NOTE, WARNING, Issue, Text
 from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath
@@ -48,8 +48,8 @@ def unwrapped(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[I
         result.append(path)
     names = task.cell.machine.axes
     notes = [
-        Issue(NOTE, "UNWIND", f"axis {names[axis]} turns back {len(layers)} times between beads, first before layer "
-              f"{layers[0]}", layer=layers[0])
+        Issue(NOTE, "UNWIND", Text("axis {} turns back {} times between beads, first before layer {}", names[axis],
+            len(layers), layers[0]), layer=layers[0])
         for axis, layers in back.items()
     ]
     return result, notes
@@ -148,11 +148,11 @@ def seam_notes(moved: list[int], split: list[int]) -> list[Issue]:
 
 def seam_note(layers: list[int]) -> Issue:
     """Says that seams were moved to find room for a limited axis."""
-    return Issue(NOTE, "SEAM_MOVED", f"the seams of {len(layers)} beads were moved to keep an axis within its limits",
+    return Issue(NOTE, "SEAM_MOVED", Text("the seams of {} beads were moved to keep an axis within its limits", len(layers)),
                  layer=layers[0])
 
 
 def split_note(layers: list[int]) -> Issue:
     """Says that beads were split because an axis lacks the stroke."""
-    return Issue(WARNING, "BEAD_SPLIT", f"{len(layers)} beads were split because an axis has not the stroke for a whole "
-                 f"bead", layer=layers[0])
+    return Issue(WARNING, "BEAD_SPLIT", Text("{} beads were split because an axis has not the stroke for a whole bead",
+                                             len(layers)), layer=layers[0])

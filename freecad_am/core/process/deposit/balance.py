@@ -10,7 +10,7 @@ from typing import Any
 
 from ...geometry.on_hub import SolidsOnHub
 from ...geometry.walls.part_depths import PartDepths
-from ...issues import NOTE, WARNING, Issue
+from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...toolpath import Toolpath
 
 LEFT_OUT, OUTSIDE, TWICE = "NOT_DEPOSITED", "DEPOSITED_BESIDE", "DEPOSITED_TWICE"
@@ -138,23 +138,23 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
     left = balance.left_out or 0.0
     share = left > NEGLIGIBLE * (balance.part or 0.0) and left > 0.0
     if balance.solids or balance.faces or share:
-        why = f"a wall of one bead, {balance.width:.4g} mm wide, is planned" if balance.width else (
+        why = Text("a wall of one bead, {:.4g} mm wide, is planned", balance.width) if balance.width else (
             "solids are built up on the hub, which is there before"
         )
-        found.append(Issue(WARNING, LEFT_OUT, f"{_left_out(balance, share)}: {why}"))
+        found.append(Issue(WARNING, LEFT_OUT, Text("{}: {}", _left_out(balance, share), Word(why))))
     if balance.outside:
         assert balance.beads is not None
         found.append(Issue(
-            WARNING, OUTSIDE, f"about {balance.outside / MM3:.3g} of {balance.beads / MM3:.3g} cm3 of beads lie beside "
-            f"{balance.label}, which is {balance.thick:.2g} mm thick there, and beads are {balance.width:.4g} mm wide; give "
-            "process.bead_width, or machine it off",
+            WARNING, OUTSIDE, Text("about {:.3g} of {:.3g} cm3 of beads lie beside {}, which is {:.2g} mm thick there, and "
+                "beads are {:.4g} mm wide; give process.bead_width, or machine it off", balance.outside / MM3,
+                balance.beads / MM3, balance.label, balance.thick, balance.width),
         ))
     twice, beads = balance.twice or 0.0, balance.beads or 0.0
     if twice > UNFILLED * beads:
         found.append(Issue(
-            _much(twice, beads), TWICE, f"about {twice / MM3:.3g} cm3 of beads are laid over others of their layer, "
-            f"{100.0 * twice / beads:.2g} % of those of {balance.label}: they come nearer to each other than they are wide, "
-            "or cross; layers get higher there. Use narrower beads, or leave out what is there twice",
+            _much(twice, beads), TWICE, Text("about {:.3g} cm3 of beads are laid over others of their layer, {:.2g} % of "
+                "those of {}: they come nearer to each other than they are wide, or cross; layers get higher there. Use "
+                "narrower beads, or leave out what is there twice", twice / MM3, 100.0 * twice / beads, balance.label),
         ))
     return tuple(found)
 
@@ -171,20 +171,22 @@ def _of_filling(of: Balance) -> tuple[Issue, ...]:
     of = replace(of, part=part, left_out=(of.left_out or 0.0) - of.hub)
     if (of.left_out or 0.0) > UNFILLED * part:
         found.append(Issue(
-            WARNING, LEFT_OUT, f"{_left_out(of, True)}: beads of {of.width:.4g} mm do not reach into what is "
-            "narrower, layers not above the last cut, and nothing is laid within a hub; use narrower beads, or lower layers",
+            WARNING, LEFT_OUT, Text("{}: beads of {:.4g} mm do not reach into what is narrower, layers not above the last "
+                "cut, and nothing is laid within a hub; use narrower beads, or lower layers", _left_out(of, True), of.width),
         ))
     if (of.outside or 0.0) > UNFILLED * part:
         found.append(Issue(
-            WARNING, OUTSIDE, f"about {(of.outside or 0.0) / MM3:.3g} cm3 of beads lie beside the {part / MM3:.3g} cm3 of "
-            f"{of.label}: beads of {of.width:.4g} mm stand out where it is narrower; use narrower beads, or machine it off",
+            WARNING, OUTSIDE, Text("about {:.3g} cm3 of beads lie beside the {:.3g} cm3 of {}: beads of {:.4g} mm stand out "
+                "where it is narrower; use narrower beads, or machine it off", (of.outside or 0.0) / MM3, part / MM3,
+                of.label, of.width),
         ))
     twice = of.twice or 0.0
     if twice > UNFILLED * part:
         found.append(Issue(
-            _much(twice, part), TWICE, f"about {twice / MM3:.3g} cm3 of beads are laid over others of their layer, "
-            f"{100.0 * twice / part:.2g} % of {of.label}: where lines and their links meet contours, and where room is left "
-            "for less than a bead; layers get higher there. Use fill: contours, narrower beads, or a wider strategy.gap",
+            _much(twice, part), TWICE, Text("about {:.3g} cm3 of beads are laid over others of their layer, {:.2g} % of {}: "
+                "where lines and their links meet contours, and where room is left for less than a bead; layers get higher "
+                "there. Use fill: contours, narrower beads, or a wider strategy.gap", twice / MM3, 100.0 * twice / part,
+                of.label),
         ))
     return tuple(found)
 
@@ -209,20 +211,22 @@ def _left_out(of: Balance, share: bool) -> str:
     """What is not deposited, as the beginning of a sentence."""
     left, part = (of.left_out or 0.0) / MM3, (of.part or 0.0) / MM3
     if of.filled:
-        return f"about {left:.3g} of the {part:.3g} cm3 of {of.label} are not deposited"
+        return Text("about {:.3g} of the {:.3g} cm3 of {} are not deposited", left, part, of.label)
     if not of.width and not of.solids:
-        return f"about {left:.3g} of the {part:.3g} cm3 of {of.label}, all that lies within its hub, are not deposited"
+        return Text("about {:.3g} of the {:.3g} cm3 of {}, all that lies within its hub, are not deposited", left, part,
+                    of.label)
     if not of.width:
-        return f"{_names([name for name, _ in of.solids])}, {left:.4g} of {part:.4g} cm3 of {of.label}, are not deposited"
+        return Text("{}, {:.4g} of {:.4g} cm3 of {}, are not deposited", _names([name for name, _ in of.solids]), left, part,
+                    of.label)
     if of.solids:
-        what = f"{len(of.solids)} solid(s) ({_names([name for name, _ in of.solids])})"
+        what = Text("{} solid(s) ({})", len(of.solids), _names([name for name, _ in of.solids]))
     else:
-        what = f"{len(of.faces)} face(s) ({_names(of.faces)})"
+        what = Text("{} face(s) ({})", len(of.faces), _names(of.faces))
     if not share:
-        return f"{what} of {of.label} are not deposited"
+        return Text("{} of {} are not deposited", Word(what), of.label)
     if of.solids or of.faces:
-        return f"{what}, about {left:.3g} cm3 of the {part:.3g} cm3 of {of.label}, are not deposited"
-    return f"about {left:.3g} cm3 of the {part:.3g} cm3 of {of.label} are not deposited"
+        return Text("{}, about {:.3g} cm3 of the {:.3g} cm3 of {}, are not deposited", Word(what), left, part, of.label)
+    return Text("about {:.3g} cm3 of the {:.3g} cm3 of {} are not deposited", left, part, of.label)
 
 
 def _names(names: Sequence[str]) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.columns import lengths
-from ...issues import WARNING, Issue
+from ...issues import WARNING, Issue, Text
 from ...toolpath import Toolpath
 from ...types import Array, Index, Mask
 from .pieces import Pieces, cut
@@ -196,14 +196,14 @@ def _issues(runs: list[_Run], toolpath: Toolpath, reach: float) -> list[Issue]:
     for layer in worst:
         longest = max(layers[layer], key=lambda run: run.length)
         found.append(Issue(
-            WARNING, CODE, f"{total[layer]:.4g} mm of beads lie over nothing, {longest.length:.4g} mm of them in a row from "
-            f"here: what is below is more than {reach:.4g} mm away, or they overhang it by more than half of their width; "
-            "deposit what carries them first, let the part grow from another side, or leave them out",
+            WARNING, CODE, Text("{:.4g} mm of beads lie over nothing, {:.4g} mm of them in a row from here: what is below "
+                "is more than {:.4g} mm away, or they overhang it by more than half of their width; deposit what carries "
+                "them first, let the part grow from another side, or leave them out", total[layer], longest.length, reach),
             layer, longest.bead, longest.point,
         ))
     if len(total) > len(worst):
         rest = math.fsum(length for layer, length in total.items() if layer not in worst)
         found.append(Issue(
-            WARNING, CODE, f"{len(total) - len(worst)} layers more have beads over nothing, {rest:.5g} mm of them",
+            WARNING, CODE, Text("{} layers more have beads over nothing, {:.5g} mm of them", len(total) - len(worst), rest),
         ))
     return found

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...issues import InputError
+from ...issues import InputError, Text, Word
 from ...toolpath import SpeedLaw
 from ...types import Array, Mask
 
@@ -128,12 +128,12 @@ def fit(
         "height": (height, "mm"),
     }
     if len(radius) < FEWEST:
-        rows = "1 row" if len(radius) == 1 else f"{len(radius)} rows"
-        raise InputError("TOO_FEW_ROWS", label, f"it has {rows}; measure at least {FEWEST} beads")
+        rows = "1 row" if len(radius) == 1 else Text("{} rows", len(radius))
+        raise InputError("TOO_FEW_ROWS", label, "it has {}; measure at least {} beads", Word(rows), FEWEST)
     for name, (column, unit) in columns.items():
         wrong = np.flatnonzero(~((np.isfinite(column) | (column is radius)) & (column > 0.0)))
         if len(wrong):
-            text = f"{name} {column[wrong[0]]:.9g} {unit} is not a positive number; mend the row, or leave it out"
+            text = Text("{} {:.9g} {} is not a positive number; mend the row, or leave it out", name, column[wrong[0]], unit)
             raise InputError("BAD_TABLE", row_name(label, int(wrong[0]), lines), text)
     equivalent = speed if feeds is None else speed * (wire_feed / feeds)
     terms = np.stack([np.cbrt(1.0 / (MINUTE * equivalent)), np.ones(len(radius))], axis=1)
@@ -145,7 +145,7 @@ def fit(
         raise InputError("COLLINEAR_TABLE", label, _alike(radius, speed, equivalent))
     fits = [_fit(terms, column) for column in (width, height)]
     if fits[0].m <= 0.0:
-        raise InputError("NO_MODEL", label, f"beads get wider with speed (m = {fits[0].m:.4g}); check the table's columns")
+        raise InputError("NO_MODEL", label, "beads get wider with speed (m = {:.4g}); check the table's columns", fits[0].m)
     made = BeadModel(
         fits[0], fits[1], (float(speed.min()), float(speed.max())), (float(radius.min()), float(radius.max())), wire_feed
     )
@@ -158,21 +158,21 @@ def _ends(values: Array) -> tuple[float, float]:
 
 def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
     """How messages name a row, from 0, of a table: counted from 1, and by its line in the file where that is known."""
-    return f"{label} row {row + 1}" + (f" (line {lines[row]})" if len(lines) else "")
+    return Text("{} row {}{}", label, row + 1, Word(Text(" (line {})", lines[row]) if len(lines) else ""))
 
 
 def _alike(radius: Array, speed: Array, equivalent: Array) -> str:
     """Why speeds and radii of a table do not determine the coefficients, and what to measure."""
     straight = np.isinf(radius).all()
     same = [
-        f"all beads have the {name} {column[0]:.9g} {unit}"
+        Text("all beads have the {} {:.9g} {}", name, column[0], unit)
         for name, column, unit in (("radius", radius, "mm"), ("travel speed", MINUTE * speed, "mm/min"))
         if not np.isinf(column).any() and np.ptp(column) <= FLATTEST * column.max()
     ]
     if not same and np.ptp(equivalent) <= FLATTEST * equivalent.max():
         return "all beads get the same length of wire to each millimetre; measure at least two speeds at one wire feed"
-    text = ", and ".join(same) or "speeds and radii vary only together"
-    return f"{text}; measure at least two speeds{'' if straight else ' and two radii'}"
+    text = Text.joined(", and ", same) or "speeds and radii vary only together"
+    return Text("{}; measure at least two speeds{}", text, Word("" if straight else " and two radii"))
 
 
 def _fit(terms: Array, values: Array) -> Fit:

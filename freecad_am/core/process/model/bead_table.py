@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.file_content import content
-from ...issues import InputError
+from ...issues import InputError, Text, Word
 from ...parameters.process import ProcessParameters
 from ...types import Array
 from .bead_model import MINUTE, BeadModel, fit, row_name
@@ -69,7 +69,7 @@ def measured(name: str, folder: Path | None = None) -> Measured:
             ) from None
         why = (getattr(error, "strerror", None) or str(error) or "no access").lower()
         raise InputError(
-            "NO_FILE", name, f"the calibration table cannot be read ({why}); give none, csw or the path of one",
+            "NO_FILE", name, "the calibration table cannot be read ({}); give none, csw or the path of one", why,
         ) from None
     numbered = enumerate(text.splitlines(), 1)
     filled = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
@@ -78,7 +78,8 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     header = [] if not lines else next(csv.reader(lines[:1]))
     missing = [column for column in COLUMNS if column not in header]
     if missing:
-        raise InputError("BAD_TABLE", path.name, f"it has no column {missing[0]}; its first line names {', '.join(COLUMNS)}")
+        raise InputError("BAD_TABLE", path.name, "it has no column {}; its first line names {}", missing[0],
+                         ", ".join(COLUMNS))
     table = np.array([
         [_number(row, column, row_name(path.name, number, numbers)) for column in COLUMNS] for number, row in enumerate(rows)
     ])
@@ -89,7 +90,8 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     if len(wrong):
         where = row_name(path.name, int(wrong[0]), numbers)
         raise InputError(
-            "BAD_TABLE", where, f"wire feed {feed[wrong[0]]:g} m/min is not a positive number; mend the row, or leave it out"
+            "BAD_TABLE", where, "wire feed {:g} m/min is not a positive number; mend the row, or leave it out",
+            feed[wrong[0]]
         )
     several = len(feed) > 0 and np.ptp(feed) > 1e-9 * feed.max()
     feeds = feed * 1000.0 / MINUTE
@@ -104,5 +106,5 @@ def _number(row: dict[str, str | None], column: str, where: str) -> float:
     try:
         return float(text)
     except ValueError:
-        what = f"{column} {text!r} is not a number" if text else f"there is no {column}"
-        raise InputError("BAD_TABLE", where, f"{what}; mend the row, or leave it out") from None
+        what = Text("{} {!r} is not a number", column, text) if text else Text("there is no {}", column)
+        raise InputError("BAD_TABLE", where, "{}; mend the row, or leave it out", Word(what)) from None

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...issues import WARNING, InputError, Issue
+from ...issues import WARNING, InputError, Issue, Text, Word
 from ...parameters.process import ProcessParameters
 from ...toolpath import Toolpath
 
@@ -21,8 +21,8 @@ def with_speed_issues(toolpath: Toolpath, process: ProcessParameters) -> Toolpat
     slowest, fastest = process.material.slowest or 0.0, process.material.fastest
     if fastest is not None and slowest > fastest:
         raise InputError(
-            "BAD_VALUE", "process.material.slowest", f"{slowest:g} mm/s is more than the fastest, {fastest:g} mm/s; give "
-            "the slower speed here"
+            "BAD_VALUE", "process.material.slowest", "{:g} mm/s is more than the fastest, {:g} mm/s; give the slower speed "
+            "here", slowest, fastest
         )
     if not slowest and fastest is None:
         return toolpath
@@ -36,10 +36,11 @@ def with_speed_issues(toolpath: Toolpath, process: ProcessParameters) -> Toolpat
             worst, where = off, (layer, number)
     if worst <= 1.0 + ROUNDING:
         return toolpath
-    bounds = f"at {slowest:.4g} mm/s or more" if fastest is None else f"at {slowest:.4g} to {fastest:.4g} mm/s"
+    bounds = Text("at {:.4g} mm/s or more",
+                  slowest) if fastest is None else Text("at {:.4g} to {:.4g} mm/s", slowest, fastest)
     return replace(toolpath, issues=(*toolpath.issues, Issue(
-        WARNING, CODE, f"beads are laid at {some[0]:.4g} to {some[1]:.4g} mm/s, and "
-        f"{process.material.name or 'the material'} {bounds}; change process.travel_speed, process.bead_width or "
-        "process.classes, or measure beads at these speeds",
+        WARNING, CODE, Text("beads are laid at {:.4g} to {:.4g} mm/s, and {} {}; change process.travel_speed, "
+            "process.bead_width or process.classes, or measure beads at these speeds", some[0], some[1],
+            process.material.name or "the material", Word(bounds)),
         *where,
     )))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...issues import NOTE, WARNING, Issue
+from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...parameters.process import ProcessParameters
 from ...toolpath import Bead, Toolpath
 from ...types import Array
@@ -86,9 +86,10 @@ def with_heights(
     drift = abs(height["mean"] - layer_height) / layer_height
     return Issue(
         WARNING if drift > DRIFT else NOTE, HEIGHTS,
-        f"{'run as fast as the axes can follow, ' if as_run else ''}beads are predicted {height['min']:.3g} to "
-        f"{height['max']:.3g} mm high, {height['mean']:.3g} mm in the mean, at layers of {layer_height:g} mm"
-        + ("; set strategy.layer_height to what the beads make" if drift > DRIFT else "") + _sections(some, process, model),
+        Text("{}beads are predicted {:.3g} to {:.3g} mm high, {:.3g} mm in the mean, at layers of {:g} mm{}{}",
+            Word("run as fast as the axes can follow, " if as_run else ""), height["min"], height["max"], height["mean"],
+            layer_height, Word("; set strategy.layer_height to what the beads make" if drift > DRIFT else ""),
+            _sections(some, process, model)),
     )
 
 
@@ -96,15 +97,14 @@ def _sections(some: Segments, process: ProcessParameters, model: BeadModel) -> s
     """What a wire feed in proportion to the speed is, or would be, where speeds vary."""
     if np.isfinite(some.wire).all():
         low, high = float(some.wire.min()), float(some.wire.max())
-        return f". The wire runs in proportion to the speed, at {low:.3g} to {high:.3g} mm/s, and keeps their section"
+        return Text(". The wire runs in proportion to the speed, at {:.3g} to {:.3g} mm/s, and keeps their section", low,
+                    high)
     per_mm = with_model(process, model) / model.straight_speed(process.bead_width)
     slowest, fastest = (per_mm * float(value) / MINUTE for value in (some.speed.min(), some.speed.max()))
     if fastest < 1.05 * slowest:
         return ""
-    return (
-        ". At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the section, at "
-        f"{slowest:.3g} to {fastest:.3g} mm/s of wire"
-    )
+    return Text(". At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the "
+                "section, at {:.3g} to {:.3g} mm/s of wire", slowest, fastest)
 
 
 def _spread(values: Array, length: Array) -> dict[str, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ...issues import WARNING, Issue
+from ...issues import WARNING, Issue, Text
 from ...parameters.bead_classes import CLASSES
 from ...parameters.process import ProcessParameters
 from ...toolpath import Toolpath
@@ -43,10 +43,10 @@ def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None)
     if given == 0.0 or abs(given - taken) <= TOLERANCE * taken:
         return _of_classes(made, process)
     return replace(made, issues=(*made.issues, Issue(
-        WARNING, CODE, f"the wire feeds {given:.4g} mm3/s, {process.wire.feed:.4g} mm/s of "
-        f"{process.wire.diameter:g} mm wire, but beads of {width:.4g} x {height:.4g} mm at {speed:.4g} mm/s take "
-        f"{taken:.4g} mm3/s; set process.wire.feed to {balanced:.4g} mm/s, or to auto, or make width, layer "
-        "height and travel speed what they are",
+        WARNING, CODE, Text("the wire feeds {:.4g} mm3/s, {:.4g} mm/s of {:g} mm wire, but beads of {:.4g} x {:.4g} mm at "
+            "{:.4g} mm/s take {:.4g} mm3/s; set process.wire.feed to {:.4g} mm/s, or to auto, or make width, layer height "
+            "and travel speed what they are", given, process.wire.feed, process.wire.diameter, width, height, speed, taken,
+            balanced),
     )))
 
 
@@ -72,9 +72,9 @@ def _of_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
         return toolpath
     text = ", ".join(f"{one.name} {one.rate:.4g}" for one in off)
     return replace(toolpath, issues=(*toolpath.issues, Issue(
-        WARNING, CODE, f"the wire feeds {given:.4g} mm3/s, but beads of these classes, at their own travel speeds, take "
-        f"{text} mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the "
-        "travel speed of the others", off[0].layer, off[0].bead,
+        WARNING, CODE, Text("the wire feeds {:.4g} mm3/s, but beads of these classes, at their own travel speeds, take {} "
+            "mm3/s: more or less lies there than there is room for; give them a schedule that feeds the wire so, or the "
+            "travel speed of the others", given, text), off[0].layer, off[0].bead,
     )))
 
 

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from ...geometry.columns import dots
 from ...geometry.fitted import PredictedShape
 from ...geometry.formatting import place
-from ...issues import WARNING, Issue
+from ...issues import WARNING, Issue, Text, Word
 from ...types import Array, Index, Mask
 from .faces import Faces
 from .grid import Grid
@@ -141,17 +141,17 @@ def issues(found: PredictedShape, layer_heights: Array, first: Mask, remedy: str
         return drifts
     lacks = found.allowance - found.least
     if found.least <= -found.reach:
-        text = f"there is none within {found.reach:.3g} mm"
+        text = Text("there is none within {:.3g} mm", found.reach)
     elif found.least < 0.0:
-        text = f"the part sticks out by {-found.least:.3g} mm"
+        text = Text("the part sticks out by {:.3g} mm", -found.least)
     else:
-        text = f"{found.least:.3g} mm are left to machine"
+        text = Text("{:.3g} mm are left to machine", found.least)
     low = any(" mm below where " in issue.message for issue in drifts)  # more of it would be needed everywhere
-    remedy = "Lay layers as high as they come out first" if low else remedy.format(f"{lacks:.3g}")
+    remedy = "Lay layers as high as they come out first" if low else Text(remedy, f"{lacks:.3g}")
     return (*drifts, Issue(
-        WARNING, CODE, f"on {100.0 * found.short:.3g} % of the faces the predicted deposit does not reach "
-        f"{found.allowance:g} mm beyond the part, on {100.0 * found.outside:.3g} % it ends within the part: at "
-        f"{place(found.worst)} {text}. {remedy}", found.layer, found.bead, found.point,
+        WARNING, CODE, Text("on {:.3g} % of the faces the predicted deposit does not reach {:g} mm beyond the part, on "
+            "{:.3g} % it ends within the part: at {} {}. {}", 100.0 * found.short, found.allowance, 100.0 * found.outside,
+            place(found.worst), Word(text), remedy), found.layer, found.bead, found.point,
     ))
 
 
@@ -165,7 +165,7 @@ def _drift(drift: Array, layer_heights: Array, first: Mask) -> tuple[Issue, ...]
     made = layer_heights[worst] + drift[worst] / (worst - lowest + 1)
     way = "below" if drift[worst] < 0.0 else "above"
     return (Issue(
-        WARNING, DRIFT, f"this layer is predicted to end {abs(drift[worst]):.3g} mm {way} where the next one should begin: "
-        f"up to here layers come out {made:.3g} mm high in the mean, and {layer_heights[worst]:g} mm are planned; set "
-        f"strategy.layer_height to {made:.3g} mm, or change what the wire feeds", worst,
+        WARNING, DRIFT, Text("this layer is predicted to end {:.3g} mm {} where the next one should begin: up to here "
+            "layers come out {:.3g} mm high in the mean, and {:g} mm are planned; set strategy.layer_height to {:.3g} mm, "
+            "or change what the wire feeds", abs(drift[worst]), Word(way), made, layer_heights[worst], made), worst,
     ),)

@@ -19,6 +19,7 @@ from scipy.sparse import csr_matrix
 from scipy.spatial import cKDTree
 
 from ...geometry.columns import dots
+from ...issues import Text
 from ...parameters.process import ProcessParameters
 from ...toolpath import Toolpath
 from ...types import Array, Index
@@ -95,7 +96,7 @@ def predicted_deposit(parts: Sequence[Part], report: Report, edge: float | None 
             done += 1
             if start == end:
                 continue
-            report(done / layers, f"layer {done} of {layers}")
+            report(done / layers, Text("layer {} of {}", done, layers))
             some = own.rows(slice(start, end))
             layer = _Layer(grid, some, _base(grid, some, below))
             total += layer.lay()

@@ -51,7 +51,7 @@ def in_plane(directions: Array, plane: Array, label: str = "build_direction") ->
     if np.linalg.norm(flat, axis=1).min() < LEAST:
         raise InputError(
             "NO_DIRECTION", "build_direction.mode",
-            f"a build direction of {label} is normal to its plane of symmetry; use local",
+            "a build direction of {} is normal to its plane of symmetry; use local", label,
         )
     return unit(flat)
 
@@ -112,8 +112,8 @@ def limited(
         low, high = high, 1.5 * high
         if high > 2.0 * s[-1]:
             raise InputError(
-                "TURN_LIMIT", label, f"build directions cannot be brought below {np.degrees(rate):.3g} deg/mm on a bead of "
-                f"{s[-1]:.4g} mm: allow a faster turn, or use the mode fixed",
+                "TURN_LIMIT", label, "build directions cannot be brought below {:.3g} deg/mm on a bead of {:.4g} mm: allow "
+                "a faster turn, or use the mode fixed", np.degrees(rate), s[-1],
             )
     for _ in range(HALVINGS):
         if high - low < 1e-4 * high:

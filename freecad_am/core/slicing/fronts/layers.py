@@ -24,6 +24,7 @@ from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.mesh.triangle_mesh import Mesh, thinned
 from ...geometry.walls.patch_wall import FirstCurve, Rim
 from ...geometry.walls.surface import dot
+from ...issues import Text
 from ...types import Array, Index, Mask
 from ..backstop import refuse_too_many
 from ..banded import HEAVY
@@ -169,7 +170,7 @@ def layers(
     done, closed = [state.fronts], [list[SpaceCurve]()]
     left = len(state.behind) - len(state.passed)
     while left:
-        progress(1.0 - left / len(state.behind), f"finding layer {len(done)}")
+        progress(1.0 - left / len(state.behind), Text("finding layer {}", len(done)))
         below = state
         state = step(wall, rims, below, height, smoothing)
         left -= len(state.passed)

@@ -89,8 +89,8 @@ class Facets:
         edges, counts = np.unique(ranked, return_counts=True)
         place = self.vertices[list(divmod(int(edges[counts != 2][0]), len(self.vertices)))].mean(axis=0)
         return InputError(
-            "OPEN_MESH", label, f"{int((counts != 2).sum())} edges have not two faces, one at "
-            f"({place[0]:.4g}, {place[1]:.4g}, {place[2]:.4g}) mm from the hub's base; close the mesh",
+            "OPEN_MESH", label, "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's base; close "
+            "the mesh", int((counts != 2).sum()), place[0], place[1], place[2],
         )
 
     def _least_on_edges(self) -> tuple[Index, Array]:

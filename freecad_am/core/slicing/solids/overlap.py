@@ -37,8 +37,8 @@ def refuse_overlaps(groups: Sequence[Group], chord_error: float) -> None:
                 found = _deepest(one, two, box, (base, other_base), deep)
                 if found is not None:
                     raise InputError(
-                        "OVERLAP", body.name, f"it and {other.name} fill the same place, as at {place(found)}, which would "
-                        "be deposited twice; fuse them into one solid, or move one",
+                        "OVERLAP", body.name, "it and {} fill the same place, as at {}, which would be deposited twice; "
+                        "fuse them into one solid, or move one", other.name, place(found),
                     )
 
 

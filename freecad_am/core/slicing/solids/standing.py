@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...geometry.formatting import place
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Group, Seat, SolidsOnHub, downwards, middle_azimuth
-from ...issues import InputError, Issue
+from ...issues import InputError, Issue, Text, Word
 from ...types import Array
 from .equidistant import Facets
 from .overlap import refuse_overlaps
@@ -70,11 +70,12 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
     if (away[:, 1] <= 0.0).all():
         text = "it lies inside of the hub"
     elif away[nearest, 0] > 0.0:
-        text = f"it begins {away[nearest, 0]:.4g} mm outside of {seats[nearest].base.name}, at {where}"
+        text = Text("it begins {:.4g} mm outside of {}, at {}", away[nearest, 0], seats[nearest].base.name, where)
     else:
-        text = f"it passes {seats[nearest].base.name} beside the face, near {where}"
+        text = Text("it passes {} beside the face, near {}", seats[nearest].base.name, where)
     hint = _of_units(body, seats) if unitless else ""
-    raise InputError("NOT_ON_HUB", body.name, f"it does not stand on the hub: {text}; move it, or choose its base{hint}")
+    raise InputError("NOT_ON_HUB", body.name, "it does not stand on the hub: {}; move it, or choose its base{}", Word(text),
+                     hint)
 
 
 def _of_units(body: Body, seats: Sequence[Seat]) -> str:
@@ -86,10 +87,8 @@ def _of_units(body: Body, seats: Sequence[Seat]) -> str:
             z = vertices[:, 2]
             adjacent = any(face.low <= z.max() and face.high >= z.min() for face in seat.faces)
             if away.min() <= PAST_END_MM < away.max() and adjacent:
-                return (
-                    f". Times {factor:g} it would reach {seat.base.name}: is its file in {unit}? Then export it in mm, or "
-                    f"give scale: {factor:g} mm with it, as part.scale (in the window: Meshes, Scale)"
-                )
+                return Text(". Times {:g} it would reach {}: is its file in {}? Then export it in mm, or give scale: {:g} "
+                            "mm with it, as part.scale (in the window: Meshes, Scale)", factor, seat.base.name, unit, factor)
     return ""
 
 

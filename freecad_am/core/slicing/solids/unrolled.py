@@ -92,8 +92,8 @@ def _in_one_piece(
     widest = max(float(np.ptp(azimuth)) for azimuth in shifted)
     if not surface.is_cylinder and widest * math.sin(surface.taper) > 0.98 * TURN:
         raise InputError(
-            "TOO_FAR_ROUND", where, f"it winds {widest / TURN:.3g} times about the cone and would lie on itself when laid "
-            "flat; divide it into shorter solids",
+            "TOO_FAR_ROUND", where, "it winds {:.3g} times about the cone and would lie on itself when laid flat; divide it "
+            "into shorter solids", widest / TURN,
         )
     flat = [surface.flat_at(azimuth, loop.points[:, 2]) for azimuth, loop in zip(shifted, loops, strict=True)]
     outer = [points for points in flat if doubled_area(points) > 0.0]

@@ -56,8 +56,8 @@ def next_layer(
         places = Offset(surface, below.curve, below.u, share * height).at(grid[:-1])
         if (places.run < 0).any():
             raise InputError(
-                "LAYER_HEIGHT", label, f"the wall has no point at {share * height:g} mm from the layer below: use a smaller "
-                "layer height or a narrower band",
+                "LAYER_HEIGHT", label, "the wall has no point at {:g} mm from the layer below: use a smaller layer height "
+                "or a narrower band", share * height,
             )
         fronts.append(places.u)
     wanted, low, high = fronts
@@ -70,7 +70,8 @@ def next_layer(
     best = lightest(trial, weight, AIM * limit)
     if best is None:  # a front that can only follow the one below, corners and all
         raise InputError(
-            "BAND", label, f"a band of {100.0 * band:g} % is too narrow for {len(grid) - 1} points around: use more of them",
+            "BAND", label, "a band of {:g} % is too narrow for {} points around: use more of them", 100.0 * band,
+            len(grid) - 1,
         )
     return best
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...collision.bodies import of_bodies
 from ...geometry.obstacles import Body
-from ...issues import ERROR, Issue
+from ...issues import ERROR, Issue, Text
 from ...parameters.cell import NozzleParameters
 from ...toolpath import Toolpath
 from .notes import place
@@ -65,8 +65,8 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
     places = [(i, j) for i, j, _ in toolpath]
     at, point = place(places, begin, int(np.argmax(hit)))
-    names = " or ".join(body.name for body in bodies)
+    names = Text.joined(" or ", (body.name for body in bodies))
     return [Issue(
-        ERROR, "CLEARANCE", f"the nozzle touches {names} at {int(hit.sum())} of {len(points)} points; on parts of "
-        "revolution it is not tilted away from fixtures: move them, or use a slimmer nozzle", *at, point,
+        ERROR, "CLEARANCE", Text("the nozzle touches {} at {} of {} points; on parts of revolution it is not tilted away "
+            "from fixtures: move them, or use a slimmer nozzle", names, int(hit.sum()), len(points)), *at, point,
     )]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...issues import ERROR, NOTE, WARNING, Issue
+from ...issues import ERROR, NOTE, WARNING, Issue, Text, Word
 from ...types import Array, Index, Mask
 
 
@@ -24,19 +24,19 @@ def tilt_issues(places: list[tuple[int, int]], begin: Index, tilt: Array, lost: 
     if lost.any():
         at, point = place(places, begin, int(np.argmax(lost)))
         issues.append(Issue(
-            ERROR, "CLEARANCE", f"however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at "
-            f"{int(lost.sum())} point(s) of layers {layer[lost].min()} to {layer[lost].max()}; use a slimmer nozzle, a "
-            "larger build_direction.max_tilt or another place for what is in the way", *at, point,
+            ERROR, "CLEARANCE", Text("however the tool is tilted, the nozzle touches substrate, fixture, platform or "
+                "deposit at {} point(s) of layers {} to {}; use a slimmer nozzle, a larger build_direction.max_tilt or "
+                "another place for what is in the way", int(lost.sum()), layer[lost].min(), layer[lost].max()), *at, point,
         ))
     moved = ~lost & (tilt > 1e-9)
     if moved.any():
         worst = int(np.argmax(np.where(moved, tilt, 0.0)))
         at, point = place(places, begin, worst)
         first, last = int(layer[moved].min()), int(layer[moved].max())
-        where = f"in layer {first}" if first == last else f"in layers {first} to {last}"
+        where = Text("in layer {}", first) if first == last else Text("in layers {} to {}", first, last)
         issues.append(Issue(
-            NOTE, "TILT_BACK", f"{where}, tool axes are tilted back to keep the nozzle clear, by up to "
-            f"{np.degrees(tilt[worst]):.2f} deg", *at, point,
+            NOTE, "TILT_BACK", Text("{}, tool axes are tilted back to keep the nozzle clear, by up to {:.2f} deg",
+                Word(where), np.degrees(tilt[worst])), *at, point,
         ))
     return issues
 
@@ -46,6 +46,7 @@ def turn_issues(fastest: float, most: float) -> list[Issue]:
     if not fastest:
         return []
     return [Issue(
-        WARNING, "TURN_PASSED", f"to keep the nozzle clear, tool axes turn by up to {np.degrees(fastest):.3g} deg/mm, "
-        f"faster than build_direction.max_turn ({np.degrees(most):.3g} deg/mm); use a slimmer nozzle or allow a faster turn",
+        WARNING, "TURN_PASSED", Text("to keep the nozzle clear, tool axes turn by up to {:.3g} deg/mm, faster than "
+            "build_direction.max_turn ({:.3g} deg/mm); use a slimmer nozzle or allow a faster turn", np.degrees(fastest),
+            np.degrees(most)),
     )]

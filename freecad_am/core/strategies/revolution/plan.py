@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...geometry.curves.polyline import turn_segments
 from ...geometry.curves.profile import RevolvedWall
-from ...issues import NOTE, WARNING, InputError, Issue
+from ...issues import NOTE, WARNING, InputError, Issue, Text, Word
 from ...parameters.bead_classes import FIRST_LAYER, WALL
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
@@ -70,7 +70,7 @@ def plan(
         layers, found = spiral.layers(wall, strategy, process, tilting)
     else:
         slices, issues = sliced(wall, strategy)
-        progress(0.2, f"build directions of {slices.layer[-1] + 1} layers, keeping the nozzle clear")
+        progress(0.2, Text("build directions of {} layers, keeping the nozzle clear", slices.layer[-1] + 1))
         first = replace(tilting, parameters=classes.leaning(build, process, FIRST_LAYER))
         layers, found = _layers(wall, slices, strategy, process, tilting, first)
     progress(0.9, "checking")
@@ -92,7 +92,8 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
     issues = []
     if left > 1e-6 * strategy.layer_height:
         measure = "of the wall" if rule is arc_length else "of the height"
-        issues.append(Issue(NOTE, "REMAINDER", f"{left:.3g} mm {measure} are left at the top, less than a layer"))
+        issues.append(Issue(NOTE, "REMAINDER", Text("{:.3g} mm {} are left at the top, less than a layer", left,
+                                                    Word(measure))))
     if rule is iso_height:
         issues += _spacing_issues(wall, layers, strategy.layer_height)
     flat = np.concatenate(layers)
@@ -102,8 +103,8 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
     if not kept.all():
         issues.append(Issue(
             NOTE, "POINT_BEADS",
-            f"{int((~kept).sum())} bead(s) of a radius of no more than the chord error ({strategy.chord_error:g} mm) "
-            "are left out", int(number[~kept][0]),
+            Text("{} bead(s) of a radius of no more than the chord error ({:g} mm) are left out", int((~kept).sum()),
+                strategy.chord_error), int(number[~kept][0]),
         ))
     renumbered = np.unique(number[kept], return_inverse=True)[1]
     return Slices(renumbered, radius[kept], height[kept], tangent[kept]), issues
@@ -120,9 +121,9 @@ def _spacing_issues(wall: RevolvedWall, layers: list[Array], layer_height: float
     worst = int(uneven[np.argmax(np.maximum(widest[uneven] - layer_height, layer_height - narrowest[uneven]))])
     return [Issue(
         WARNING, "SPACING",
-        f"{len(uneven)} of {len(layers)} layers are more than 20 % off the layer height of {layer_height:g} mm, first "
-        f"layer {int(uneven[0]) + 1}; layer {worst + 1} is {widest[worst]:.4g} mm from the one below; "
-        "layers along the wall (spacing: arc-length) are even",
+        Text("{} of {} layers are more than 20 % off the layer height of {:g} mm, first layer {}; layer {} is {:.4g} mm "
+            "from the one below; layers along the wall (spacing: arc-length) are even", len(uneven), len(layers),
+            layer_height, int(uneven[0]) + 1, worst + 1, widest[worst]),
         worst + 1,
     )]
 

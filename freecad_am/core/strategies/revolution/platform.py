@@ -12,7 +12,7 @@ from ...geometry.curves.profile import RevolvedWall
 from ...geometry.formatting import place
 from ...geometry.mesh.solid import spread
 from ...geometry.on_hub import SolidsOnHub
-from ...issues import WARNING, InputError, Issue
+from ...issues import WARNING, InputError, Issue, Text
 from ...types import Array
 
 UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
@@ -54,14 +54,16 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
     off, height, radius = float(np.hypot(centre[0], centre[1])), float(centre[2]), 0.5 * diameter
     if normal[2] < 0.0 or np.hypot(normal[0], normal[1]) > UPRIGHT:
         angle = np.degrees(np.arctan2(np.hypot(normal[0], normal[1]), normal[2]))
-        raise _off(f"the axis of {wall.label} is {angle:.4g} deg off the normal of the platform", "use mount: feature")
+        raise _off(Text("the axis of {} is {:.4g} deg off the normal of the platform", wall.label, angle), "use mount: "
+                   "feature")
     if off > radius:
         raise _off(
-            f"the axis of {wall.label} is {off:.4g} mm off the middle of the platform and misses it",
+            Text("the axis of {} is {:.4g} mm off the middle of the platform and misses it", wall.label, off),
             "use mount: feature, or move the part",
         )
     if height > TOUCH:
-        raise _off(f"the base of {wall.label} is {height:.4g} mm below the platform", "use mount: feature, or move the part")
+        raise _off(Text("the base of {} is {:.4g} mm below the platform", wall.label, height), "use mount: feature, or move "
+                   "the part")
     return Platform(radius + off, height, off)
 
 
@@ -72,8 +74,8 @@ def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
         return []
     return [Issue(
         WARNING, "OVER_PLATFORM",
-        f"the base of {wall.label} has a diameter of {2.0 * base:.4g} mm and reaches over the platform; check "
-        "cell.platform_diameter (0 for none)", 0,
+        Text("the base of {} has a diameter of {:.4g} mm and reaches over the platform; check cell.platform_diameter (0 for "
+            "none)", wall.label, 2.0 * base), 0,
     )]
 
 
@@ -85,7 +87,7 @@ def refuse_below(label: str, points: Array, frame: Array, diameter: float, remed
     if depth.max(initial=0.0) > DEEP:
         worst = int(depth.argmax())
         raise _off(
-            f"{label} reaches {depth[worst]:.4g} mm below the platform, at {place(points[worst])}", remedy,
+            Text("{} reaches {:.4g} mm below the platform, at {}", label, depth[worst], place(points[worst])), remedy,
         )
 
 
@@ -110,4 +112,4 @@ def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> N
 
 def _off(what: str, remedy: str) -> InputError:
     mended_by = {"mount": "feature"} if remedy == MOUNT else None
-    return InputError("OFF_PLATFORM", "cell.platform_diameter", f"{what}; {remedy}", mended_by)
+    return InputError("OFF_PLATFORM", "cell.platform_diameter", "{}; {}", what, remedy, mended_by=mended_by)

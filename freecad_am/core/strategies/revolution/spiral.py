@@ -36,7 +36,7 @@ def layers(
     Raises InputError 'PARTIAL_TURN', and 'LAYER_HEIGHT' as layers do.
     """
     if not wall.full:
-        raise InputError("PARTIAL_TURN", "strategy.path", f"{wall.label} is not a full turn; use path: layers")
+        raise InputError("PARTIAL_TURN", "strategy.path", "{} is not a full turn; use path: layers", wall.label)
     pitch = strategy.layer_height
     arc_length.layers(wall.meridian, pitch)
     end = _end(wall.meridian, pitch)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...collision.scene import Scene
 from ...geometry.curves.profile import RevolvedWall
-from ...issues import ERROR, NOTE, Issue
+from ...issues import ERROR, NOTE, Issue, Text, Word
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
 from ...parameters.strategy import RevolutionParameters
@@ -266,18 +266,18 @@ class Tilting:
         self, cases: Cases, angle: Array, capped: Array, stuck: NDArray[np.bool_], layer: Index
     ) -> list[Issue]:
         at = layer[cases.bead]
-        cap = f"{np.degrees(self.parameters.max_tilt):.6g} deg"
+        cap = Text("{:.6g} deg", np.degrees(self.parameters.max_tilt))
         issues = []
         tool = self._tool(directions.tilted_back(cases.build, angle), cases.rising)
         over = directions.from_vertical(tool) > self.parameters.max_tilt + 1e-9
         if over.any():
             issues.append(Issue(
-                ERROR, "MAX_TILT", f"lead and tilt alone lean the tool by more than max_tilt ({cap}); "
-                "make them smaller or the cap larger", int(at[over][0]),
+                ERROR, "MAX_TILT", Text("lead and tilt alone lean the tool by more than max_tilt ({}); make them smaller or "
+                    "the cap larger", Word(cap)), int(at[over][0]),
             ))
         elif (capped > 1e-9).any():
             first = int(at[np.argmax(capped > 1e-9)])
-            text = f"from layer {first} on, max_tilt holds directions within {cap}"
+            text = Text("from layer {} on, max_tilt holds directions within {}", first, Word(cap))
             issues.append(Issue(NOTE, "MAX_TILT", text, first))
         back = angle - capped
         if stuck.any():
@@ -285,15 +285,15 @@ class Tilting:
             bead = 0 if cases.chained else int(cases.bead[np.argmax(stuck)] - np.searchsorted(layer, hit[0]))
             issues.append(Issue(
                 ERROR, "CLEARANCE",
-                f"however far it is tilted back, the nozzle touches platform or deposit, beads of {self.bead_width:g} mm, "
-                f"in {len(hit)} layer(s), from layer {hit[0]} on; use a slimmer nozzle, another wall, or a smaller "
-                "process.bead_width where beads are not that wide", int(hit[0]), bead,
+                Text("however far it is tilted back, the nozzle touches platform or deposit, beads of {:g} mm, in {} "
+                    "layer(s), from layer {} on; use a slimmer nozzle, another wall, or a smaller process.bead_width where "
+                    "beads are not that wide", self.bead_width, len(hit), hit[0]), int(hit[0]), bead,
             ))
         elif (back > 1e-9).any():
             worst, first = int(at[np.argmax(back)]), int(at[np.argmax(back > 1e-9)])
             issues.append(Issue(
-                NOTE, "TILT_BACK", f"from layer {first} on, directions are tilted back to keep the nozzle "
-                f"clear, by up to {np.degrees(back.max()):.2f} deg in layer {worst}", worst,
+                NOTE, "TILT_BACK", Text("from layer {} on, directions are tilted back to keep the nozzle clear, by up to "
+                    "{:.2f} deg in layer {}", first, np.degrees(back.max()), worst), worst,
             ))
         return issues
 

@@ -21,7 +21,7 @@ from ...geometry.formatting import place
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import Region
 from ...geometry.regions.strip import Strip
-from ...issues import NOTE, WARNING, InputError, Issue
+from ...issues import NOTE, WARNING, InputError, Issue, Text
 from ...layers.margins import ARCS
 from ...layers.surface import Slice
 from ...parameters.filled import FilledParameters
@@ -111,14 +111,14 @@ class Pictures:
         if gaps:
             point, width = max(gaps, key=lambda gap: gap[1])
             issues.append(Issue(
-                WARNING, "OPEN_GAP", f"beads leave {len(gaps)} gap(s) open, the widest of {width:.3g} mm at {where(point)}; "
-                f"strategy.gap allows {beads.gap:.3g} mm", one.layer,
+                WARNING, "OPEN_GAP", Text("beads leave {} gap(s) open, the widest of {:.3g} mm at {}; strategy.gap allows "
+                    "{:.3g} mm", len(gaps), width, where(point), beads.gap), one.layer,
             ))
         issues += _standing_out(one, curves, beads)
         if strategy.fill in INSTEAD and any(isinstance(region, Strip) for region in one.regions):
             issues.append(Issue(
-                NOTE, "PATTERN_ROUND_HUB", f"a layer all the way round the hub is filled with {INSTEAD[strategy.fill]}; "
-                f"strategy.fill = {strategy.fill} is for regions with an end", one.layer,
+                NOTE, "PATTERN_ROUND_HUB", Text("a layer all the way round the hub is filled with {}; strategy.fill = {} is "
+                    "for regions with an end", INSTEAD[strategy.fill], strategy.fill), one.layer,
             ))
         return Filled(curves, tuple(issues), islands, total(covers))
 
@@ -194,8 +194,8 @@ def bead_width(strategy: FilledParameters, process: ProcessParameters, model: Be
         return spacing
     if spacing > width * (1.0 + 1e-9):
         raise InputError(
-            "BEAD_SPACING", "strategy.bead_spacing", f"beads {width:g} mm wide (process.bead_width), {spacing:g} mm apart, "
-            f"leave stripes of {spacing - width:.3g} mm open between them; use {width:g} mm or less, or wider beads",
+            "BEAD_SPACING", "strategy.bead_spacing", "beads {:g} mm wide (process.bead_width), {:g} mm apart, leave stripes "
+            "of {:.3g} mm open between them; use {:g} mm or less, or wider beads", width, spacing, spacing - width, width,
         )
     return width
 
@@ -214,8 +214,8 @@ def _standing_out(one: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> lis
     if (share < 1.0).any() and out[worst] < 0.02 * beads.inset:
         return []
     return [Issue(
-        NOTE, "THIN_SINGLE", f"{len(single)} bead(s) alone in regions narrower than a bead of {2.0 * beads.inset:.3g} mm "
-        f"stand out of them, by up to {out[worst]:.3g} mm at {beads.where(points[worst])}", one.layer,
+        NOTE, "THIN_SINGLE", Text("{} bead(s) alone in regions narrower than a bead of {:.3g} mm stand out of them, by up "
+            "to {:.3g} mm at {}", len(single), 2.0 * beads.inset, out[worst], beads.where(points[worst])), one.layer,
     )]
 
 

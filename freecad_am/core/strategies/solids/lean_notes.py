@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ...issues import NOTE, WARNING, Issue
+from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...parameters.build_direction import BuildDirectionParameters
 from ...toolpath import Layer
 from .beads import Wrapped
@@ -19,8 +19,8 @@ def lean_notes(made: Sequence[Wrapped], layers: Sequence[Layer], build: BuildDir
     turned = {id(one.bead): one.turned for one in made if one.turned is not None}
     places = [(bead, i, j) for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)]
     beads = [(turned[id(bead)], i, j) for bead, i, j in places if id(bead) in turned]
-    asked = "" if build.max_turn == "auto" else f" ({math.degrees(build.turn()):.3g} deg/mm)"
-    limit = f"build_direction.max_turn{asked}"
+    asked = "" if build.max_turn == "auto" else Text(" ({:.3g} deg/mm)", math.degrees(build.turn()))
+    limit = Text("build_direction.max_turn{}", Word(asked))
     return _spread(beads, limit) + _less(beads, limit) + _normals(beads, limit)
 
 
@@ -31,9 +31,9 @@ def _spread(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]
     worst, layer, bead = max(some, key=lambda entry: entry[0].departure)
     length = sum(entry[0].length for entry in some)
     return [Issue(
-        NOTE, "TURN_LIMITED", f"on {len(some)} of {len(beads)} beads, {length:.4g} mm in all, the torch begins to turn "
-        f"ahead of corners, by up to {math.degrees(worst.departure):.3g} deg from what is asked, to turn no faster than "
-        f"{limit}", layer, bead,
+        NOTE, "TURN_LIMITED", Text("on {} of {} beads, {:.4g} mm in all, the torch begins to turn ahead of corners, by up "
+            "to {:.3g} deg from what is asked, to turn no faster than {}", len(some), len(beads), length,
+            math.degrees(worst.departure), limit), layer, bead,
     )]
 
 
@@ -43,12 +43,13 @@ def _less(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
         return []
     worst, layer, bead = min(some, key=lambda entry: entry[0].share)
     layers = sorted({entry[1] for entry in some})
-    where = f"layer {layers[0]}" if len(layers) == 1 else f"{len(layers)} layers from {layers[0]} to {layers[-1]}"
+    where = Text("layer {}",
+                 layers[0]) if len(layers) == 1 else Text("{} layers from {} to {}", len(layers), layers[0], layers[-1])
     return [Issue(
-        WARNING, "LEAN_REDUCED", f"on {len(some)} of {len(beads)} beads in {where} bends follow one another too closely to "
-        f"turn the torch round them at {limit}: it leans by {math.degrees(worst.share * worst.asked):.3g} to "
-        f"{math.degrees(max(entry[0].share * entry[0].asked for entry in some)):.3g} deg there instead of "
-        f"{math.degrees(worst.asked):.3g} deg; lean less, or allow a faster turn", layer, bead,
+        WARNING, "LEAN_REDUCED", Text("on {} of {} beads in {} bends follow one another too closely to turn the torch round "
+            "them at {}: it leans by {:.3g} to {:.3g} deg there instead of {:.3g} deg; lean less, or allow a faster turn",
+            len(some), len(beads), Word(where), limit, math.degrees(worst.share * worst.asked),
+            math.degrees(max(entry[0].share * entry[0].asked for entry in some)), math.degrees(worst.asked)), layer, bead,
     )]
 
 
@@ -58,6 +59,7 @@ def _normals(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue
         return []
     worst, layer, bead = max(some, key=lambda entry: entry[0].normals)
     return [Issue(
-        WARNING, "TURN_OF_NORMALS", f"on {len(some)} of {len(beads)} beads the hub's normals alone turn by up to "
-        f"{math.degrees(worst.normals):.3g} deg/mm, faster than {limit}; the torch follows them all the same", layer, bead,
+        WARNING, "TURN_OF_NORMALS", Text("on {} of {} beads the hub's normals alone turn by up to {:.3g} deg/mm, faster "
+            "than {}; the torch follows them all the same", len(some), len(beads), math.degrees(worst.normals), limit),
+            layer, bead,
     )]

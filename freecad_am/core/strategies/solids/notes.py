@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...issues import NOTE, Issue
+from ...issues import NOTE, Issue, Text
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
@@ -26,14 +26,15 @@ def notes(
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
     if waits and strategy.min_layer_time > 0.0:
         found.append(Issue(
-            NOTE, "WAITS", f"the machine waits before {len(waits)} of {len(layers)} layers, up to {max(waits):.4g} s and "
-            f"{sum(waits):.5g} s in all, so that no layer takes less than {strategy.min_layer_time:g} s and no solid is "
-            f"returned to sooner than after {strategy.wait:g} s",
+            NOTE, "WAITS", Text("the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
+                "layer takes less than {:g} s and no solid is returned to sooner than after {:g} s", len(waits), len(layers),
+                max(waits), sum(waits), strategy.min_layer_time, strategy.wait),
         ))
     elif waits:
         found.append(Issue(
-            NOTE, "WAITS", f"the machine waits before {len(waits)} of {len(layers)} layers, up to {max(waits):.4g} s and "
-            f"{sum(waits):.5g} s in all, so that no solid is returned to sooner than after {strategy.wait:g} s",
+            NOTE, "WAITS", Text("the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in all, so that no "
+                "solid is returned to sooner than after {:g} s", len(waits), len(layers), max(waits), sum(waits),
+                strategy.wait),
         ))
     return found
 
@@ -46,8 +47,8 @@ def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[
         return []
     return [Issue(
         NOTE, "SINGLE_LAYER",
-        f"{len(single)} of {len(starts) - 1} solids or groups of solids get one layer alone, on the hub: "
-        f"they are no higher than strategy.layer_height, {strategy.layer_height:g} mm", single[0],
+        Text("{} of {} solids or groups of solids get one layer alone, on the hub: they are no higher than "
+            "strategy.layer_height, {:g} mm", len(single), len(starts) - 1, strategy.layer_height), single[0],
     )]
 
 
@@ -56,6 +57,7 @@ def _mended(issues: Sequence[Issue]) -> list[Issue]:
     found = []
     for code in sorted({issue.code for issue in issues}):
         alike = [issue for issue in issues if issue.code == code]
-        more = f" (and {len(alike) - 1} layers of solids more)" if len(alike) > 1 else ""
-        found.append(Issue(alike[0].level, code, alike[0].message + more, alike[0].layer))
+        first, more = alike[0], len(alike) - 1
+        text = Text("{} (and {} layers of solids more)", first.message, more) if more else first.message
+        found.append(Issue(first.level, code, text, first.layer))
     return found

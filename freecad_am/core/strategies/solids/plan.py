@@ -11,7 +11,7 @@ import numpy as np
 from ...filling.cover import Cover
 from ...filling.curve import PlaneCurve
 from ...geometry.on_hub import Base, SolidsOnHub, downwards, upright
-from ...issues import InfeasibleError, InputError, Issue
+from ...issues import InfeasibleError, InputError, Issue, Text
 from ...layers.field import Piece, pieces, upwards
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
@@ -83,8 +83,8 @@ def plan(
             ranked += [RankedBead(group, number, layer.layer, rank, one.bead) for rank, one in zip(ranks, here, strict=True)]
     if not ranked:
         raise InputError(
-            "NOTHING_TO_DEPOSIT", solids.label, f"no bead of {strategy.least_bead:g} mm or more finds room in any layer; "
-            "use a smaller bead spacing, or thin = single",
+            "NOTHING_TO_DEPOSIT", solids.label, "no bead of {:g} mm or more finds room in any layer; use a smaller bead "
+            "spacing, or thin = single", strategy.least_bead,
         )
     course = ordered(ranked, strategy.order)
     layers = waited(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
@@ -124,8 +124,8 @@ def _bead(
 def _refuse_mode(solids: SolidsOnHub, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
     if getattr(strategy, "layers", "planes") != "planes" and build.mode != "local":
         raise InputError(
-            "NOT_FOR_FAMILY", "build_direction.mode", f"{build.mode} is not for curved layers, which grow along their "
-            "normals; use local",
+            "NOT_FOR_FAMILY", "build_direction.mode", "{} is not for curved layers, which grow along their normals; use "
+            "local", build.mode,
         )
     if on_planes(solids):
         if build.mode == "symmetry-plane":
@@ -135,8 +135,8 @@ def _refuse_mode(solids: SolidsOnHub, strategy: FilledParameters, build: BuildDi
             )
     elif build.mode != "local":
         raise InputError(
-            "NOT_FOR_FAMILY", "build_direction.mode", f"{build.mode} is not for solids on a hub, which grow along its "
-            "normals; use local",
+            "NOT_FOR_FAMILY", "build_direction.mode", "{} is not for solids on a hub, which grow along its normals; use "
+            "local", build.mode,
         )
 
 
@@ -164,7 +164,8 @@ def _filled(layer: Slice, piece: Piece, base: Base, pictures: Pictures) -> Fille
     except InfeasibleError as error:
         where = f"{piece.name} layer {layer.layer}"
         raise InfeasibleError(
-            error.code, where, error.message, (Issue("error", error.code, f"{piece.name}: {error.message}", layer.layer),)
+            error.code, where, error.message,
+            issues=(Issue("error", error.code, Text("{}: {}", piece.name, error.message), layer.layer),)
         ) from None
 
 

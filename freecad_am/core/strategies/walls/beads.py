@@ -10,7 +10,7 @@ import numpy as np
 from ...geometry.angles import TURN
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.frames import unit
-from ...issues import NOTE, WARNING, Issue
+from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...parameters.strategy import SurfaceParameters
 from ...slicing.directions.wall import local
 from ...toolpath import Bead
@@ -93,12 +93,12 @@ def spacing_issues(found: list[Array], strategy: SurfaceParameters) -> list[Issu
     exact = strategy.spacing == "constant-distance"
     # between the points, where arcs stand for the front, ten times the tolerance is allowed
     allowed = 10.0 * strategy.tolerance if exact else strategy.band * height
-    text = f"the local distance between layers is {least:.6g} to {most:.6g} mm"
+    text = Text("the local distance between layers is {:.6g} to {:.6g} mm", least, most)
     if max(height - least, most - height) <= allowed:
         return [Issue(NOTE, "SPACING", text)]
     worst = int(np.argmax([np.abs(d - height).max() for d in found])) + 1
     advice = "a larger strategy.tolerance says that this will do" if exact else "spacing: constant-distance is even"
-    return [Issue(WARNING, "SPACING", f"{text}, the layer height {height:g} mm; {advice}", worst)]
+    return [Issue(WARNING, "SPACING", Text("{}, the layer height {:g} mm; {}", Word(text), height, Word(advice)), worst)]
 
 
 def corner_notes(turns: list[Array]) -> list[Issue]:
@@ -111,8 +111,8 @@ def corner_notes(turns: list[Array]) -> list[Issue]:
     sharpest = [float(layer.max(initial=0.0)) for layer in turns]
     return [Issue(
         NOTE, "CORNERS",
-        f"{len(cornered)} of {len(turns)} fronts have corners, first layer {cornered[0]}; the sharpest turns by "
-        f"{np.degrees(max(sharpest)):.3g} deg. The robot slows down there", int(np.argmax(sharpest)),
+        Text("{} of {} fronts have corners, first layer {}; the sharpest turns by {:.3g} deg. The robot slows down there",
+            len(cornered), len(turns), cornered[0], np.degrees(max(sharpest))), int(np.argmax(sharpest)),
     )]
 
 
@@ -126,15 +126,15 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
     corners = sum(np.isinf(rates[index]) for index in over)
     finite = np.where(np.isinf(rates), 0.0, rates)
     if strategy.spacing == "smooth" and over:
-        some = f", {corners} of them in corners" if corners else ""
+        some = Text(", {} of them in corners", corners) if corners else ""
         return [Issue(
             WARNING, "TURN",
-            f"a band of {100.0 * strategy.band:g} % does not suffice: within the wall {len(over)} of {len(rates)} "
-            f"layers turn by more than {np.degrees(strategy.bead_turn):.3g} deg/mm{some}, first layer {over[0]}, by up to "
-            f"{np.degrees(finite[1:].max()):.3g} deg/mm{' elsewhere' if corners else ''}. The robot slows down there; a "
-            "wider strategy.band rounds them", int(np.argmax(rates[1:])) + 1,
+            Text("a band of {:g} % does not suffice: within the wall {} of {} layers turn by more than {:.3g} deg/mm{}, "
+                "first layer {}, by up to {:.3g} deg/mm{}. The robot slows down there; a wider strategy.band rounds them",
+                100.0 * strategy.band, len(over), len(rates), np.degrees(strategy.bead_turn), Word(some), over[0],
+                np.degrees(finite[1:].max()), Word(" elsewhere" if corners else "")), int(np.argmax(rates[1:])) + 1,
         )]
-    text = f"no layer has a corner; within the wall they turn by up to {np.degrees(finite.max()):.3g} deg/mm"
+    text = Text("no layer has a corner; within the wall they turn by up to {:.3g} deg/mm", np.degrees(finite.max()))
     return [Issue(NOTE, "TURN", text, int(np.argmax(finite)))] if not np.isinf(rates).any() else []
 
 
@@ -142,4 +142,4 @@ def short_note(dropped: int) -> list[Issue]:
     """Says that beads too short to be worth a start are left out."""
     if not dropped:
         return []
-    return [Issue(NOTE, "SHORT_BEADS", f"{dropped} bead(s) at the end shorter than half a layer height are left out")]
+    return [Issue(NOTE, "SHORT_BEADS", Text("{} bead(s) at the end shorter than half a layer height are left out", dropped))]

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface_wall import SurfaceWall
-from ...issues import NOTE, InputError, Issue
+from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...slicing.directions.wall import LEAST, capped, held, in_plane, limited
 from ...types import Array
@@ -54,8 +54,8 @@ def plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Arr
     normal = wall.symmetry_normal if isinstance(wall, SurfaceWall) else None
     if normal is None:
         raise InputError(
-            "NO_SYMMETRY_PLANE", "build_direction.mode", f"{wall.label} is not a bend of a torus, so its plane of symmetry "
-            "is not known; give its normal as build_direction.plane, or use local, layer or fixed",
+            "NO_SYMMETRY_PLANE", "build_direction.mode", "{} is not a bend of a torus, so its plane of symmetry is not "
+            "known; give its normal as build_direction.plane, or use local, layer or fixed", wall.label,
         )
     return normal
 
@@ -91,14 +91,13 @@ def directions(
 def notes(found: list[tuple[int, Directions]]) -> list[Issue]:
     """Says how far directions depart from what was asked for: by layer of each bead."""
     issues = []
-    for code, values, cause in (
-        ("TILT_CAPPED", [one.back for _, one in found], "turned back by up to {0:.3g} deg to stay within "
-         "build_direction.max_tilt"),
-        ("TURN_LIMITED", [one.spread for _, one in found], "spread along the bead, by up to {0:.3g} deg, to turn no faster "
-         "than build_direction.max_turn"),
+    for code, values, text in (
+        ("TILT_CAPPED", [one.back for _, one in found], "tool axes are turned back by up to {:.3g} deg to stay "
+         "within build_direction.max_tilt"),
+        ("TURN_LIMITED", [one.spread for _, one in found], "tool axes are spread along the bead, by up to {:.3g} deg, to "
+         "turn no faster than build_direction.max_turn"),
     ):
         worst = int(np.argmax(values))
         if values[worst] > TOLERANCE_RAD:
-            text = f"tool axes are {cause.format(np.degrees(values[worst]))}"
-            issues.append(Issue(NOTE, code, text, found[worst][0]))
+            issues.append(Issue(NOTE, code, Text(text, np.degrees(values[worst])), found[worst][0]))
     return issues

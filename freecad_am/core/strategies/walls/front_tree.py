@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
-from ...issues import NOTE, Issue
+from ...issues import NOTE, Issue, Text
 from ...slicing.fronts.curve import feet
 from ...slicing.fronts.rims import Rims
 
@@ -57,13 +57,14 @@ def events(layers: list[list[Piece]]) -> list[Issue]:
     for index, layer in enumerate(layers[1:], 1):
         splits = Counter(len(piece.children) for piece in layers[index - 1] if len(piece.children) > 1)
         merges = Counter(len(piece.parents) for piece in layer if len(piece.parents) > 1)
-        for code, found, one, many in (("SPLIT", splits, "front splits in {0}", "fronts split in {0} each"),
-                                       ("MERGE", merges, "{0} fronts merge", "{0} fronts merge")):
-            for size, count in sorted(found.items()):
-                text = f"a {one.format(size)}" if code == "SPLIT" and count == 1 else (
-                    f"{count} {many.format(size)}" if code == "SPLIT" else one.format(size) + (
-                        f", in {count} places," if count > 1 else ""))
-                issues.append(Issue(NOTE, code, f"{text} at layer {index}", index))
+        for code, found, one, many in (
+            ("SPLIT", splits, "a front splits in {} at layer {}", "{2} fronts split in {0} each at layer {1}"),
+            ("MERGE", merges, "{} fronts merge at layer {}", "{0} fronts merge, in {2} places, at layer {1}"),
+        ):
+            issues += [
+                Issue(NOTE, code, Text(one if count == 1 else many, size, index, count), index)
+                for size, count in sorted(found.items())
+            ]
     return issues
 
 

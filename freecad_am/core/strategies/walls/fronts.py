@@ -14,7 +14,7 @@ import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.patch_wall import PatchWall
-from ...issues import NOTE, InputError, Issue
+from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
@@ -99,7 +99,7 @@ def _kept(wall: PatchWall, pieces: list[list[Piece]], strategy: SurfaceParameter
         if not kept:
             raise InputError("TOO_LOW", wall.label, "its end cuts the first layer off; make it longer")
         left = _left(wall, kept)
-        text = f"up to {left:.4g} mm of the wall are left above the last whole layer"
+        text = Text("up to {:.4g} mm of the wall are left above the last whole layer", left)
         note = Issue(NOTE, "REMAINDER", text, len(kept) - 1)
         return kept, [note] if left > 1e-4 * strategy.layer_height else []
     kept, dropped = shorn(pieces, 0.5 * strategy.layer_height)
@@ -122,8 +122,8 @@ def _close(pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: lis
     if not count:
         return []
     return [Issue(
-        NOTE, "CLOSING", f"{count} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the "
-        f"first in layer {first}", first,
+        NOTE, "CLOSING", Text("{} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the "
+            "first in layer {}", count, first), first,
     )]
 
 

@@ -11,7 +11,7 @@ from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.frames import unit
 from ...geometry.walls.surface import dot
 from ...geometry.walls.surface_wall import Placed, SurfaceWall
-from ...issues import NOTE, InputError, Issue
+from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
@@ -49,7 +49,7 @@ def plan(
     curves = sliced(wall, surface, strategy)
     stretches, notes = _stretches(wall, surface, curves, strategy)
     curves = curves[: len(stretches)]  # what is not deposited is nobody's concern
-    progress(0.5, f"measuring {len(curves)} layers")
+    progress(0.5, Text("measuring {} layers", len(curves)))
     distances = [local_distances(above, below, FINER)[1] for below, above in zip(curves[:-1], curves[1:], strict=True)]
     issues = spacing_issues(distances, strategy) + _corner_notes(surface, curves, stretches, strategy)
     progress(0.7, "build directions")
@@ -83,7 +83,8 @@ def _stretches(
         raise InputError("TOO_LOW", wall.label, "its end does not lie above the substrate all around; make it longer")
     if strategy.end == "whole":
         left = float(((wall.end - fronts[count - 1].u) * _rate(surface, fronts[count - 1])).max())
-        note = Issue(NOTE, "REMAINDER", f"up to {left:.4g} mm of the wall are left above the last whole layer", count - 1)
+        note = Issue(NOTE, "REMAINDER", Text("up to {:.4g} mm of the wall are left above the last whole layer", left),
+                     count - 1)
         return pieces[:count], [note] if left > 1e-6 * strategy.layer_height else []
     kept = [[piece for piece in some if piece.length(front.curve) > 0.5 * strategy.layer_height]
             for front, some in zip(fronts, pieces, strict=True)]

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Messages carry the template and the values they are made of, from where they are made to where they are shown."""
+
+import ast
+import copy
+import dataclasses
+import json
+import pickle
+import random
+import re
+import traceback
+from collections import Counter
+from pathlib import Path
+from types import SimpleNamespace
+
+import FreeCAD as App
+import pytest
+
+from freecad_am import api
+from freecad_am.batch import run
+from freecad_am.batch.job import job as jobs
+from freecad_am.batch.rows import process
+from freecad_am.brep.files import read
+from freecad_am.core.issues import AmError, InputError, Issue, Text, Word
+from freecad_am.core.kinematics.machines import machine
+from freecad_am.gui.texts.in_language import in_language
+from freecad_am.objects.fields import rows
+from freecad_am.objects.results.findings import issues_of, message_of
+from freecad_am.objects.staleness import INFEASIBLE
+from tests.robust import job_bases, mutations
+
+ROOT = Path(__file__).resolve().parent.parent
+NO_BREAK = "\u00a0"
+LITERAL = re.compile(r"\{\d+\}|`[^`]*`|\b[a-z_]+(?:\.[a-z_]+)+")
+FIGURE = re.compile(r"\d[\d.,e+-]*\d|\d")
+
+
+@pytest.fixture(scope="module")
+def french():
+    """The table of French texts, read by itself."""
+    found = re.findall(
+        r"<source>(.*?)</source>\s*<translation>(.*?)</translation>",
+        (ROOT / "resources" / "translations" / "RoboticAM_fr.ts").read_text(encoding="utf-8"), re.DOTALL,
+    )
+    signs = (("&lt;", "<"), ("&gt;", ">"), ("&quot;", '"'), ("&apos;", "'"), ("&amp;", "&"))
+    return {plain(source, signs): plain(told, signs) for source, told in found}
+
+
+def plain(text, signs):
+    for written, sign in signs:
+        text = text.replace(written, sign)
+    return text
+
+
+def untold(text, table):
+    """Templates of a text, and of the texts put into it, that the table does not have; in full for a text that has none."""
+    if not isinstance(text, Text):
+        key = text.strip().replace("{", "{{").replace("}", "}}")
+        return [] if key in table or len(re.findall(r"[a-z]{2,}", LITERAL.sub("", key))) < 2 else [text]
+    own = text.template.strip()
+    words = re.findall(r"[a-z]{3,}", LITERAL.sub("", own))
+    inner = [found for value in text.values if isinstance(value, Text) for found in untold(value, table)]
+    return ([own] if words and own not in table else []) + inner
+
+
+def check_told(text, table):
+    """A text has no English left, and its figures are kept."""
+    assert untold(text, table) == []
+    told = in_language(text, lambda template: table.get(template, template))
+    assert Counter(FIGURE.findall(told)) == Counter(FIGURE.findall(text)), (text, told)
+    return told
+
+
+# ---- a text
+
+
+def test_a_text_is_the_sentence():
+    name, width, count = "Ab", 2.34567, 12
+    text = Text("{} is {:.3g} mm wide, {!r}: {{}} of {:,}", name, width, name, 1000 * count)
+    assert text == f"{name} is {width:.3g} mm wide, {name!r}: {{}} of {1000 * count:,}"
+    assert text.template == "{0} is {1} mm wide, {2}: {{}} of {3}" and text.values == ("Ab", "2.35", "'Ab'", "12,000")
+    assert text.template.format(*text.values) == text and json.dumps([text]) == json.dumps([str(text)])
+    assert Text("{1} before {0}", "b", "a") == "a before b" and Text("a {brace}") == "a {brace}"
+    assert Text("{} {}", "x", Word("rows")).template == "{0} rows"
+    chosen = Text("it is {}{}", 3, Word(Text("; {} of {}", 1, 2)))
+    assert (chosen, chosen.template, chosen.values) == ("it is 3; 1 of 2", "it is {0}; {1} of {2}", ("3", "1", "2"))
+
+
+@pytest.mark.parametrize("way", [copy.deepcopy, copy.copy, lambda text: pickle.loads(pickle.dumps(text))])
+def test_a_text_keeps_its_parts(way):
+    inner = Text("use {:g} mm", 2)
+    for text in (Text("{}: {}; {{}}", "Box", inner), inner + "; " + inner, "a " + inner, Text("as {it} is")):
+        again = way(text)
+        assert (again, again.template, again.values) == (text, text.template, text.values)
+    assert dataclasses.asdict(Issue("note", "X", inner))["message"].template == "use {0} mm"
+
+
+def test_texts_in_a_row_keep_their_parts():
+    some = [Text("{} mm", k) for k in range(5)]
+    joined = Text.joined(" and ", some)
+    assert joined == " and ".join(some) and joined.template == "{0} and {1}"
+    assert Text.joined(", ", ["a"]) == "a" and Text.joined(", ", ()) == ""
+    many = Text.joined("; ", map(str, range(5000)))
+    assert in_language(many, {"{0}; {1}": "{0} ; {1}"}.get) == " ; ".join(map(str, range(5000)))
+
+
+def test_errors_carry_theirs():
+    error = InputError("X", "Box", "it has {} faces; {}", 3, Text("use {}", "one"), mended_by={"a": 1})
+    assert str(error) == "Box: it has 3 faces; use one" and error.line() == "error[X] Box: it has 3 faces; use one"
+    assert error.message.template == "it has {0} faces; {1}" and error.sentence.values == ("Box", error.message)
+    assert InputError("X", "Box", "give {a: 1}").message == "give {a: 1}" and error.mended_by == {"a": 1}
+
+
+# ---- how messages are made
+
+ERRORS, TELLING = ("AmError", "InputError", "InfeasibleError"), {"Issue": 2}
+
+
+def forgetful(node: ast.AST | None) -> bool:
+    """Whether an expression makes a text that forgets its parts."""
+    if isinstance(node, ast.IfExp):
+        return forgetful(node.body) or forgetful(node.orelse)
+    if isinstance(node, ast.BoolOp):
+        return any(map(forgetful, node.values))
+    if isinstance(node, ast.JoinedStr):
+        return any(isinstance(part, ast.FormattedValue) for part in node.values)
+    if isinstance(node, ast.BinOp):
+        parts = (node.left, node.right)
+        return isinstance(node.op, (ast.Add, ast.Mod)) and any(
+            isinstance(part, ast.JoinedStr) or isinstance(getattr(part, "value", None), str) for part in parts)
+    if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+        return False
+    shown = getattr(getattr(node.func.value, "func", None), "id", "") == "tr"  # of the window: it is in its language
+    return node.func.attr in ("format", "join") and not shown
+
+
+def forgotten(tree: ast.AST) -> list[int]:
+    """Lines with a message of an error or a finding that forgets what it is made of, itself or by a variable."""
+    told, waiting = [], [(tree, {})]
+    for node, given in waiting:  # which grows meanwhile; given: what the variables of a function are given
+        if isinstance(node, (ast.Assign, ast.AnnAssign, ast.AugAssign)):
+            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                given.setdefault(getattr(target, "id", ""), []).append(node.value)
+        elif isinstance(node, ast.Call):
+            name = getattr(node.func, "id", getattr(node.func, "attr", ""))
+            at = 2 if name in ERRORS else TELLING.get(name)
+            if at is not None and len(node.args) > at:
+                told.append((node, node.args[at], given))
+        inner = {} if isinstance(node, ast.FunctionDef) else given
+        waiting += [(child, inner) for child in ast.iter_child_nodes(node)]
+    return [call.lineno for call, text, given in told
+            if any(map(forgetful, [text, *(given.get(text.id, []) if isinstance(text, ast.Name) else [])]))]
+
+
+def test_no_message_forgets_what_it_is_made_of():
+    texts = {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / "freecad_am").rglob("*.py"))}
+    telling = {path: text for path, text in texts.items() if any(f"{name}(" in text for name in (*ERRORS, *TELLING))}
+    lost = {path.relative_to(ROOT).as_posix(): forgotten(ast.parse(text)) for path, text in telling.items()}
+    assert len(telling) > 200
+    wrong = {name: lines for name, lines in lost.items() if lines}
+    assert wrong == {}, "give the message as a template with its values: InputError(code, where, 'it has {} faces', count)"
+
+
+def test_a_message_that_forgets_is_found():
+    for text in ('InputError("A", b, f"it {c}")', 'Issue(d, "A", "it " + c)', 'InputError("A", b, "x" if y else f"{c}")',
+                 'InfeasibleError("A", b, "{} a".format(c))', 'Issue(d, "A", "; ".join(c))'):
+        assert forgotten(ast.parse(text)) == [1], text
+    assert forgotten(ast.parse('def a():\n    why = f"{b} c"\n    raise InputError("A", b, why)')) == [3]
+    assert forgotten(ast.parse('InputError("A", f"{b}", "it has {}", f"{c:.3g}")\nIssue(d, "A", Text("{} it", c))')) == []
+
+
+# ---- errors in French
+
+
+def raised(work, *arguments):
+    """The message of an error of some work, as it was made; None where there is no error, or it is one of the command line,
+    which speaks English alone."""
+    try:
+        work(*arguments)
+    except AmError as error:
+        while isinstance(error.__context__, AmError):
+            error = error.__context__
+        return None if "/batch/" in traceback.extract_tb(error.__traceback__)[-1].filename else error.message
+    return None
+
+
+def test_errors_of_parameters_are_told_in_french(french):
+    """Odd values of all parameters, as a panel or a macro gives them."""
+    sections = {*mutations.SECTIONS.values(), *mutations.LATER.values(), *mutations.STRATEGIES.values()}
+    entered = [(cls, row, odd) for cls in sorted(sections, key=lambda cls: cls.__name__) for row in rows.rows(cls)
+               for odd in mutations.ODD if isinstance(odd, str)]
+    told = set()
+    for cls, row, odd in random.Random(16).sample(entered, 1500):
+        message = raised(lambda: rows.build(cls, {row.key: row.inner(odd, row.label)}))  # noqa: B023
+        if message is not None:
+            check_told(message, french)
+            told.add(getattr(message, "template", message))
+    assert len(told) > 20, told
+
+
+def test_errors_of_damaged_machine_files_are_told_in_french(tmp_path, french):
+    sound = json.loads((ROOT / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
+    told = set()
+    for damaged in list(damages(sound))[::7]:
+        (tmp_path / "damaged.json").write_text(json.dumps(damaged), encoding="utf-8")
+        message = raised(machine.load, tmp_path / "damaged.json")
+        if message is not None:
+            check_told(message, french)
+            told.add(getattr(message, "template", message))
+    assert len(told) > 10, told
+
+
+def damages(value):
+    """A tree with each entry left out, and with something else in its place."""
+    entries = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, entry in entries:
+        for put in ("left out", None, -1.5, "word", [[]], {"other": 1}):
+            changed = copy.copy(value)
+            if put == "left out":
+                del changed[key]
+            else:
+                changed[key] = put
+            yield changed
+        for inner in damages(entry):
+            changed = copy.copy(value)
+            changed[key] = inner
+            yield changed
+
+
+@pytest.mark.parametrize("numbers", [(7, 19), pytest.param(tuple(range(20)), marks=pytest.mark.long)], ids=["few", "more"])
+def test_findings_of_jobs_are_told_in_french(numbers, doc, tmp_path, french):
+    """Jobs to which something was done, planned as far as they are."""
+    job_bases.write_parts(tmp_path)
+    known, job = job_bases.bases(str(tmp_path)), tmp_path / "job.yaml"
+    session = SimpleNamespace(say=list, issues=list, progress=str, check=bool)
+    told = 0
+    for number in numbers:
+        chance = random.Random(1600 + number)
+        job.write_bytes(mutations.mutated(known[number * 61 % len(known)][1], chance, tmp_path))
+        stages = []
+        message = raised(lambda: stages.append(run.plan(jobs.read_job(str(job)), doc, session)))  # noqa: B023
+        for text in [*([] if message is None else [message]), *(one.message for made in stages for one in made.issues)]:
+            check_told(text, french)
+            told += 1
+    assert told
+
+
+# ---- on their way
+
+
+def test_a_message_of_another_process_keeps_its_parts(tmp_path, french):
+    file = tmp_path / "part.3mf"
+    file.write_bytes(b"PK not a zip")
+    with pytest.raises(InputError) as caught:
+        read.read_mesh(str(file))
+    assert check_told(caught.value.message, french) != caught.value.message
+    assert isinstance(caught.value.message.values[0], Text) and caught.value.message.values[0].values
+
+
+def test_a_message_of_a_row_of_a_batch_keeps_its_parts(tmp_path, french):
+    values = {"version": 1, "part": {"file": "part.step"}, "strategy": {"layer_height": "-2 mm"}}
+    order = process.Order("row 1", values, str(tmp_path / "job.yaml"), str(tmp_path / "out"), False)
+    message = process.received(*process.started(order))["message"]
+    assert check_told(message, french) == f"-2 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
+    assert message.values[0] == "-2 mm"
+
+
+# ---- in documents
+
+
+@pytest.fixture
+def infeasible(doc):
+    """A joint path that cannot be carried out, with its cell and what it follows."""
+    part = doc.addObject("Part::Sphere", "Sphere")
+    part.Angle1 = 0
+    doc.recompute()
+    cell = api.make_cell(doc, deposition_point="3000 0 0 0 0 0")
+    feature = api.make_feature(doc, part, layer_height=3)
+    return api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
+
+
+def test_messages_of_a_document_are_told_in_french_when_it_is_opened_again(infeasible, tmp_path, french):
+    assert infeasible.Status == INFEASIBLE
+    said = infeasible.Message, infeasible.Issues, check_told(message_of(infeasible), french)
+    found = [check_told(issue.message, french) for issue in issues_of(infeasible)]
+    assert found and said[2] != said[0]
+    infeasible.Document.saveAs(str(tmp_path / "a.FCStd"))
+    again = App.openDocument(str(tmp_path / "a.FCStd"))
+    try:
+        opened = again.getObject(infeasible.Name)
+        assert (opened.Message, opened.Issues, check_told(message_of(opened), french)) == said
+        assert [check_told(issue.message, french) for issue in issues_of(opened)] == found
+    finally:
+        App.closeDocument(again.Name)
+
+
+def test_a_document_of_before_is_told_as_it_was_written(infeasible):
+    infeasible.Texts = ""
+    message, issue = message_of(infeasible), issues_of(infeasible)[0]
+    assert message == infeasible.Message and not isinstance(message, Text) and not isinstance(issue.message, Text)
+    api.change(infeasible, min_condition=0.02)
+    assert isinstance(message_of(infeasible), Text)
