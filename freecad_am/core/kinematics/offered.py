@@ -19,7 +19,8 @@ from .urdf.machine import is_mechanism
 
 def positioners(robot: Machine, mass: float, radius: float, folders: Sequence[str] = ()) -> list[Machine]:
     """Those of one or two turning axes that carry a part of a mass, kg, as far as their files tell: first those whose table
-    is as wide as the part, `radius` mm about its axis, of these those of the robot's maker, then those rated lowest."""
+    is as wide as the part, `radius` mm about its axis, of these those whose speeds are known, then those of the robot's
+    maker, then those rated lowest."""
     some = [one for one in _known(folders) if not one.chain.sliding.any() and one.payload.kg >= mass]
     return sorted(some, key=lambda one: (_table(one) < radius, *_rank(robot, one)))
 
@@ -30,8 +31,9 @@ def tracks(robot: Machine, folders: Sequence[str] = ()) -> list[Machine]:
     return sorted(some, key=lambda one: _rank(robot, one))
 
 
-def _rank(robot: Machine, one: Machine) -> tuple[bool, float, str]:
-    return one.title.split()[0] != robot.title.split()[0], one.payload.kg, one.id
+def _rank(robot: Machine, one: Machine) -> tuple[bool, bool, float, str]:
+    unknown = not np.isfinite(one.max_speed).all()
+    return unknown, one.title.split()[0] != robot.title.split()[0], one.payload.kg, one.id
 
 
 def _known(folders: Sequence[str]) -> list[Machine]:

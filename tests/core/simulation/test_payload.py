@@ -201,7 +201,9 @@ def test_the_preflight_tells_what_it_weighs_and_what_carries_it(toolpath, positi
 
 
 def test_positioners_offered_carry_the_part_and_are_of_the_robots_maker(toolpath, positioner, tmp_path):
-    """Two of the user's beside the one built in, which is rated for 500 kg: by weight, by size, by maker."""
+    """Two of the user's beside the one built in whose speeds are known, which is rated for 500 kg: by weight, by size, by
+    maker; and after these the built-in ones of which less is known."""
+    dkp, kp2, irbp = "kuka-dkp-400", "kuka-kp2-hv500", "abb-irbp-a250"
     plain = json.loads(positioner(kg=900).read_text(encoding="utf-8"))
     (tmp_path / "skew.json").unlink()
     folder = tmp_path / "mine"
@@ -218,12 +220,12 @@ def test_positioners_offered_carry_the_part_and_are_of_the_robots_maker(toolpath
     def ids(robot, mass, radius=100.0):
         return [one.id for one in offered.positioners(robot, mass, radius, (str(folder),))]
 
-    assert ids(kuka, 50.0) == ["small", "motoman-motopos-d500", "large"]
-    assert ids(abb, 50.0) == ["large", "small", "motoman-motopos-d500"]
-    assert ids(kuka, 300.0) == ["motoman-motopos-d500", "large"] and ids(kuka, 700.0) == ["large"]
+    assert ids(kuka, 50.0) == ["small", "motoman-motopos-d500", "large", dkp, kp2, irbp]
+    assert ids(abb, 50.0) == ["large", "small", "motoman-motopos-d500", irbp, dkp, kp2]
+    assert ids(kuka, 300.0) == ["motoman-motopos-d500", "large", dkp, kp2] and ids(kuka, 700.0) == ["large"]
     assert ids(kuka, 1000.0) == []
     # wider than the table of the D500, 502 mm
-    assert ids(kuka, 300.0, 400.0) == ["large", "motoman-motopos-d500"]
+    assert ids(kuka, 300.0, 400.0) == ["large", dkp, kp2, "motoman-motopos-d500"]
     assert [one.id for one in offered.tracks(kuka, (str(folder),))] == ["kuka-kl100-2"]
 
 
