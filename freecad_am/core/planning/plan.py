@@ -40,6 +40,7 @@ Progress = Callable[[float, str], None]
 Place = tuple[int, int]
 
 METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_point.plan, "constant": constant.plan}
+ALL_METHODS = METHODS | {closed_form.METHOD: closed_form.plan}  # and the one where there is nothing to choose
 # what there is to choose where a robot is free to turn about the tool
 OF_ROBOTS = (
     "method", "rz", "degree", "parameter", "rotation_range", "objective", "min_condition", "characteristic_length",
@@ -81,17 +82,16 @@ def plan_joints(
             if planned is None or found.feasible:
                 planned = found
             if planned.feasible:
-                return _with_issues(planned, cell, not_used)
+                return dataclasses.replace(planned, issues=(*planned.issues, *not_used))
     assert planned is not None  # there is one way at least
-    return _with_issues(planned, cell, not_used)
+    return dataclasses.replace(planned, issues=(*out_of_reach(cell, planned.beads), *planned.issues, *not_used))
 
 
-def _with_issues(planned: JointPath, cell: Cell, not_used: Sequence[Issue]) -> JointPath:
-    """A joint path with what is wrong with all of it; without method, objective and branch where nothing was to choose."""
-    issues = (*out_of_reach(cell, planned.beads), *planned.issues, *not_used)
-    if cell.machine.free:
-        return dataclasses.replace(planned, issues=issues)
-    return dataclasses.replace(planned, issues=issues, method=closed_form.METHOD, objective="none", branch=())
+def _choices(task: Task) -> tuple[str, str, tuple[str, ...]]:
+    """Method, objective and branch of a joint path; where nothing is free there is one method, and nothing to optimise."""
+    if not task.cell.machine.free:
+        return closed_form.METHOD, "none", ()
+    return task.parameters.method, task.parameters.objective, opw.branch_name(task.branch)
 
 
 def _branch_wanted(cell: Cell, parameters: JointParameters) -> int | None:
@@ -137,10 +137,7 @@ def _in_branches(
     if parameters.certificate and not has_errors(issues):
         optimality, notes = bound.summed(task, paths, lambda share: progress(share, "bounding the objective"))
         issues = [*issues, *notes]
-    return JointPath(
-        parameters.method, parameters.objective, opw.branch_name(task.branch), cell.limits.name, tuple(paths),
-        tuple(issues), comparisons, optimality, level,
-    )
+    return JointPath(*_choices(task), cell.limits.name, tuple(paths), tuple(issues), comparisons, optimality, level)
 
 
 def _failed(paths: Sequence[BeadPath], issues: Sequence[Issue], places: Sequence[tuple[int, int]]) -> list[int]:
@@ -213,8 +210,7 @@ def _compare_order(parameters: JointParameters) -> list[str]:
 def _planned(
     task: Task, toolpath: Toolpath, beads: Sequence[Bead], places: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    method = METHODS[task.parameters.method] if task.cell.machine.free else closed_form.plan
-    paths, issues = method(task, beads, places, progress)
+    paths, issues = ALL_METHODS[_choices(task)[0]](task, beads, places, progress)
     paths, found = _finished(task, toolpath, places, paths)
     return paths, given.not_used(task.parameters, places) + issues + found
 

@@ -67,6 +67,16 @@ def check(cell, path, chord_error=0.02):
         assert (one.joints >= cell.limits.lower).all() and (one.joints <= cell.limits.upper).all()
 
 
+def test_free_is_what_a_machine_has_beyond_five_axes():
+    robot = CellParameters(setup="tool-on-robot", mount="part")
+    beside = "motoman-motopos-d500 at 1000 60 -600 0 0 20 carries part"
+    for cell, free in [
+        *((resolved(machine), 0) for machine in MACHINES), (cells.resolve(robot, np.eye(4)), 1),
+        (cells.resolve(dataclasses.replace(robot, external=beside), np.eye(4)), 3),
+    ]:
+        assert cell.machine.free == free == cell.machine.chain.axes - 5
+
+
 @pytest.mark.parametrize("machine", MACHINES)
 def test_random_beads_anywhere(machine):
     rng = np.random.default_rng(3)
