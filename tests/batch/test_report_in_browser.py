@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests import browser
-from tests.batch.conftest import Workshop, make_cup
+from tests.batch.conftest import JOB, Workshop, make_cup
 
 pytestmark = [
     pytest.mark.long,
@@ -143,3 +143,64 @@ def test_every_colour_and_option_is_drawn(page):
         before = picture(page)
         page.run(f"document.querySelector('[name={name}]').click()")
         assert (np.abs(picture(page) - before).max(axis=2) > 20.0).sum() > 30
+
+
+MANY = 100_000  # rows
+TIMED = """(() => { const drawing = window.pathViewer.drawing, own = drawing.draw.bind(drawing), pixel = new Uint8Array(4);
+  const done = () => drawing.gl.readPixels(0, 0, 1, 1, drawing.gl.RGBA, drawing.gl.UNSIGNED_BYTE, pixel);
+  window.frames_ = [];
+  drawing.draw = (camera, look) => { done(); const at = performance.now(); own(camera, look); done();
+    window.frames_.push([performance.now() - at, !!look.moving]); }; })()"""
+
+
+def frames(page):
+    """ms that each frame since the last time took, until it was there, and whether it was one of a path that moves."""
+    return np.array(page.run("window.frames_.splice(0)"), float).reshape(-1, 2)
+
+
+def test_a_path_of_a_hundred_thousand_rows_is_turned_and_stepped_through(tmp_path, root):
+    """Where a processor draws all of it: no frame of a path that moves draws everything, and each takes less than a fifth of
+    what that takes, which is drawn once the path rests."""
+    make_cup(tmp_path)
+    shop = Workshop(tmp_path, root / "freecad-am")
+    shop.write_job(JOB.replace("layer_height: 4 mm", "layer_height: 0.5 mm").replace("0.1 mm", "0.00015 mm").replace(
+        "post: fanuc", "post: none"))
+    assert shop.run("plan", "cup.yaml").status == 0
+    with browser.Browser(tmp_path / "out" / "cup" / "report.html", tmp_path / "profile") as page:
+        assert page.run("window.pathViewer.path.rows") >= MANY
+        x, y = middle(page)
+        page.run(RESTED)
+        page.run(TIMED)
+        page.run("window.pathViewer.redraw()")
+        page.run("new Promise((done) => setTimeout(done, 3000))")
+        (whole, moving), *_ = frames(page)
+        assert not moving
+        page.mouse("mousePressed", x, y, button="left", clickCount=1)
+        for step in range(1, 41):
+            page.mouse("mouseMoved", x + 3 * step, y, button="left", buttons=1)
+        turning = frames(page)
+        page.run("new Promise((done) => setTimeout(done, 1000))")
+        assert frames(page)[:, 1].all()  # as long as it is held
+        page.mouse("mouseReleased", x + 120, y, button="left", clickCount=1)
+        page.run("new Promise((done) => setTimeout(done, 3000))")
+        rested = frames(page)
+        assert len(turning) >= 20 and turning[:, 1].all() and not rested[-1, 1] and (rested[:-1, 1] == 1.0).all()
+        row = page.run("window.pathViewer.look.row")
+        for _ in range(20):
+            page.run("document.querySelector('[name=back]').click();"
+                     " new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        stepping = frames(page)
+        assert page.run("window.pathViewer.look.row") == row - 20 and stepping[:, 1].mean() > 0.8
+        page.run("document.querySelector('[name=whole]').click()")
+        page.run("new Promise((done) => setTimeout(done, 3000))")
+        frames(page)
+        page.run("document.querySelector('[name=play]').click()")  # from the beginning
+        page.run("new Promise((done) => setTimeout(done, 3000))")
+        page.run("document.querySelector('[name=play]').click()")
+        playing = frames(page)
+        assert len(playing) > 10 and playing[:, 1].all()
+        took = {name: np.median(some[:, 0]) for name, some in (
+            ("turning", turning), ("stepping", stepping[stepping[:, 1] == 1.0]), ("playing", playing))}
+        print(f"all of it {whole:.0f} ms; " + ", ".join(f"{name} {ms:.0f} ms a frame" for name, ms in took.items()))
+        assert all(ms < 0.2 * whole for ms in took.values()), (whole, took)
+        assert page.errors == []

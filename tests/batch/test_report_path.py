@@ -86,6 +86,18 @@ def test_its_bytes_are_the_waypoints(planned):
     assert list(times) == sorted(times) and times[-1] == pytest.approx(report["totals"]["time_s"], rel=1e-3)
 
 
+def test_a_row_takes_few_bytes_and_no_word_of_its_own(planned):
+    """So that a page of 1e5 rows is of some 8 MB, and one that a browser reads at once: three numbers of 2 bytes for its place
+    and each direction, one for every value that may colour it and every axis."""
+    page, rows, _ = planned
+    facts = page.facts
+    a_row = 3 * 3 * 2 + 1 + 4 + 4 + 2 * (len(facts["columns"]) + len(facts["axes"]))
+    bodies = sum(4 * one[key]["count"] for one in facts["bodies"] for key in ("vertices", "triangles"))
+    assert a_row * len(rows) <= len(page.bytes) - bodies <= a_row * len(rows) + 3 * 40 and a_row <= 60
+    of_page = len(page.text) - len(page.text[page.text.index('id="path-columns"'):].split("</script>")[0])
+    assert of_page < 400_000  # the rest is no longer for more rows
+
+
 def test_its_stretches_are_those_of_the_rows(planned):
     page, rows, _ = planned
     expected, before = [], None

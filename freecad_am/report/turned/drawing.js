@@ -2,9 +2,9 @@
 // Draws the path by WebGL: each way between two rows as a piece of bead, as wide and high as it is laid.
 "use strict";
 
-// rows drawn while the path is turned, rows up to which edges are smoothed, and ms of a frame that is not fluent: the next
-// ones are drawn with half of the pixels
-const COARSE = 8000, SMOOTH = 40000, SLOW = 40;
+// rows drawn while the path is turned, and where that is slow; rows up to which edges are smoothed; ms of a frame that is not
+// fluent: the next ones are drawn with half of the pixels, and where that does not help with few rows
+const COARSE = 8000, COARSEST = 2000, SMOOTH = 40000, SLOW = 40;
 const BEAD_SHADER = `#version 300 es
 uniform mat3 turn; uniform vec3 middle; uniform vec2 scale; uniform vec2 shift; uniform float depth;
 uniform float pixel; uniform float high; uniform float wide; uniform float step; uniform vec3 low; uniform float rapids;
@@ -106,6 +106,7 @@ class Drawing {
       vertices: buffered(gl, body.vertices), count: body.triangles.length,
       triangles: buffered(gl, body.triangles, gl.ELEMENT_ARRAY_BUFFER),
     }));
+    this.slow = 0;
     this.loose = gl.createBuffer();
     this.ramp = this.rampOf(path.ramp);
   }
@@ -135,8 +136,15 @@ class Drawing {
 
   // that the path is turned: how long the frame before took tells whether this is fluent
   turned(now, moving) {
-    if (moving && this.before && now - this.before > SLOW && now - this.before < 20 * SLOW) this.slow = true;
+    if (moving && this.before && now - this.before > SLOW && now - this.before < 20 * SLOW) this.slow++;
     this.before = moving ? now : 0;
+  }
+
+  pieces(moving) {
+    if (!moving) return this.whole;
+    if (this.slow < 2 || this.path.rows <= COARSEST) return this.coarse;
+    if (!this.coarsest) this.coarsest = new Pieces(this.gl, this.path, someRows(this.path, COARSEST), this.widths);
+    return this.coarsest;
   }
 
   seen(places, camera) {
@@ -156,7 +164,7 @@ class Drawing {
   }
 
   drawBeads(camera, look, ratio) {
-    const { gl, path } = this, { program, places } = this.beads, pieces = look.moving ? this.coarse : this.whole;
+    const { gl, path } = this, { program, places } = this.beads, pieces = this.pieces(look.moving);
     const first = pieces.before(look.first), count = pieces.before(look.last + 1) - 1 - first;
     if (count < 1) return;
     gl.useProgram(program);

@@ -31,6 +31,7 @@ class Viewer {
     this.layers = this.rowsOfLayers();
     this.look = { column: 0, rapids: false, directions: false, from: 0, to: this.layers.length - 1, row: path.rows - 1 };
     this.marks = [...document.querySelectorAll("[data-row]")].map((one) => Number(one.dataset.row));
+    this.held = new Map(); // pointers that are down on the canvas
     this.fields();
     this.pointer();
     this.camera.reset(this.canvas.clientWidth, this.canvas.clientHeight);
@@ -63,13 +64,13 @@ class Viewer {
       row: (value) => ({ row: Number(value) }),
     };
     for (const [name, change] of Object.entries(heard)) {
-      this.field(name).addEventListener("input", (event) => this.show(change(event.target.value)));
+      this.field(name).addEventListener("input", (event) => this.step(change(event.target.value)));
     }
     for (const name of ["rapids", "directions"]) {
       this.field(name).addEventListener("change", (event) => this.show({ [name]: event.target.checked }));
     }
     const pressed = {
-      back: () => this.show({ row: this.look.row - 1 }), on: () => this.show({ row: this.look.row + 1 }),
+      back: () => this.step({ row: this.look.row - 1 }), on: () => this.step({ row: this.look.row + 1 }),
       play: () => this.play(), whole: () => { this.stop(); this.show({ from: 0, to: last, row: path.rows - 1 }); },
       reset: () => { this.camera.reset(this.canvas.clientWidth, this.canvas.clientHeight); this.redraw(); },
     };
@@ -87,7 +88,7 @@ class Viewer {
   }
 
   pointer() {
-    const { canvas } = this, held = new Map();
+    const { canvas, held } = this;
     const place = (event) => {
       const box = canvas.getBoundingClientRect();
       return [event.clientX - box.left - 0.5 * box.width, 0.5 * box.height - (event.clientY - box.top)];
@@ -113,6 +114,7 @@ class Viewer {
     const end = (event) => {
       const mine = held.get(event.pointerId);
       held.delete(event.pointerId);
+      if (this.look.moving) this.redraw();
       if (mine && mine.moved < 4 && event.type === "pointerup") this.pick(mine.at);
     };
     for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, end);
@@ -127,7 +129,7 @@ class Viewer {
       ArrowLeft: () => this.camera.orbit(-12, 0), ArrowRight: () => this.camera.orbit(12, 0),
       ArrowUp: () => this.camera.orbit(0, -12), ArrowDown: () => this.camera.orbit(0, 12),
       "+": () => this.camera.enlarge(1.2, [0, 0]), "-": () => this.camera.enlarge(1 / 1.2, [0, 0]),
-      ",": () => this.show({ row: this.look.row - 1 }), ".": () => this.show({ row: this.look.row + 1 }),
+      ",": () => this.step({ row: this.look.row - 1 }), ".": () => this.step({ row: this.look.row + 1 }),
     };
     canvas.addEventListener("keydown", (event) => {
       if (!keys[event.key]) return;
@@ -170,6 +172,12 @@ class Viewer {
     this.redraw();
   }
 
+  // the same where more such changes follow soon
+  step(changes) {
+    this.move();
+    this.show(changes);
+  }
+
   play() {
     if (this.timer) { this.stop(); return; }
     const { first, last } = this.range(), start = this.look.row < last ? this.look.row : first;
@@ -191,17 +199,23 @@ class Viewer {
     this.field("play").textContent = "Play";
   }
 
-  // draw coarsely, and all of it once the path has come to rest
+  // draw coarsely, and all of it once the path has come to rest: REST after the last frame, and not while it is held, or a
+  // frame that takes longer would be followed by one of everything
   move() {
     this.look.moving = true;
-    clearTimeout(this.rest);
-    this.rest = setTimeout(() => { this.look.moving = false; this.redraw(); }, REST);
     this.redraw();
   }
 
   redraw() {
     if (this.asked) return;
-    this.asked = requestAnimationFrame((now) => { this.asked = 0; this.drawing.turned(now, this.look.moving); this.drawNow(); });
+    clearTimeout(this.rest);
+    this.asked = requestAnimationFrame((now) => {
+      this.asked = 0;
+      this.drawing.turned(now, this.look.moving);
+      this.drawNow();
+      if (!this.look.moving || this.timer || this.held.size) return;
+      this.rest = setTimeout(() => { this.look.moving = false; this.redraw(); }, REST);
+    });
   }
 
   drawNow() {
