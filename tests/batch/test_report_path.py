@@ -87,8 +87,8 @@ def test_its_bytes_are_the_waypoints(planned):
 
 
 def test_a_row_takes_few_bytes_and_no_word_of_its_own(planned):
-    """So that a page of 1e5 rows is of some 8 MB, and one that a browser reads at once: three numbers of 2 bytes for its place
-    and each direction, one for every value that may colour it and every axis."""
+    """So that a page of 1e5 rows is of some 8 MB, and one that a browser reads at once: three numbers of 2 bytes for its
+    place and each direction, one for every value that may colour it and every axis."""
     page, rows, _ = planned
     facts = page.facts
     a_row = 3 * 3 * 2 + 1 + 4 + 4 + 2 * (len(facts["columns"]) + len(facts["axes"]))
