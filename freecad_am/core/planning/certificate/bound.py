@@ -33,6 +33,7 @@ from .step_bounds import least_steps
 CLOSE = 0.005  # share of the objective at which a bound is near enough
 LEVELS = 7  # times that cells are divided
 MOST_STEPS = 2_000_000  # between cells of one bead that are looked at together: what would take more is left as it is
+LESS = (0.0, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)  # shares that a bound may be less than is enough, so that fewer have to be looked at
 FEWEST = 4  # groups of steps of a bead
 GROUPED = 0.002  # of the objective, what may be lost by looking at groups of steps
 
@@ -129,6 +130,7 @@ class _Chain:
     def bound(self, phi: Array) -> float:
         """The least sum over all paths through cells, the target at most; phi (M + 1,) is a path that is known."""
         known, multiplier = chain_optimum.found(self.task, self.points, self.at, phi)
+        target = self._target(known)
         centre, half = whole_turn()
         centres = [centre] * len(self.at)
         first, second = (grid.ravel() for grid in np.meshgrid(np.arange(CELLS), np.arange(CELLS), indexing="ij"))
@@ -146,22 +148,37 @@ class _Chain:
                 for j, pair in enumerate(pairs)
             ]
             ahead = _shortest(pairs, cost, [len(centre) for centre in centres])
-            best = max(best, min(float(ahead[-1].min()), self.target))
-            if best >= self.target:
+            best = max(best, min(float(ahead[-1].min()), target))
+            if best >= target:
                 break
             behind = _shortest(
                 [pair[::-1] for pair in pairs[::-1]], cost[::-1], [len(centre) for centre in centres[::-1]]
             )[::-1]
-            pairs = [
-                (pair[0][open_], pair[1][open_])
-                for j, pair in enumerate(pairs)
-                for open_ in [ahead[j][pair[0]] + cost[j] + behind[j + 1][pair[1]] < self.target]
-            ]
-            if PARTS**2 * sum(len(pair[0]) for pair in pairs) > MOST_STEPS:
+            through = [ahead[j][pair[0]] + cost[j] + behind[j + 1][pair[1]] for j, pair in enumerate(pairs)]
+            lower = next((less for less in LESS if PARTS**2 * sum(
+                int((one < (1.0 - less) * target).sum()) for one in through) <= MOST_STEPS), None)
+            if lower is None or best >= (1.0 - lower) * target:
                 break
+            target *= 1.0 - lower
+            pairs = [(pair[0][one < target], pair[1][one < target]) for pair, one in zip(pairs, through)]
             centres, pairs = _divided(centres, pairs, half)
             half /= PARTS
         return best
+
+    def _target(self, phi: Array) -> float:
+        """The bound that is enough beside a course phi (M + 1,) that is known. Where it keeps limits and condition no bound
+        is above what it takes, and to look for one would leave all cells about it open."""
+        chosen, task = self.points.each(self.at), self.task
+        joints = task.raw_joints(chosen, phi)
+        if not np.isfinite(joints).all():
+            return self.target
+        moved = _short(np.diff(joints, axis=0))
+        run = joints[0] + np.concatenate([np.zeros((1, joints.shape[1])), np.cumsum(moved, axis=0)])
+        turns = np.round((task.middle - 0.5 * (run.min(axis=0) + run.max(axis=0))) / TURN)
+        run += np.where(task.unturned, 0.0, TURN * turns)
+        kept = task.rows.margin(run).min() >= 0.0 and (task.condition(chosen, phi, run) >= self.threshold[self.at]).all()
+        value = float(((moved * moved) @ task.weights / np.diff(self.at)).sum())
+        return min(self.target, (1.0 - CLOSE) * value) if kept else self.target
 
     def _cells(self, centres: Sequence[Array], half: float) -> list[Cells]:
         """The cells of every point."""
