@@ -112,6 +112,27 @@ def test_a_path_without_optimisation_has_a_gap(planned):
     assert best.gaps[0] < 0.05 < 0.2 < worse.gaps[0]
 
 
+def test_what_is_proved_does_not_depend_on_the_path_that_is_asked_about(planned, monkeypatch):
+    """Where few cells may be open: those that lead below a bad path are not all worth it."""
+    task, paths = planned
+    path = min(paths, key=lambda one: len(one.phi))
+    phi = path.phi + 0.3 * path.bead.parameter
+    turned = dataclasses.replace(path, phi=phi, joints=task.raw_joints(gather([path.bead], task.cell), phi))
+    monkeypatch.setattr(certificate, "MOST_STEPS", 200_000)
+    of_best, of_worse = certificate.certified(task, [path, turned]).bound
+    assert of_worse > 0.98 * of_best
+
+
+def test_where_cells_are_too_many_a_lower_bound_is_aimed_at(planned, monkeypatch):
+    task, paths = planned
+    path = min(paths, key=lambda one: len(one.phi))
+    monkeypatch.setattr(certificate, "MOST_STEPS", 60_000)
+    (lower,) = certificate.certified(task, [path]).bound
+    monkeypatch.setattr(certificate, "LESS", (0.0,))
+    (left,) = certificate.certified(task, [path]).bound
+    assert 1.02 * left < lower <= shortest(task, path) * (1.0 + 1e-9)
+
+
 @pytest.mark.parametrize("objective", [name for name in OBJECTIVES if name != "displacement"])
 def test_objectives_of_points_one_by_one(planned, objective):
     task, paths = planned

@@ -33,7 +33,7 @@ from .step_bounds import least_steps
 CLOSE = 0.005  # share of the objective at which a bound is near enough
 LEVELS = 7  # times that cells are divided
 MOST_STEPS = 2_000_000  # between cells of one bead that are looked at together: what would take more is left as it is
-LESS = (0.0, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)  # shares that a bound may be less than is enough, so that fewer have to be looked at
+LESS = (0.0, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)  # shares that a bound may be less than is enough: fewer cells stay open
 FEWEST = 4  # groups of steps of a bead
 GROUPED = 0.002  # of the objective, what may be lost by looking at groups of steps
 
