@@ -53,6 +53,7 @@ def french():
 
 
 def test_all_texts_are_collected(collected, french):
+    assert collected.lost == set(), "f-strings that reach a message by calls: give a Text, with its values"
     texts = collected.texts()
     assert len(texts["RoboticAM"]) > 1000 and len(texts["App::Property"]) > 100
     for context in texts.keys() | french.keys():
@@ -179,8 +180,7 @@ def test_figures_and_names_stay_as_they_are():
 
 
 def test_a_message_that_begins_with_a_name_is_known():
-    known = Text("it has {} faces", 12)
-    cut = Text("{} is cut", "pipe")
+    known, cut = Text("it has {} faces", 12), Text("{} is cut", "pipe")
     for text in (Text("{} is a mesh", "pipe"), Text("{}: {}", "pipe", known), Text("{}; use {}", cut, known)):
         assert names_first(text), text
     for text in (known, Text("{} is a mesh; use a shape", "cell"), Text("{}; use another", known), "of none of these", ""):
@@ -275,8 +275,7 @@ def test_work_that_was_cancelled_or_overtaken_is_told_in_french(stages, told, mo
     def cancelled(obj):
         raise progress.Cancelled
 
-    cell = stages.cell
-    prepare = cell.Proxy.prepare
+    cell, prepare = stages.cell, stages.cell.Proxy.prepare
     cell.PlatformDiameter = 100
     monkeypatch.setattr(cell.Proxy, "prepare", cancelled)
     with pytest.raises(progress.Cancelled):
