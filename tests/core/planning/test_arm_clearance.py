@@ -179,7 +179,7 @@ def objectives(path, cell):
 
 def test_what_came_too_near_is_refined_again_up_to_the_clearance(dome, monkeypatch):
     """Two layers were taken back to 25 and 50 % of the way from the search to the optimum, which a post is in the way of:
-    with gaps among the constraints they come nearer to it by far more than half, and to the post as near as they may."""
+    with gaps among the constraints they win two thirds and four fifths of that, and come to the post as near as they may."""
     whole, low = beside_the_dome(dome, 120.0, 180.0)
     job = dataclasses.replace(whole, layers=whole.layers[:3])
     cell = cells.resolve(CellParameters(**CELL, branch=UP, arm_clearance=CLEARANCE), job.frame)
@@ -199,7 +199,8 @@ def test_what_came_too_near_is_refined_again_up_to_the_clearance(dome, monkeypat
     now = objectives(path, cell)
     assert taken_back == [(0, 0), (1, 0)] and not has_errors(path.issues)
     assert (free[:2] < 0.97 * back[:2]).all() and (now[2:] == back[2:]).all()
-    assert (back[:2] - now[:2] > 0.5 * (back[:2] - free[:2])).all() and (now[:2] > free[:2]).all()
+    won = (back[:2] - now[:2]) / (back[:2] - free[:2])
+    assert (won > [0.64, 0.78]).all() and (won < 1.0).all(), won  # along a gap that is known wrongly it is less
     for bead in path.beads[:2]:
         between = np.linspace(0.0, 1.0, 10)[:, None, None]
         dense = (bead.joints[:-1] + between * np.diff(bead.joints, axis=0)).reshape(-1, 6)
