@@ -7,9 +7,7 @@ import dataclasses
 import json
 import pickle
 import random
-import re
 import traceback
-from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -28,47 +26,15 @@ from freecad_am.objects.fields import rows
 from freecad_am.objects.results.findings import issues_of, message_of
 from freecad_am.objects.staleness import INFEASIBLE
 from tests.robust import job_bases, mutations
+from tests.told_in_french import check_told, table
 
 ROOT = Path(__file__).resolve().parent.parent
 NO_BREAK = "\u00a0"
-LITERAL = re.compile(r"\{\d+\}|`[^`]*`|\b[a-z_]+(?:\.[a-z_]+)+")
-FIGURE = re.compile(r"\d[\d.,e+-]*\d|\d")
 
 
 @pytest.fixture(scope="module")
 def french():
-    """The table of French texts, read by itself."""
-    found = re.findall(
-        r"<source>(.*?)</source>\s*<translation>(.*?)</translation>",
-        (ROOT / "resources" / "translations" / "RoboticAM_fr.ts").read_text(encoding="utf-8"), re.DOTALL,
-    )
-    signs = (("&lt;", "<"), ("&gt;", ">"), ("&quot;", '"'), ("&apos;", "'"), ("&amp;", "&"))
-    return {plain(source, signs): plain(told, signs) for source, told in found}
-
-
-def plain(text, signs):
-    for written, sign in signs:
-        text = text.replace(written, sign)
-    return text
-
-
-def untold(text, table):
-    """Templates of a text, and of the texts put into it, that the table does not have; in full for a text that has none."""
-    if not isinstance(text, Text):
-        key = text.strip().replace("{", "{{").replace("}", "}}")
-        return [] if key in table or len(re.findall(r"[a-z]{2,}", LITERAL.sub("", key))) < 2 else [text]
-    own = text.template.strip()
-    words = re.findall(r"[a-z]{3,}", LITERAL.sub("", own))
-    inner = [found for value in text.values if isinstance(value, Text) for found in untold(value, table)]
-    return ([own] if words and own not in table else []) + inner
-
-
-def check_told(text, table):
-    """A text has no English left, and its figures are kept."""
-    assert untold(text, table) == []
-    told = in_language(text, lambda template: table.get(template, template))
-    assert Counter(FIGURE.findall(told)) == Counter(FIGURE.findall(text)), (text, told)
-    return told
+    return table()
 
 
 # ---- a text
@@ -225,6 +191,37 @@ def damages(value):
             changed = copy.copy(value)
             changed[key] = inner
             yield changed
+
+
+# by key, what a file of a cell may not say
+WRONG = {
+    "machine": ("{file: a.urdf, top: x}", "{file: 3}", "{base: x}", "{name: ur-ur10e}", "{file: a.step}"),
+    "platform": ("3 kg", "20 %", "1,5 mm", ".nan mm", "5 parsecs", "''", "[1, 2]", "[0, 0, 0, 0, 0]", "1e12 mm"),
+    "setup": ("part_on_robot", "7", "[]", "!x a", "{}"), "deposition_point": ("far", "[1, 2, 3, 4, 5, '6 mm/s']", "12 mm"),
+    "external": ("here", "[{}]", "[{machine: a, pose: 3}]", "[{machine: 7, pose: [0, 0, 0, 0, 0, 0]}]"),
+    "obstacles": ("here", "[{file: nowhere.step}]", "[{box: 3}]", "[{box: [1, 2, true]}]", "[3]"),
+    "nozzle": ("{shape: nowhere.step}", "{length: {}}", "{shape: {file: nowhere.step}}", "yes"),
+    "touched": ("3", "[{part: [0, 0], robot: 3}]"), "world_up": ("[0, x, 1]", "[0, 0, '1 deg']"), "kind": ("1",),
+    "limits": ("7", "&a [*a]"), "{a: 1}": ("1",),
+}
+
+
+def test_errors_of_files_of_cells_are_told_in_french(tmp_path, french):
+    """Which the window shows where a saved cell is chosen."""
+    texts = [f"machine: ur-ur10e\n{key}: {value}\n" for key, values in WRONG.items() for value in values]
+    texts += ["", "- a\n", "a: 1\na: 2\n", "a: [", "machine: " + "[" * 40 + "]" * 40, "a: " + "[" * 9000]
+    told = set()
+    for text in texts:
+        (tmp_path / "my.yaml").write_text(text, encoding="utf-8")
+        message = raised(api.read_cell, str(tmp_path / "my.yaml"))
+        assert message is not None, text
+        check_told(message, french)
+        told.add(getattr(message, "template", message))
+    for name, content in {"latin.yaml": "setup: é".encode("latin-1"), "nowhere.yaml": None, "folder": None}.items():
+        if content is not None:
+            (tmp_path / name).write_bytes(content)
+        told.add(check_told(raised(api.read_cell, str(tmp_path / name)), french))
+    assert len(told) > 30, told
 
 
 @pytest.mark.parametrize("numbers", [(7, 19), pytest.param(tuple(range(20)), marks=pytest.mark.long)], ids=["few", "more"])

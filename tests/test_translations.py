@@ -81,7 +81,7 @@ def test_places_and_accelerators_are_kept(french):
 def test_french_is_set_as_french_is(french):
     for texts in french.values():
         for told in texts.values():
-            words = re.sub(r"`[^`]*`|\b[a-z_]+(\.[a-z_]+)*: (?=[\[a-z])", "", told)  # settings, such as wall: outer
+            words = re.sub(r"`[^`]*`|\b[a-z_]+(\.[a-z_]+)*: (?=[\[{a-z])", "", told)  # settings, such as wall: outer
             assert not re.search(rf"[^{NO_BREAK}][;:?!»](?=\s|$)", words), f"no space that does not break: {told}"
 
 

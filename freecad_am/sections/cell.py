@@ -36,7 +36,7 @@ def read(section: Any, path: str) -> CellParameters | None:
 
 
 def _of_file(path: str) -> CellParameters:
-    saved = tree.read(path, "a cell", "machine: ...", "machine: and setup:")
+    saved = tree.read(path, "machine: ...", "machine and setup")
     saved.lines = {f"cell.{key}": line for key, line in saved.lines.items()}
     try:
         return _of_section(saved.values, path)
@@ -140,7 +140,8 @@ def _shape(value: Any, path: str) -> str:
         value, key = value.get("file"), f"{key}.file"
     file = absolute(fields.text(value, key).strip(), path)
     if not is_there(file):
-        raise InputError("NO_FILE", key, "there is no file {}; paths are relative to the job file", file)
+        raise InputError("NO_FILE", key, "there is no file {}; check the path, relative to the file with it",
+                         file)
     return file
 
 
@@ -194,7 +195,8 @@ def _obstacle(value: Any, key: str, number: int, path: str) -> obstacles.Obstacl
     if section.get("file") is not None:
         file = absolute(fields.text(section["file"], f"{key}.file").strip(), path)
         if not is_there(file):
-            raise InputError("NO_FILE", f"{key}.file", "there is no file {}; paths are relative to the job file", file)
+            raise InputError("NO_FILE", f"{key}.file", "there is no file {}; check the path, relative to the file with it",
+                             file)
     edges = section.get("box")
     if edges is not None:
         if not isinstance(edges, list) or len(edges) != 3:

@@ -56,14 +56,14 @@ def unknown_key(dotted: str, key: str, known: tuple[str, ...]) -> InputError:
     import difflib
 
     near = difflib.get_close_matches(key.lower().replace("-", "_"), known, n=1)
-    hint = Text("did you mean {}?", near[0]) if near else Text("known here: {}", ", ".join(known))
+    hint = Text("did you mean {}?", near[0]) if near else Text("use one of {}", ", ".join(known))
     return InputError("UNKNOWN_KEY", dotted, "there is no key {!r}; {}", key, Word(hint))
 
 
 def text(value: Any, key: str) -> str:
     """`value` if it is a text that is not empty. Raises InputError BAD_VALUE otherwise."""
     if not isinstance(value, str) or not value.strip():
-        raise InputError("BAD_VALUE", key, "{} is not a text", _shown(value))
+        raise InputError("BAD_VALUE", key, "{} is not a text; give one, in quotes where it is a number", _shown(value))
     return value
 
 
@@ -81,7 +81,7 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
         return _list(spec, field, value, key)
     if spec.kind == f.POSE or spec.kind in f.END_OF:
         wanted = "[x, y, z, RX, RY, RZ]" if spec.kind == f.POSE else "[smallest, largest]"
-        also = "".join(f" or {word}" for word in spec.words)
+        also = Text.joined("", (Text(" or {}", word) for word in spec.words))
         raise InputError("BAD_VALUE", key, "{} is not a list; give {}{}", _shown(value), Word(wanted), also)
     if spec.kind in quantity.WANTED:
         return _number(value, spec, key)
@@ -122,13 +122,14 @@ def _unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputErro
 def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: str) -> Any:
     if _is_pose(spec, field):
         if len(value) != 6:
-            raise InputError("BAD_VALUE", key, "a pose has six numbers x y z RX RY RZ, not {}", len(value))
+            raise InputError("BAD_VALUE", key, "a pose has six numbers, not {}; give [x, y, z, RX, RY, RZ]", len(value))
         kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
         return tuple(_finite(number, kind, key) for number, kind in zip(value, kinds))
     if spec.kind in f.END_OF:
         if len(value) != 2:
             what = "angles" if spec.kind == f.ANGLE_RANGE else "percentages"
-            raise InputError("BAD_VALUE", key, "a range has two {}, not {}", Word(what), len(value))
+            raise InputError("BAD_VALUE", key, "a range has two {}, not {}; give [smallest, largest]", Word(what),
+                             len(value))
         return tuple(_finite(number, f.END_OF[spec.kind], key) for number in value)
     if spec.kind == f.TEXT and "tuple" in str(field.type):
         return tuple(text(word, key) for word in value)
@@ -137,8 +138,7 @@ def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: st
 
 def _number(value: Any, spec: f.Spec, key: str) -> float:
     if isinstance(value, str) and spec.words and not any(sign.isdigit() for sign in value):
-        words = " or ".join(spec.words)
-        raise InputError("BAD_VALUE", key, "{} is not known; give {} or {}", _shown(value), words,
+        raise InputError("BAD_VALUE", key, "{} is not known; give {} or {}", _shown(value), Text.joined(" or ", spec.words),
                          quantity.WANTED[spec.kind][1])
     return _finite(value, spec.kind, key)
 

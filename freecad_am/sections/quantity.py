@@ -36,8 +36,8 @@ WANTED: dict[str, tuple[Dimension, str]] = {
     f.NUMBER: (NONE, "a number without a unit such as 0.1"),
 }
 DIMENSION_NAMES = {
-    LENGTH: "a length", TIME: "a time", ANGLE: "an angle", (1, -1, 0): "a speed", (-1, 0, 1): "a turn per length",
-    NONE: "without unit",
+    LENGTH: "is a length", TIME: "is a time", ANGLE: "is an angle", (1, -1, 0): "is a speed",
+    (-1, 0, 1): "is a turn per length", NONE: "is without unit",
 }
 _UNIT = "[^\\s\\d/*^+().,%-]+"
 _SIMPLE = re.compile(
@@ -63,8 +63,8 @@ def read(value: Any, kind: str, key: str) -> float:
     if math.isnan(number):
         raise InputError("BAD_VALUE", key, "{} is not a number; give {}", shown(value), example)
     if dimension is not None and dimension != wanted:
-        found = DIMENSION_NAMES.get(dimension, "of another dimension")
-        raise InputError("BAD_UNIT", key, "{} is {}; give {}", shown(value), found, example)
+        found = DIMENSION_NAMES.get(dimension, "is of another dimension")
+        raise InputError("BAD_UNIT", key, "{} {}; give {}", shown(value), found, example)
     return number * f.TO_INNER.get(kind, 1.0)
 
 

@@ -19,6 +19,7 @@ _INTEGER = re.compile(r"[-+]?\d{1,18}", re.ASCII)
 _FLOAT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 _INFINITE = re.compile(r"[-+]?\.?inf", re.IGNORECASE)
 _TAG = "tag:yaml.org,2002:"
+_MOST_LEVELS = 21
 _MOST_VALUES = 100_000  # aliases of aliases can stand for more values than fit in memory
 _LARGEST = 4  # MB; a job is a page of text, so a larger file is not one
 
@@ -38,15 +39,15 @@ class Tree:
     def with_line(self, key: str, message: str) -> str:
         """A message with the line of its key, where the file has that key."""
         line = self.lines.get(key)
-        return message if line is None else f"{message} (line {line})"
+        return message if line is None else Text("{} (line {})", message, line)
 
     def placed(self, error: InputError) -> InputError:
         """An error about a dotted key as one about this file."""
         return InputError(error.code, self.where(error.where), self.with_line(error.where, error.message))
 
 
-def read(path: str, kind: str = "a job", least: str = "part: {file: ...}", keys: str = "part: and strategy:") -> Tree:
-    """The file as a `Tree`; `kind`, what it needs at `least` and its `keys` are for messages.
+def read(path: str, least: str = "part: {file: ...}", keys: str = "part and strategy") -> Tree:
+    """The file as a `Tree`; what it needs at `least` and its `keys` are for messages.
 
     Raises InputError NO_FILE, EMPTY_FILE, BAD_FILE, DUPLICATE_KEY or BAD_VALUE.
     """
@@ -60,14 +61,14 @@ def read(path: str, kind: str = "a job", least: str = "part: {file: ...}", keys:
     try:
         node = yaml.compose(text, Loader=loader)
     except yaml.YAMLError as error:
-        raise InputError("BAD_FILE", label, "this is not YAML: {}", _one_line(error)) from None
+        raise InputError("BAD_FILE", label, "this is not YAML: {}; mend that place", _one_line(error)) from None
     except RecursionError:
-        raise InputError("BAD_FILE", label, "this is nested too deeply to be {}", kind) from None
+        raise InputError("BAD_FILE", label, "this is nested too deeply; give keys such as {}", keys) from None
     if node is None:
-        raise InputError("EMPTY_FILE", label, "the file is empty; {} needs at least {}", kind, least)
+        raise InputError("EMPTY_FILE", label, "the file is empty; give at least {}", least)
     tree = Tree(label, {})
     if not isinstance(node, yaml.MappingNode):
-        raise InputError("BAD_FILE", label, "{} is a mapping of keys such as {}", kind, keys)
+        raise InputError("BAD_FILE", label, "this is not a mapping; give keys such as {}", keys)
     tree.values = _Reader(yaml, tree).mapping(node, "")
     return tree
 
@@ -80,7 +81,8 @@ def scalar(text: str, where: str) -> Any:
     try:
         node = yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except yaml.YAMLError as error:
-        raise InputError("BAD_VALUE", where, "{!r} is not understood: {}", text, _one_line(error)) from None
+        raise InputError("BAD_VALUE", where, "{!r} is not understood: {}; write it as in a job file", text,
+                         _one_line(error)) from None
     return None if node is None else _Reader(yaml, tree).value(node, "")
 
 
@@ -91,7 +93,7 @@ def text_of(path: str, label: str) -> str:
     except FileNotFoundError:
         raise InputError("NO_FILE", path, "there is no such file; check the path") from None
     except OSError as error:
-        raise InputError("NO_FILE", path, "the file cannot be read: {}", error.strerror) from None
+        raise InputError("NO_FILE", path, "the file cannot be read: {}; choose one that can", error.strerror) from None
     except ValueError as error:
         raise InputError("NO_FILE", path, "there can be no such file ({}); check the path", error) from None
     try:
@@ -121,7 +123,8 @@ class _Reader:
         for key_node, value_node in node.value:
             line = key_node.start_mark.line + 1
             if not isinstance(key_node, self.yaml.ScalarNode):
-                raise InputError("BAD_FILE", self.tree.where(prefix), "a key must be a word (line {})", line)
+                raise InputError("BAD_FILE", self.tree.where(prefix), "a key must be a word (line {}); write one before the "
+                                 "colon", line)
             key = key_node.value
             dotted = f"{prefix}.{key}" if prefix else key
             if key in values:
@@ -138,7 +141,7 @@ class _Reader:
     def value(self, node: Any, key: str) -> Any:
         self.count += 1
         if self.count > _MOST_VALUES:
-            raise InputError("BAD_FILE", self.tree.where(key), "there are too many values for a job")
+            raise InputError("BAD_FILE", self.tree.where(key), "there are too many values; give at most {:,}", _MOST_VALUES)
         if isinstance(node, self.yaml.MappingNode):
             return self.mapping(node, key)
         if isinstance(node, self.yaml.SequenceNode):
@@ -156,8 +159,9 @@ class _Reader:
             raise self._foreign_tag(node, key)
         if any(node is other for other in self.open):
             raise InputError("BAD_FILE", self.tree.where(key), "an alias here stands for itself; write the value out")
-        if len(self.open) > 20:
-            raise InputError("BAD_FILE", self.tree.where(key), "this is nested too deeply to be a job")
+        if len(self.open) >= _MOST_LEVELS:
+            raise InputError("BAD_FILE", self.tree.where(key), "this is nested too deeply; give at most {} levels",
+                             _MOST_LEVELS)
         self.open.append(node)
 
     def _scalar(self, node: Any, key: str) -> Any:
@@ -177,5 +181,5 @@ class _Reader:
         raise self._foreign_tag(node, key)
 
     def _foreign_tag(self, node: Any, key: str) -> InputError:
-        message = f"the tag {node.tag} is not allowed here; write the plain value"
+        message = Text("the tag {} is not allowed here; write the plain value", node.tag)
         return InputError("BAD_VALUE", self.tree.where(key), self.tree.with_line(key, message))

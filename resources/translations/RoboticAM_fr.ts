@@ -6487,6 +6487,11 @@
         <translation>une direction de dépôt de {0} est normale à son plan de symétrie ; utilisez local</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>a calibration is that of a machine; write machine: {{name: ur-ur10e, calibration: my_robot.yaml}}</source>
+        <translation>un étalonnage est celui d&apos;une machine ; écrivez machine: {{name: ur-ur10e, calibration: my_robot.yaml}}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/placement/moved.py"/>
         <source>a cell with {0} has no {1} that places the part; use {2}</source>
         <translation>une cellule avec {0} n&apos;a pas de {1} qui place la pièce ; utilisez {2}</translation>
@@ -6525,6 +6530,11 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>a height alone is not a cone; give the radius of its base circle too, or base: auto</source>
         <translation>une hauteur seule n&apos;est pas un cône ; donnez aussi le rayon de son cercle de base, ou base: auto</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>a key must be a word (line {0}); write one before the colon</source>
+        <translation>une clé doit être un mot (ligne {0}) ; écrivez-en un devant les deux-points</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
@@ -6602,6 +6612,11 @@
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, qui se dit par pas de {1} % ; utilisez une autre vitesse, pour qu&apos;il soit de {2} à 100 %</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>a number without a unit such as 0.1</source>
+        <translation>un nombre sans unité comme 0.1</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>a part does not end</source>
         <translation>une partie ne finit pas</translation>
@@ -6612,9 +6627,19 @@
         <translation>une partie est chargée sans arrêt là où cela ne se peut pas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>a percentage such as 20 %</source>
+        <translation>un pourcentage comme 20 %</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>a point of {0} asks for another configuration of the arm</source>
         <translation>un point de {0} demande une autre configuration du bras</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>a pose has six numbers, not {0}; give [x, y, z, RX, RY, RZ]</source>
+        <translation>une pose a six nombres, et non {0} ; donnez [x, y, z, RX, RY, RZ]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
@@ -6670,6 +6695,16 @@
         <location filename="../../freecad_am/core/process/classes.py"/>
         <source>a ramp of {0} mm leads from or to the travel_speed there, and there is none; give it, or leave the ramp out</source>
         <translation>une rampe de {0} mm mène de ou vers travel_speed, qui n&apos;y est pas donnée ; donnez-la, ou omettez la rampe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>a range has two angles, not {0}; give [smallest, largest]</source>
+        <translation>une plage a deux angles, et non {0} ; donnez [le plus petit, le plus grand]</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>a range has two percentages, not {0}; give [smallest, largest]</source>
+        <translation>une plage a deux pourcentages, et non {0} ; donnez [le plus petit, le plus grand]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/text.py"/>
@@ -6920,6 +6955,11 @@
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>an acceleration</source>
         <translation>une accélération</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>an alias here stands for itself; write the value out</source>
+        <translation>un alias se désigne ici lui-même ; écrivez la valeur en toutes lettres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
@@ -7982,6 +8022,21 @@
         <translation>avant-haut-non retourné</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>give a list such as - {{file: table.step, pose: [0, 0, -200, 0, 0, 0]}}</source>
+        <translation>donnez une liste comme - {{file: table.step, pose: [0, 0, -200, 0, 0, 0]}}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>give a list such as - {{machine: motoman-motopos-d500, pose: [1500, 0, 0, 0, 0, 0], carries: part}}</source>
+        <translation>donnez une liste comme - {{machine: motoman-motopos-d500, pose: [1500, 0, 0, 0, 0, 0], carries: part}}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>give a list such as - {{part: [0, 0, 0], robot: [900.4, 2.1, -99.7]}}</source>
+        <translation>donnez une liste comme - {{part: [0, 0, 0], robot: [900.4, 2.1, -99.7]}}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>give a quantity in {0}</source>
         <translation>donnez une grandeur en {0}</translation>
@@ -8125,6 +8180,41 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>inverse condition number of the Jacobian at the points of the deposit, against the least one allowed</source>
         <translation>inverse du conditionnement de la jacobienne aux points du dépôt, comparé au minimum permis</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>is a length</source>
+        <translation>est une longueur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>is a speed</source>
+        <translation>est une vitesse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>is a time</source>
+        <translation>est un temps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>is a turn per length</source>
+        <translation>est une rotation par longueur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>is an angle</source>
+        <translation>est un angle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>is of another dimension</source>
+        <translation>est d&apos;une autre dimension</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>is without unit</source>
+        <translation>est sans unité</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -9447,6 +9537,11 @@
         <translation>m</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>machine and setup</source>
+        <translation>machine et setup</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/interop/robot_trajectory.py"/>
         <source>make a CAM path</source>
         <translation>faites une trajectoire CAM</translation>
@@ -10065,6 +10160,11 @@
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>opw gives</source>
         <translation>opw donne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>or {0}</source>
+        <translation>ou {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -10922,6 +11022,16 @@
         <translation>l&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the file cannot be read: {0}; choose one that can</source>
+        <translation>le fichier ne peut pas être lu : {0} ; choisissez-en un qui peut l&apos;être</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the file is empty; give at least {0}</source>
+        <translation>le fichier est vide ; donnez au moins {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/apart.py"/>
         <source>the file is larger than {0} MB, the most that is read; is it the right one?</source>
         <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; est-ce le bon ?</translation>
@@ -11050,6 +11160,11 @@
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the joint {0} is {1}; only {2} and fixed ones are read</source>
         <translation>l&apos;articulation {0} est {1} ; seules {2} et fixed sont lues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the key stands twice (lines {0} and {1}); remove one</source>
+        <translation>la clé est là deux fois (lignes {0} et {1}) ; retirez-en une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
@@ -11652,6 +11767,11 @@
         <translation>la table a été mesurée à une vitesse de fil de {0} à {1} mm/s, le travail a {2} mm/s ; mettez process.wire.feed à auto ou à une de celles-ci, ou mesurez une table à cette vitesse</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the tag {0} is not allowed here; write the plain value</source>
+        <translation>la balise {0} n&apos;est pas admise ici ; écrivez la valeur simple</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/ways.py"/>
         <source>the text asks for another configuration of the arm, or other turns</source>
         <translation>le texte demande une autre configuration du bras, ou d&apos;autres tours</translation>
@@ -11665,6 +11785,11 @@
         <location filename="../../freecad_am/verify.py"/>
         <source>the text has {0} moves, planned are {1}</source>
         <translation>le texte a {0} mouvements, {1} sont planifiés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the text is not UTF-8 (line {0}); save it as UTF-8</source>
+        <translation>le texte n&apos;est pas en UTF-8 (ligne {0}) ; enregistrez-le en UTF-8</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -11917,6 +12042,11 @@
         <translation>il n&apos;y a pas de points dedans ; donnez des lignes de x y z</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>there are too many values; give at most {0}</source>
+        <translation>il y a trop de valeurs ; donnez-en au plus {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>there are {0} applications, expected one with its parts</source>
         <translation>il y a {0} applications, une seule attendue avec ses parties</translation>
@@ -11952,6 +12082,11 @@
         <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>there can be no such file ({0}); check the path</source>
+        <translation>un tel fichier ne peut pas exister ({0}) ; vérifiez le chemin</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/user_machines.py"/>
         <source>there is a machine {0} already; choose another name</source>
         <translation>il y a déjà une machine {0} ; choisissez un autre nom</translation>
@@ -11982,6 +12117,16 @@
         <translation>il n&apos;y a pas d&apos;étalonnage {0} ; donner le chemin du fichier YAML que ur_calibration a écrit pour ce bras</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>there is no file {0}; check the path, relative to the file with it</source>
+        <translation>il n&apos;y a pas de fichier {0} ; vérifiez le chemin, relatif au fichier qui le contient</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>there is no file; write machine: {{file: robot.urdf}}</source>
+        <translation>il n&apos;y a pas de fichier ; écrivez machine: {{file: robot.urdf}}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/interop/export.py"/>
         <source>there is no folder {0}; make it, or choose another</source>
         <translation>il n&apos;y a pas de dossier {0} ; créez-le, ou choisissez-en un autre</translation>
@@ -12000,6 +12145,16 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>there is no joint path yet; recompute the document</source>
         <translation>il n&apos;y a pas encore de trajectoire articulaire ; recalculez le document</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>there is no key {0}; did you mean {1}?</source>
+        <translation>il n&apos;y a pas de clé {0} ; vouliez-vous dire {1} ?</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>there is no key {0}; use one of {1}</source>
+        <translation>il n&apos;y a pas de clé {0} ; utilisez l&apos;une de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
@@ -12052,6 +12207,11 @@
         <translation>il n&apos;y a pas de tel fichier ; vérifiez le chemin</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>there is no value; give {0}</source>
+        <translation>il n&apos;y a pas de valeur ; donnez {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>there is no {0}; mend the row, or leave it out</source>
         <translation>il n&apos;y a pas de {0} ; corrigez la ligne, ou retirez-la</translation>
@@ -12097,6 +12257,11 @@
         <translation>ce FreeCAD n&apos;a pas d&apos;atelier {0} ; installez-le, ou {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>this Python cannot read YAML; install PyYAML into it</source>
+        <translation>ce Python ne sait pas lire YAML ; installez-y PyYAML</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>this and most other lines are not points; give rows of x y z</source>
         <translation>celle-ci et la plupart des autres lignes ne sont pas des points ; donnez des lignes de x y z</translation>
@@ -12117,9 +12282,24 @@
         <translation>c&apos;est &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>this is nested too deeply; give at most {0} levels</source>
+        <translation>l&apos;imbrication est trop profonde ; donnez au plus {0} niveaux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>this is nested too deeply; give keys such as {0}</source>
+        <translation>l&apos;imbrication est trop profonde ; donnez des clés comme {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
         <source>this is not XML: {0}</source>
         <translation>ce n&apos;est pas du XML : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>this is not YAML: {0}; mend that place</source>
+        <translation>ce n&apos;est pas du YAML : {0} ; corrigez cet endroit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
@@ -12130,6 +12310,11 @@
         <location filename="../../freecad_am/core/geometry/file_content.py"/>
         <source>this is not a file but a device, a pipe or a folder; name a file</source>
         <translation>ce n&apos;est pas un fichier mais un périphérique, un tube ou un dossier ; nommez un fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>this is not a mapping; give keys such as {0}</source>
+        <translation>ce n&apos;est pas un ensemble de clés ; donnez des clés comme {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -12607,6 +12792,16 @@
         <translation>{0} (et {1} couches de solides de plus)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>{0} (line {1})</source>
+        <translation>{0} (ligne {1})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>{0} (line {1}, column {2})</source>
+        <translation>{0} (ligne {1}, colonne {2})</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
         <source>{0} a flange {1} mm and {2} (largest entry of the rotation) from it; correct the geometry or the pose</source>
         <translation>{0} une bride à {1} mm et {2} (plus grand terme de la rotation) de celle-ci ; corrigez la géométrie ou la pose</translation>
@@ -12862,6 +13057,11 @@
         <translation>{0} contient un 0 ; donnez les impulsions d&apos;un degré de chaque axe, négatives là où elles décroissent</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>{0} has a comma; write decimals with a point, such as {1}</source>
+        <translation>{0} a une virgule ; écrivez les décimales avec un point, comme {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
         <source>{0} has an axis that slides and carries the part, which cannot be planned yet; use turning axes</source>
         <translation>{0} a un axe linéaire et porte la pièce, ce qui ne peut pas encore être planifié ; utilisez des axes rotatifs</translation>
@@ -12967,6 +13167,11 @@
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is a list; give one value</source>
+        <translation>{0} est une liste ; donnez une seule valeur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
         <source>{0} is a mesh, which has no edges or faces</source>
         <translation>{0} est un maillage, qui n&apos;a ni arêtes ni faces</translation>
@@ -12980,6 +13185,11 @@
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is a module or a routine of this program and is not loaded</source>
         <translation>{0} est un module ou une routine de ce programme et n&apos;est pas chargé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>{0} is a percentage; give {1}</source>
+        <translation>{0} est un pourcentage ; donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -13127,6 +13337,16 @@
         <translation>{0} n&apos;est ni une longueur ni six nombres</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is neither true nor false; give one of them</source>
+        <translation>{0} n&apos;est ni true ni false ; donnez l&apos;un des deux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>{0} is no URDF, which alone has links; write machine: {{file: robot.urdf, base: base_link, tip: tool0}}, or the path of a machine file without braces</source>
+        <translation>{0} n&apos;est pas un URDF, qui seul a des segments ; écrivez machine: {{file: robot.urdf, base: base_link, tip: tool0}}, ou le chemin d&apos;un fichier machine sans accolades</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/planned/feature_kinds.py"/>
         <source>{0} is none of {1}</source>
         <translation>{0} n&apos;est aucun de {1}</translation>
@@ -13140,6 +13360,11 @@
         <location filename="../../freecad_am/core/strategies/walls/directions.py"/>
         <source>{0} is not a bend of a torus, so its plane of symmetry is not known; give its normal as build_direction.plane, or use local, layer or fixed</source>
         <translation>{0} n&apos;est pas le coude d&apos;un tore, son plan de symétrie n&apos;est donc pas connu ; donnez sa normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>{0} is not a box; give its edges along x, y and z such as [1200, 800, 30]</source>
+        <translation>{0} n&apos;est pas un pavé ; donnez ses arêtes selon x, y et z comme [1200, 800, 30]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -13212,6 +13437,16 @@
         <translation>{0} n&apos;est pas une liste de {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is not a list; give [smallest, largest]{1}</source>
+        <translation>{0} n&apos;est pas une liste ; donnez [le plus petit, le plus grand]{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is not a list; give [x, y, z, RX, RY, RZ]{1}</source>
+        <translation>{0} n&apos;est pas une liste ; donnez [x, y, z, RX, RY, RZ]{1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0} is not a name; use words without = and ;</source>
         <translation>{0} n&apos;est pas un nom ; utilisez des mots sans = ni ;</translation>
@@ -13232,6 +13467,11 @@
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 0.1</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>{0} is not a number; give {1}</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>{0} is not a number; give {1} as a number with a point</source>
         <translation>{0} n&apos;est pas un nombre ; donnez {1} comme nombre à point décimal</translation>
@@ -13245,6 +13485,16 @@
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>{0} is not a pair of points; give x y z &gt; x y z in mm</source>
         <translation>{0} n&apos;est pas une paire de points ; donnez x y z &gt; x y z en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>{0} is not a point; give [x, y, z]</source>
+        <translation>{0} n&apos;est pas un point ; donnez [x, y, z]</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/cell.py"/>
+        <source>{0} is not a pose; give [x, y, z, RX, RY, RZ]</source>
+        <translation>{0} n&apos;est pas une pose ; donnez [x, y, z, RX, RY, RZ]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
@@ -13282,6 +13532,16 @@
         <translation>{0} n&apos;est pas un de ses programmes, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>{0} is not a quantity with a known unit; give {1}</source>
+        <translation>{0} n&apos;est pas une grandeur d&apos;une unité connue ; donnez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>{0} is not a quantity; give {1}</source>
+        <translation>{0} n&apos;est pas une grandeur ; donnez {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a range; give the smaller one first, or null for endless</source>
         <translation>{0} n&apos;est pas une plage ; donnez d&apos;abord la plus petite valeur, ou null pour un axe sans fin</translation>
@@ -13307,6 +13567,11 @@
         <translation>{0} n&apos;est pas une échelle ; donnez 1 pour mm, 1000 pour m</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is not a section; write keys below {1}:</source>
+        <translation>{0} n&apos;est pas une section ; écrivez des clés sous {1} :</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/links/shape.py"/>
         <source>{0} is not a shape that can be drawn; use {1}</source>
         <translation>{0} n&apos;est pas une forme qui puisse être dessinée ; utilisez {1}</translation>
@@ -13325,6 +13590,11 @@
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a text</source>
         <translation>{0} n&apos;est pas un texte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is not a text; give one, in quotes where it is a number</source>
+        <translation>{0} n&apos;est pas un texte ; donnez-en un, entre guillemets si c&apos;est un nombre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
@@ -13360,6 +13630,11 @@
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a whole number</source>
         <translation>{0} n&apos;est pas un nombre entier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is not a whole number; give one such as 3</source>
+        <translation>{0} n&apos;est pas un nombre entier ; donnez-en un comme 3</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc/parts.py"/>
@@ -13435,6 +13710,16 @@
         <location filename="../../freecad_am/core/kinematics/external.py"/>
         <source>{0} is not known; built in are {1}; or give the path of a machine file or a URDF</source>
         <translation>{0} n&apos;est pas connu ; sont intégrés {1} ; ou donnez le chemin d&apos;un fichier de machine ou d&apos;un URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is not known; did you mean {1}? use one of {2}</source>
+        <translation>{0} n&apos;est pas connu ; vouliez-vous dire {1} ? utilisez l&apos;une des valeurs {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is not known; give {1} or {2}</source>
+        <translation>{0} n&apos;est pas connu ; donnez {1} ou {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -13517,6 +13802,11 @@
         <translation>{0} n&apos;est pas compris, ou déclare un nom une seconde fois</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>{0} is not understood: {1}; write it as in a job file</source>
+        <translation>{0} n&apos;est pas compris : {1} ; écrivez-le comme dans un fichier de travail</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>{0} is not understood; give a JSON mapping with keys of {1}</source>
         <translation>{0} n&apos;est pas compris ; donnez un objet JSON avec des clés parmi {1}</translation>
@@ -13595,6 +13885,11 @@
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
         <source>{0} is there twice; write all of it in one place</source>
         <translation>{0} y est deux fois ; écrivez le tout en un seul endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>{0} is too large; give {1}</source>
+        <translation>{0} est trop grand ; donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -14105,6 +14400,11 @@
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>{0} {1} {2} is not a positive number; mend the row, or leave it out</source>
         <translation>{0} {1} {2} n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/quantity.py"/>
+        <source>{0} {1}; give {2}</source>
+        <translation>{0} {1} ; donnez {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>

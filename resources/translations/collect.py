@@ -48,7 +48,7 @@ STAGES = (
 # where messages come from that reach the window; `batch` speaks to a terminal alone
 SPEAKING = (
     "core", "objects", "brep", "posts", "interop", "plots", "report/of_document.py", "gui", "api.py", "macro", "kdl",
-    "read_back", "verify.py",
+    "read_back", "verify.py", "sections",
 )
 TITLES = ("core/inspection/table.py",)  # where single words are told too
 

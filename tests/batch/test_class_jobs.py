@@ -127,7 +127,7 @@ def test_a_job_without_classes_keeps_its_program(workshop):
 
 
 @pytest.mark.parametrize(("process", "code", "where", "words"), [
-    ("{classes: {outer: {}}}", "UNKNOWN_KEY", "process.classes.outer", "known here"),
+    ("{classes: {outer: {}}}", "UNKNOWN_KEY", "process.classes.outer", "use one of"),
     ("{classes: {contour: {speed: 8}}}", "UNKNOWN_KEY", "process.classes.contour.speed", "travel_speed"),
     ("{classes: {contour: {travel_speed: 8 mm}}}", "BAD_UNIT", "process.classes.contour.travel_speed", "speed"),
     ("{classes: {contour: {travel_speed: 0}}}", "BAD_VALUE", "process.classes.contour.travel_speed", "more than 0"),

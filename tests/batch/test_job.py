@@ -191,8 +191,8 @@ def test_a_cell_is_a_file_of_its_own(read, tmp_path):
 
 
 @pytest.mark.parametrize(("text", "code", "where", "says"), [
-    ("", "EMPTY_FILE", "mine.yaml", "a cell needs at least machine:"),
-    ("- 1", "BAD_FILE", "mine.yaml", "a cell is a mapping"),
+    ("", "EMPTY_FILE", "mine.yaml", "give at least machine:"),
+    ("- 1", "BAD_FILE", "mine.yaml", "give keys such as machine and setup"),
     ("limits: maker\nplatform: 5 kg", "BAD_UNIT", "mine.yaml: cell.platform", "(line 2)"),
     ("part: {file: part.step}", "UNKNOWN_KEY", "mine.yaml: cell.part", "there is no key 'part'"),
     (None, "NO_FILE", "mine.yaml", "there is no such file"),

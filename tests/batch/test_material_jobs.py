@@ -105,7 +105,7 @@ def test_a_material_may_be_told_in_the_job(folder):
     (("contour: 3", "rim: 3"), "UNKNOWN_KEY", "schedules.rim", "contour"),
     (("own.csv", "other.csv"), "NO_FILE", "other.csv", "calibration table"),
     ((MINE, ""), "EMPTY_FILE", "er70s-6.yaml", "source: and density:"),
-    ((MINE, "- 1\n"), "BAD_FILE", "er70s-6.yaml", "a material is a mapping"),
+    ((MINE, "- 1\n"), "BAD_FILE", "er70s-6.yaml", "give keys such as source and density"),
 ])
 def test_what_is_wrong_with_a_material_file_is_told_in_its_words(folder, change, code, where, told):
     mine = MINE.replace(*change)

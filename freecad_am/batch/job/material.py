@@ -39,7 +39,7 @@ def filled_in(section: Any, path: str) -> Any:
     if not isinstance(section, dict) or not isinstance(section.get("material"), str):
         return section
     file = _file(section["material"].strip(), path)
-    saved = tree.read(str(file), "a material", "source: and density:", "source: and density:")
+    saved = tree.read(str(file), "source: and density:", "source and density")
     try:
         stated = _defaults(saved.values, file)
     except InputError as error:

@@ -64,7 +64,8 @@ def part_of(section: dict[str, Any], path: str, key: str = "part") -> PartSource
             message = Text("only an FCStd part has objects, {} has none", os.path.basename(file))
             raise InputError("BAD_VALUE", f"{key}.{entry}", message)
     if not is_there(file):
-        raise InputError("NO_FILE", f"{key}.file", "there is no file {}; paths are relative to the job file", file)
+        raise InputError("NO_FILE", f"{key}.file", "there is no file {}; check the path, relative to the file with it",
+                         file)
     name, solids = section.get("object"), _names(section.get("solids"), f"{key}.solids", _SOLID)
     if solids and (section.get("faces") or section.get("start_edges")):
         raise InputError("BAD_VALUE", f"{key}.solids", "faces and edges are those of the whole file; name "

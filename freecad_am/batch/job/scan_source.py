@@ -50,7 +50,8 @@ def scan_of(given: dict[str, Any], strategy: Any, path: str) -> ScanSource | Non
         raise InputError("BAD_VALUE", f"{PREFIX}.{key}", "there is no scan; give its file as {}.scan, or leave it", PREFIX)
     file = absolute(job_fields.text(given["scan"], f"{PREFIX}.scan"), path)
     if not is_there(file):
-        raise InputError("NO_FILE", f"{PREFIX}.scan", "there is no file {}; paths are relative to the job file", file)
+        raise InputError("NO_FILE", f"{PREFIX}.scan", "there is no file {}; check the path, relative to the file with it",
+                         file)
     for key, choices in (("scan_unit", (AUTO, *UNITS)), ("scan_fit", FITS)):
         if given.get(key, AUTO) not in choices:
             raise f.unknown_choice(f"{PREFIX}.{key}", given[key], choices)
