@@ -122,7 +122,8 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
             raise InputError("NO_FILE", name, "it cannot be read ({}); name the program's files", reason) from None
         remaining -= len(read[name])
         if remaining < 0:
-            raise InputError("BAD_FILE", where, "its files are larger than {} MB together; is that the program?", LARGEST_MB)
+            raise InputError("BAD_FILE", where, "its files are larger than {} MB together; name those of the program alone",
+                             LARGEST_MB)
     return read
 
 

@@ -149,7 +149,8 @@ class Cluster:
             if future.status == "error" and type(future.exception()).__name__ == "KilledWorker":
                 message = "each worker that planned it was lost; look into their memory, and plan this row alone"
                 return {"exit": 1, "message": message, "lines": [f"error[LOST] row: {message}"]}
-            raise InputError(CODE, WHERE, "{} gave up row {}: {}; rows that were done are whole: --resume plans the others",
+            raise InputError(CODE, WHERE, "{} gave up row {}: {}; rows that were done are whole: give --resume to plan the "
+                             "others",
                              self._address, row.number, _why(future))
         result: dict[str, Any] = future.result()
         self._tell(result.pop("worker"), result.pop("versions"))
@@ -175,7 +176,8 @@ class Cluster:
 
     def _gone(self) -> InputError:
         what = "it has no workers any more" if self._client.status == "running" else "it does not answer any more"
-        return InputError(CODE, WHERE, "{}: {}; rows that were done are whole: --resume plans the others", self._address,
+        return InputError(CODE, WHERE, "{}: {}; rows that were done are whole: give --resume to plan the others",
+                          self._address,
                           Word(what))
 
     def _close(self) -> None:

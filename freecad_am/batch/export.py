@@ -60,7 +60,7 @@ def _chosen(document: Any, label: str, names: tuple[str, ...], kinds: tuple[str,
     for name in names:
         found = [obj for obj in every if obj.Name == name] or [obj for obj in every if obj.Label == name]
         if len(found) != 1:
-            raise InputError("NO_OBJECT", label, "{} {}s are called {!r}; there are {}", len(found), kinds[0], name, known)
+            raise InputError("NO_OBJECT", label, "{} {}s are called {!r}; name one of {}", len(found), kinds[0], name, known)
         chosen += found
     return chosen or next(objects for objects in of_kinds if objects)
 

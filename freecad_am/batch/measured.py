@@ -73,7 +73,8 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
     if source.lower().endswith(".fcstd"):
         return _of_document(source, name)
     if name:
-        raise InputError("USAGE", "freecad-am inspect", "--object is for FCStd documents; a job's part is compared")
+        raise InputError("USAGE", "freecad-am inspect", "--object is for FCStd documents; leave it out of a job, whose part "
+                         "is compared")
     import FreeCAD
 
     from .job import job

@@ -23,7 +23,7 @@ def edges_of(shape: Any, names: Sequence[str], label: str) -> list[tuple[Array, 
     wrong = [name for name in names if name not in known]
     if wrong:
         raise InputError(
-            "UNKNOWN_EDGE", label, "it has no {}; its edges are Edge1 to Edge{}", ", ".join(wrong), len(known)
+            "UNKNOWN_EDGE", label, "it has no {}; choose from Edge1 to Edge{}", ", ".join(wrong), len(known)
         )
     if not names and shape.Faces:
         raise InputError(

@@ -157,7 +157,8 @@ def _seat(name: str, face: Any, chosen: bool) -> Seat | None:
         z, along = -z, -along
     if _faces_inwards(face, origin, z):
         if chosen:
-            raise InputError("INNER_FACE", name, "it is the inside of a bore; solids grow on the outside of a hub")
+            raise InputError("INNER_FACE", name, "it is the inside of a bore; choose the outside of a hub, on which solids "
+                             "grow")
         return None
     low, high = float(along.min()), float(along.max())
     shape = Developable(-low * math.tan(taper), -low) if taper else Developable(radius)

@@ -106,7 +106,7 @@ def add_trajectory(obj: Any, tolerance: float, turn: float) -> Any:
     """The lines of a stage as a trajectory of the Robot workbench, in its document: within `tolerance` mm and `turn` rad."""
     for name, value in (("tolerance", tolerance), ("turn", turn)):
         if not value > 0.0:
-            raise InputError("OUT_OF_RANGE", name, "{:g} is not above 0", value)
+            raise InputError("OUT_OF_RANGE", name, "{:g} is not above 0; give a larger one", value)
     return robot_trajectory.add(obj.Document, lines_of(obj), f"{obj.Label} (trajectory)", tolerance, turn)
 
 

@@ -160,7 +160,8 @@ def _written(job: Job, label: str) -> Outcome:
     )
     if has_errors(checked.issues):
         raise InfeasibleError(
-            "NOT_VERIFIED", label, "reading the program back does not give the planned path", issues=tuple(checked.issues),
+            "NOT_VERIFIED", label, "reading the program back does not give the planned path; do not use it",
+            issues=tuple(checked.issues),
         )
     return Outcome(Written(made.files, checked), tuple(checked.issues), (("Files", sorted(made.files)),))
 
@@ -182,5 +183,6 @@ def files_of(obj: Any) -> dict[str, bytes]:
         )
     files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.Key else {}
     if obj.Status != "up to date" or not files:
-        raise InputError("NO_PROGRAM", obj.Label, "no program fits its inputs ({})", message_of(obj) or obj.Status)
+        raise InputError("NO_PROGRAM", obj.Label, "no program fits its inputs ({}); mend that and recompute it",
+                         message_of(obj) or obj.Status)
     return files

@@ -115,5 +115,6 @@ def _picked(
         raise InputError("NOT_FOR_FAMILY", f"{obj.Label}.{name}", refusal)
     owner, names = getattr(obj, name)
     if getattr(owner, "Mesh", None) is not None:
-        raise InputError("NO_SHAPE", f"{obj.Label}.{name}", "{} is a mesh, which has no edges or faces", owner.Label)
+        raise InputError("NO_SHAPE", f"{obj.Label}.{name}", "{} is a mesh, which has no edges or faces; choose a shape",
+                         owner.Label)
     return global_shape(owner), tuple(one.rsplit(".", maxsplit=1)[-1] for one in names if one), owner.Label

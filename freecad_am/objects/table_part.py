@@ -63,7 +63,7 @@ def _read(path: str, name: str, form: str) -> Points:
         what = "G-code" if form == GCODE else "a table of points as CSV"
         raise InputError("BAD_FILE", name, "it is not text; give {}", Word(what)) from None
     except OSError as error:
-        raise InputError("NO_FILE", name, "it cannot be read: {}", error.strerror) from None
+        raise InputError("NO_FILE", name, "it cannot be read: {}; choose a file that can", error.strerror) from None
 
 
 def points_of(source: Any) -> Points | None:

@@ -49,7 +49,8 @@ def save(name: str, text: str) -> str:
             file.write(text)
         os.replace(f"{path}.new", path)
     except OSError as error:
-        raise InputError("NOT_WRITTEN", path, "it cannot be written: {}", error.strerror or error) from None
+        raise InputError("NOT_WRITTEN", path, "it cannot be written: {}; check the folder",
+                         error.strerror or error) from None
     return path
 
 

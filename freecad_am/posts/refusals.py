@@ -102,7 +102,8 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
     if any(run.joints.shape[1] != axes for run in moves) or len(program.continuous) != axes:
         raise InputError("UNSUPPORTED_AXES", "program.post", "the post {} writes {} axes; use another post", post, axes)
     if not all(np.isfinite(run.joints).all() for run in moves):
-        raise InputError("UNREACHABLE", "program", "some points have no joint values; a program needs all of them")
+        raise InputError("UNREACHABLE", "program", "some points have no joint values; plan a joint path that reaches them "
+                         "all")
 
 
 def refuse_external(program: Program, last: int, unit: str, form: str) -> None:

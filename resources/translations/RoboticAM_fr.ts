@@ -1343,23 +1343,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/collision.py"/>
-        <source>&lt;{0}&gt; has a size that is not larger than 0</source>
-        <translation>&lt;{0}&gt; a une taille qui n’est pas supérieure à 0</translation>
+        <source>&lt;{0}&gt; has a size that is not larger than 0; give its sizes in m</source>
+        <translation>&lt;{0}&gt; a une taille qui n’est pas supérieure à 0 ; donnez ses dimensions en m</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>&lt;{0}&gt; has no &lt;{1}&gt;</source>
-        <translation>&lt;{0}&gt; n&apos;a pas de &lt;{1}&gt;</translation>
+        <source>&lt;{0}&gt; has no &lt;{1}&gt;; add it</source>
+        <translation>&lt;{0}&gt; n&apos;a pas de &lt;{1}&gt; ; ajoutez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>&lt;{0}&gt; has no {1}</source>
-        <translation>&lt;{0}&gt; n&apos;a pas de {1}</translation>
+        <source>&lt;{0}&gt; has no {1}; add it</source>
+        <translation>&lt;{0}&gt; n&apos;a pas de {1} ; ajoutez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>&lt;{0}&gt; {1} has no &lt;{2}&gt;</source>
-        <translation>&lt;{0}&gt; {1} n&apos;a pas de &lt;{2}&gt;</translation>
+        <source>&lt;{0}&gt; {1} has no &lt;{2}&gt;; add it</source>
+        <translation>&lt;{0}&gt; {1} n&apos;a pas de &lt;{2}&gt; ; ajoutez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -6543,8 +6543,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/iso_parameter.py"/>
-        <source>a layer height of {0} mm is more than the wall&apos;s bend allows</source>
-        <translation>une hauteur de couche de {0} mm est plus que ne permet le coude de la paroi</translation>
+        <source>a layer height of {0} mm is more than the wall&apos;s bend allows; lower it</source>
+        <translation>une hauteur de couche de {0} mm est plus que ne permet le coude de la paroi ; réduisez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
@@ -6558,8 +6558,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>a mesh has no exact surfaces; a part of revolution needs a boundary representation: STEP, IGES or BREP</source>
-        <translation>un maillage n&apos;a pas de surfaces exactes ; une pièce de révolution demande une représentation par les frontières : STEP, IGES ou BREP</translation>
+        <source>a mesh has no exact surfaces; give a part of revolution as STEP, IGES or BREP</source>
+        <translation>un maillage n&apos;a pas de surfaces exactes ; donnez une pièce de révolution en STEP, IGES ou BREP</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
@@ -6683,8 +6683,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>a quaternion is not all zeros</source>
-        <translation>un quaternion n&apos;est pas tout à zéro</translation>
+        <source>a quaternion is not all zeros; enter the one that the controller shows</source>
+        <translation>un quaternion n&apos;est pas tout à zéro ; saisissez celui que la commande affiche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -6755,11 +6755,6 @@
         <location filename="../../freecad_am/core/planning/turns/fit.py"/>
         <source>a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with an endless axis</source>
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
-        <source>a table has the columns x,y,z, then i,j,k where directions are given, then bead where there are several</source>
-        <translation>un tableau a les colonnes x,y,z, puis i,j,k si des directions sont données, puis bead s&apos;il y en a plusieurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
@@ -6978,8 +6973,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>an axis that slides has two ends</source>
-        <translation>un axe de translation a deux bouts</translation>
+        <source>an axis that slides has two ends; enter both</source>
+        <translation>un axe de translation a deux bouts ; saisissez les deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -7433,8 +7428,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
-        <source>both ends of the wall lie in {0}; a wall starts on it and ends outside of it</source>
-        <translation>les deux extrémités de la paroi sont dans {0} ; une paroi y commence et finit en dehors</translation>
+        <source>both ends of the wall lie in {0}; let one of them end outside of it</source>
+        <translation>les deux extrémités de la paroi sont dans {0} ; faites finir l&apos;une d&apos;elles en dehors</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -7483,18 +7478,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>cannot be read as a calibration: {0}</source>
-        <translation>ne peut pas être lu comme étalonnage : {0}</translation>
+        <source>cannot be read as a calibration: {0}; give the file as ur_calibration wrote it</source>
+        <translation>ne peut pas être lu comme étalonnage : {0} ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>cannot be read as a machine file: {0}</source>
-        <translation>ne peut pas être lu comme un fichier machine : {0}</translation>
+        <source>cannot be read as a machine file: {0}; mend that place, or choose another file</source>
+        <translation>ne peut pas être lu comme un fichier machine : {0} ; corrigez cet endroit, ou choisissez un autre fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>cannot be read: {0}</source>
-        <translation>ne peut pas être lu : {0}</translation>
+        <source>cannot be read: {0}; choose a file that can</source>
+        <translation>ne peut pas être lu : {0} ; choisissez un fichier qui peut l&apos;être</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -7763,23 +7758,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>digital inputs are 1 to {0} (1 to 8 are digital_in[0] to [7], 9 to {1} the configurable ones), not {2}</source>
-        <translation>les entrées numériques vont de 1 à {0} (1 à 8 sont digital_in[0] à [7], 9 à {1} les configurables), pas {2}</translation>
+        <source>digital inputs are 1 to {0} (1 to 8 are digital_in[0] to [7], 9 to {1} the configurable ones), not {2}; use one of these</source>
+        <translation>les entrées numériques vont de 1 à {0} (1 à 8 sont digital_in[0] à [7], 9 à {1} les configurables), pas {2} ; utilisez l&apos;une de celles-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>digital inputs are 1 to {0} (motion.digital-in-00 is number 1), not {1}</source>
-        <translation>les entrées logiques vont de 1 à {0} (motion.digital-in-00 est le numéro 1), et non {1}</translation>
+        <source>digital inputs are 1 to {0} (motion.digital-in-00 is number 1), not {1}; use one of these</source>
+        <translation>les entrées logiques vont de 1 à {0} (motion.digital-in-00 est le numéro 1), et non {1} ; utilisez l&apos;une de celles-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>digital outputs are 1 to {0} (1 to 8 are digital_out[0] to [7], 9 to {1} the configurable ones), not {2}</source>
-        <translation>les sorties numériques vont de 1 à {0} (1 à 8 sont digital_out[0] à [7], 9 à {1} les configurables), pas {2}</translation>
+        <source>digital outputs are 1 to {0} (1 to 8 are digital_out[0] to [7], 9 to {1} the configurable ones), not {2}; use one of these</source>
+        <translation>les sorties numériques vont de 1 à {0} (1 à 8 sont digital_out[0] à [7], 9 à {1} les configurables), pas {2} ; utilisez l&apos;une de celles-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>digital outputs are 1 to {0} (motion.digital-out-00 is number 1), not {1}</source>
-        <translation>les sorties logiques vont de 1 à {0} (motion.digital-out-00 est le numéro 1), et non {1}</translation>
+        <source>digital outputs are 1 to {0} (motion.digital-out-00 is number 1), not {1}; use one of these</source>
+        <translation>les sorties logiques vont de 1 à {0} (motion.digital-out-00 est le numéro 1), et non {1} ; utilisez l&apos;une de celles-ci</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
@@ -7788,8 +7783,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>direct moves of steppers are not known</source>
-        <translation>les mouvements directs des moteurs pas à pas ne sont pas connus</translation>
+        <source>direct moves of steppers are not known; let the slicer write G1</source>
+        <translation>les mouvements directs des moteurs pas à pas ne sont pas connus ; faites écrire G1 par le trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -7852,9 +7847,14 @@
         <translation>fr</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>enter speed, acceleration and jerk of more than 0, or leave them empty</source>
+        <translation>saisissez une vitesse, une accélération et un jerk supérieurs à 0, ou laissez-les vides</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>entities such as {0} are not read</source>
-        <translation>les entités comme {0} ne sont pas lues</translation>
+        <source>entities such as {0} are not read; write out what they stand for</source>
+        <translation>les entités comme {0} ne sont pas lues ; écrivez ce qu&apos;elles représentent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -8042,6 +8042,11 @@
         <translation>donnez une grandeur en {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
+        <source>give a table of the columns x,y,z, then i,j,k where directions are given, then bead where there are several</source>
+        <translation>donnez un tableau des colonnes x,y,z, puis i,j,k si des directions sont données, puis bead s&apos;il y en a plusieurs</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>give absolute or relative moves in mm, G0 to G3 with E, as a slicer for filament or pellets writes them</source>
         <translation>donnez des mouvements absolus ou relatifs en mm, G0 à G3 avec E, comme les écrit un trancheur pour filament ou granulés</translation>
@@ -8050,6 +8055,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>give both ends of its range, or none for an endless axis</source>
         <translation>donnez les deux bouts de sa plage, ou aucun pour un axe sans fin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
+        <source>give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length</source>
+        <translation>donnez des dimensions supérieures à 0 : d&apos;un pavé selon x, y et z, d&apos;un cylindre son diamètre et sa longueur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
@@ -8283,13 +8293,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it cannot be read: {0}</source>
-        <translation>il ne peut pas être lu : {0}</translation>
+        <source>it cannot be read: {0}; choose a file that can</source>
+        <translation>il ne peut pas être lu : {0} ; choisissez un fichier qui peut l&apos;être</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/user_machines.py"/>
-        <source>it cannot be written: {0}</source>
-        <translation>il ne peut pas être écrit : {0}</translation>
+        <source>it cannot be written: {0}; check the folder</source>
+        <translation>il ne peut pas être écrit : {0} ; vérifiez le dossier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/settings.py"/>
@@ -8418,8 +8428,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it has an edge along its seam; walls with edges cannot be deposited yet</source>
-        <translation>elle a une arête le long de sa couture ; les parois à arêtes ne peuvent pas encore être déposées</translation>
+        <source>it has an edge along its seam, which cannot be deposited yet; make it smooth there</source>
+        <translation>elle a une arête le long de sa couture, ce qui ne peut pas encore être déposé ; rendez-la lisse à cet endroit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
@@ -8428,8 +8438,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
-        <source>it has an edge that is neither straight across the tube at its end nor below the first layer; walls with openings or slanted ends cannot be deposited yet</source>
-        <translation>elle a une arête qui n&apos;est ni droite en travers du tube à son extrémité ni sous la première couche ; les parois à ouvertures ou à extrémités obliques ne peuvent pas encore être déposées</translation>
+        <source>it has an edge that is neither straight across the tube at its end nor below the first layer, which cannot be deposited yet; fill openings, and cut ends straight</source>
+        <translation>elle a une arête qui n&apos;est ni droite en travers du tube à son extrémité ni sous la première couche, ce qui ne peut pas encore être déposé ; comblez les ouvertures, et coupez droit les extrémités</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/names.py"/>
@@ -8458,8 +8468,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
-        <source>it has no column {0}; its first line names {1}</source>
-        <translation>il n&apos;a pas de colonne {0} ; sa première ligne nomme {1}</translation>
+        <source>it has no column {0}; name in its first line {1}</source>
+        <translation>il n&apos;a pas de colonne {0} ; nommez dans sa première ligne {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/curves.py"/>
@@ -8498,8 +8508,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/run.py"/>
-        <source>it has no points; there is nothing to play</source>
-        <translation>il n&apos;a pas de points ; il n&apos;y a rien à jouer</translation>
+        <source>it has no points to play; choose another path</source>
+        <translation>elle n&apos;a pas de points à jouer ; choisissez une autre trajectoire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
@@ -8523,18 +8533,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/guide.py"/>
-        <source>it has no {0}; its edges are Edge1 to Edge{1}</source>
-        <translation>il n&apos;a pas de {0} ; ses arêtes vont de Edge1 à Edge{1}</translation>
+        <source>it has no {0}; choose from Edge1 to Edge{1}</source>
+        <translation>il n&apos;a pas de {0} ; choisissez de Edge1 à Edge{1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it has no {0}; its faces are Face1 to Face{1}</source>
-        <translation>il n&apos;a pas de {0} ; ses faces vont de Face1 à Face{1}</translation>
+        <source>it has no {0}; choose from Face1 to Face{1}</source>
+        <translation>il n&apos;a pas de {0} ; choisissez de Face1 à Face{1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
-        <source>it has no {0}; the edges of a mesh are its open ends, by height: {1}</source>
-        <translation>il n&apos;a pas de {0} ; les arêtes d&apos;un maillage sont ses extrémités ouvertes, par hauteur : {1}</translation>
+        <source>it has no {0}; choose from the open ends of the mesh, by height: {1}</source>
+        <translation>il n&apos;a pas de {0} ; choisissez parmi les extrémités ouvertes du maillage, par hauteur : {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -8733,8 +8743,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>it is nested too deeply to be a machine file</source>
-        <translation>ses niveaux sont trop nombreux pour un fichier de machine</translation>
+        <source>it is nested too deeply to be a machine file; choose another file</source>
+        <translation>ses niveaux sont trop nombreux pour un fichier de machine ; choisissez un autre fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
@@ -8883,8 +8893,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/hub.py"/>
-        <source>it is the inside of a bore; solids grow on the outside of a hub</source>
-        <translation>c&apos;est l&apos;intérieur d&apos;un alésage ; les solides croissent à l&apos;extérieur d&apos;un moyeu</translation>
+        <source>it is the inside of a bore; choose the outside of a hub, on which solids grow</source>
+        <translation>c&apos;est l&apos;intérieur d&apos;un alésage ; choisissez l&apos;extérieur d&apos;un moyeu, sur lequel croissent les solides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
@@ -8968,8 +8978,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/torch.py"/>
-        <source>it reaches {0} mm beyond its origin along Z, where the deposit is; Z of the file points out of the nozzle, away from the torch, and the origin is its tip</source>
-        <translation>elle dépasse son origine de {0} mm selon Z, là où est le dépôt ; le Z du fichier sort de la buse, à l&apos;opposé de la torche, et l&apos;origine est sa pointe</translation>
+        <source>it reaches {0} mm beyond its origin along Z, where the deposit is; let Z of the file point out of the nozzle, away from the torch, and put the origin at its tip</source>
+        <translation>elle dépasse de {0} mm son origine selon Z, là où est le dépôt ; faites pointer le Z du fichier hors de la buse, à l&apos;opposé de la torche, et mettez l&apos;origine à sa pointe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
@@ -9008,8 +9018,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
-        <source>its cell is gone</source>
-        <translation>sa cellule a disparu</translation>
+        <source>its cell is gone; choose a cell for it</source>
+        <translation>sa cellule a disparu ; choisissez-lui une cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -9083,8 +9093,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/source.py"/>
-        <source>its machine has two rotary axes, which leave no rotation about the tool to choose; a map is for robots</source>
-        <translation>sa machine a deux axes rotatifs, qui ne laissent pas de rotation autour de l&apos;outil à choisir ; une carte est pour les robots</translation>
+        <source>its machine has two rotary axes, which leave no rotation about the tool to choose; open the map of a robot</source>
+        <translation>sa machine a deux axes rotatifs, qui ne laissent aucune rotation autour de l&apos;outil à choisir ; ouvrez la carte d&apos;un robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
@@ -9245,11 +9255,6 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>kind of bead</source>
         <translation>type de cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>known are {0}</source>
-        <translation>sont connus {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
@@ -9778,8 +9783,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/catalogue.py"/>
-        <source>no machine known is of {0}; titles begin with {1}</source>
-        <translation>aucune machine connue n’est de {0} ; les titres commencent par {1}</translation>
+        <source>no machine known is of {0}; use one of {1}</source>
+        <translation>aucune machine connue n&apos;est de {0} ; utilisez l&apos;un de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -9793,8 +9798,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/constant_distance.py"/>
-        <source>no point of the wall at v = {0} lies {1} mm from the layer below: the layer height must stay below the wall&apos;s smallest radius of curvature</source>
-        <translation>aucun point de la paroi en v = {0} n&apos;est à {1} mm de la couche du dessous : la hauteur de couche doit rester au-dessous du plus petit rayon de courbure de la paroi</translation>
+        <source>no point of the wall at v = {0} lies {1} mm from the layer below; keep the layer height below the wall&apos;s smallest radius of curvature</source>
+        <translation>aucun point de la paroi en v = {0} n&apos;est à {1} mm de la couche du dessous ; gardez la hauteur de couche au-dessous du plus petit rayon de courbure de la paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/ways.py"/>
@@ -9803,8 +9808,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
-        <source>no program fits its inputs ({0})</source>
-        <translation>aucun programme ne convient à ses entrées ({0})</translation>
+        <source>no program fits its inputs ({0}); mend that and recompute it</source>
+        <translation>aucun programme ne convient à ses entrées ({0}) ; corrigez cela et recalculez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/report/of_document.py"/>
@@ -10453,8 +10458,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
-        <source>reading the program back does not give the planned path</source>
-        <translation>la relecture du programme ne donne pas la trajectoire planifiée</translation>
+        <source>reading the program back does not give the planned path; do not use it</source>
+        <translation>la relecture du programme ne donne pas la trajectoire planifiée ; ne l&apos;utilisez pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -10637,11 +10642,6 @@
         <translation>simple</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
-        <source>sizes are larger than 0: of a box along x, y and z, of a cylinder its diameter and length</source>
-        <translation>les tailles sont supérieures à 0 : d’une boîte selon x, y et z, d’un cylindre son diamètre et sa longueur</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>slides</source>
         <translation>glisse</translation>
@@ -10668,8 +10668,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>some points have no joint values; a program needs all of them</source>
-        <translation>certains points n&apos;ont pas de valeurs articulaires ; un programme les demande toutes</translation>
+        <source>some points have no joint values; plan a joint path that reaches them all</source>
+        <translation>certains points n&apos;ont pas de valeurs articulaires ; planifiez une trajectoire articulaire qui les atteint tous</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -10685,11 +10685,6 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>speed</source>
         <translation>vitesse</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>speed, acceleration and jerk are more than 0, or left empty</source>
-        <translation>vitesse, accélération et jerk sont supérieurs à 0, ou laissés vides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
@@ -10913,8 +10908,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>the closed form is for six joints, there are {0}</source>
-        <translation>la forme explicite est pour six articulations, il y en a {0}</translation>
+        <source>the closed form is for six joints, there are {0}; leave opw out</source>
+        <translation>la forme explicite est pour six articulations, il y en a {0} ; omettez opw</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -10993,8 +10988,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>the face folds back and cuts itself at {0}; a bend must have a larger radius than the tube</source>
-        <translation>la face se replie et se coupe elle-même en {0} ; un coude doit avoir un plus grand rayon que le tube</translation>
+        <source>the face folds back and cuts itself at {0}; give the bend a larger radius than the tube</source>
+        <translation>la face se replie et se coupe elle-même en {0} ; donnez au coude un rayon plus grand que celui du tube</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
@@ -11030,6 +11025,11 @@
         <location filename="../../freecad_am/sections/tree.py"/>
         <source>the file is empty; give at least {0}</source>
         <translation>le fichier est vide ; donnez au moins {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/file_content.py"/>
+        <source>the file is larger than {0} MB, the most that is read; check that it is the right one</source>
+        <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; vérifiez que c&apos;est le bon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/apart.py"/>
@@ -11168,8 +11168,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>the key {0} is missing</source>
-        <translation>la clé {0} manque</translation>
+        <source>the key {0} is missing; add it</source>
+        <translation>la clé {0} manque ; ajoutez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
@@ -11178,8 +11178,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>the key {0} is there twice</source>
-        <translation>la clé {0} s&apos;y trouve deux fois</translation>
+        <source>the key {0} is there twice; give the file as ur_calibration wrote it</source>
+        <translation>la clé {0} s&apos;y trouve deux fois ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -11208,8 +11208,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the link {0} carries itself</source>
-        <translation>le corps {0} se porte lui-même</translation>
+        <source>the link {0} carries itself; correct parent and child of its joints</source>
+        <translation>le corps {0} se porte lui-même ; corrigez parent et child de ses articulations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -11283,8 +11283,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>the matrix has no inverse</source>
-        <translation>la matrice n&apos;a pas d&apos;inverse</translation>
+        <source>the matrix has no inverse; give that of the controller</source>
+        <translation>la matrice n&apos;a pas d&apos;inverse ; donnez celle de la commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -11473,8 +11473,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>the part has no faces above where the deposit begins</source>
-        <translation>la pièce n&apos;a pas de faces au-dessus du début du dépôt</translation>
+        <source>the part has no faces above where the deposit begins; choose another part</source>
+        <translation>la pièce n&apos;a pas de faces au-dessus du début du dépôt ; choisissez une autre pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
@@ -11508,8 +11508,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/normal_layers.py"/>
-        <source>the planes normal to its centreline do not cut it in one curve each; such layers are not for this wall</source>
-        <translation>les plans normaux à sa ligne moyenne ne la coupent pas chacun en une courbe ; de telles couches ne sont pas pour cette paroi</translation>
+        <source>the planes normal to its centreline do not cut it in one curve each; choose other layers for this wall</source>
+        <translation>les plans normaux à sa ligne médiane ne la coupent pas en une courbe chacun ; choisissez d&apos;autres couches pour cette paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>
@@ -11543,13 +11543,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
-        <source>the pose at all zeros is missing</source>
-        <translation>la pose à zéro de tous les axes manque</translation>
+        <source>the pose at all zeros is missing; add it</source>
+        <translation>la pose à zéro de tous les axes manque ; ajoutez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>the pose at the serial zeros is missing</source>
-        <translation>la pose aux zéros en série manque</translation>
+        <source>the pose at the serial zeros is missing; enter it too</source>
+        <translation>la pose aux zéros en série manque ; saisissez-la aussi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
@@ -11558,38 +11558,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/post.py"/>
-        <source>the post abb cannot write {0} ({1} motion)</source>
-        <translation>le post-processeur abb ne peut pas écrire {0} (mouvement {1})</translation>
+        <source>the post abb cannot write {0} ({1} motion); use another post</source>
+        <translation>le post-processeur abb ne peut pas écrire {0} (mouvement {1}) ; utilisez un autre post-processeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>the post fanuc cannot write {0}</source>
-        <translation>le post-processeur fanuc ne peut pas écrire {0}</translation>
+        <source>the post fanuc cannot write {0}; use another post</source>
+        <translation>le post-processeur fanuc ne peut pas écrire {0} ; utilisez un autre post-processeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>the post kuka cannot write {0}</source>
-        <translation>le post-processeur kuka ne peut pas écrire {0}</translation>
+        <source>the post kuka cannot write {0}; use another post</source>
+        <translation>le post-processeur kuka ne peut pas écrire {0} ; utilisez un autre post-processeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>the post staubli cannot write {0} ({1} motion)</source>
-        <translation>le post-processeur staubli ne peut pas écrire {0} (mouvement {1})</translation>
+        <source>the post staubli cannot write {0} ({1} motion); use another post</source>
+        <translation>le post-processeur staubli ne peut pas écrire {0} (mouvement {1}) ; utilisez un autre post-processeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>the post ur cannot write {0}</source>
-        <translation>le post-processeur ur ne sait pas écrire {0}</translation>
+        <source>the post ur cannot write {0}; use another post</source>
+        <translation>le post-processeur ur ne peut pas écrire {0} ; utilisez un autre post-processeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>the post yaskawa cannot write {0}</source>
-        <translation>le post-processeur yaskawa ne sait pas écrire {0}</translation>
+        <source>the post yaskawa cannot write {0}; use another post</source>
+        <translation>le post-processeur yaskawa ne peut pas écrire {0} ; utilisez un autre post-processeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc/parts.py"/>
-        <source>the post {0} cannot write {1} ({2} motion), only rotary-table</source>
-        <translation>le post-processeur {0} ne peut pas écrire {1} (mouvement {2}), seulement rotary-table</translation>
+        <source>the post {0} cannot write {1} ({2} motion); use rotary-table</source>
+        <translation>le post-processeur {0} ne peut pas écrire {1} (mouvement {2}) ; utilisez rotary-table</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc/parts.py"/>
@@ -11603,8 +11603,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>the program does not tell where the flange is, which blends count on</source>
-        <translation>le programme ne dit pas où est la bride, dont dépendent les lissages</translation>
+        <source>the program does not tell where the flange is, which blends count on; plan the joint path again</source>
+        <translation>le programme ne dit pas où est la bride, dont dépendent les lissages ; replanifiez la trajectoire articulaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/numbers.py"/>
@@ -11688,8 +11688,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>the set {0} is missing</source>
-        <translation>le jeu {0} manque</translation>
+        <source>the set {0} is missing; add it</source>
+        <translation>le jeu {0} manque ; ajoutez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -11933,8 +11933,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/cuts.py"/>
-        <source>the wall cuts itself at {0} ({1}); a bend must have a larger radius than the tube, and faces must not cross</source>
-        <translation>la paroi se coupe elle-même en {0} ({1}) ; un coude doit avoir un plus grand rayon que le tube, et les faces ne doivent pas se croiser</translation>
+        <source>the wall cuts itself at {0} ({1}); give bends a larger radius than the tube, and let no faces cross</source>
+        <translation>la paroi se coupe elle-même en {0} ({1}) ; donnez aux coudes un rayon plus grand que celui du tube, et ne laissez aucune face en croiser une autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
@@ -11963,8 +11963,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>the wall lies wholly in {0} (at {1} it is {2} mm deep, and nowhere less); a wall starts on the substrate and ends outside of it</source>
-        <translation>la paroi est tout entière dans {0} (en {1} à {2} mm de profondeur, et nulle part moins) ; une paroi commence sur le substrat et finit en dehors</translation>
+        <source>the wall lies wholly in {0} (at {1} it is {2} mm deep, and nowhere less); let it end outside of the substrate</source>
+        <translation>la paroi est tout entière dans {0} (en {1} à {2} mm de profondeur, et nulle part moins) ; faites-la finir hors du substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
@@ -12073,13 +12073,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
-        <source>there are {0}; a machine needs at least 3 joint vectors with their flange poses</source>
-        <translation>il y en a {0} ; une machine demande au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
+        <source>there are {0}; give at least 3 joint vectors with their flange poses</source>
+        <translation>il y en a {0} ; donnez au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>there are {}; at least {} are needed, for a machine without them is not loaded</source>
-        <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée</translation>
+        <source>there are {}; enter at least {}, for a machine without them is not loaded</source>
+        <translation>il y en a {} ; saisissez-en au moins {}, car une machine sans elles n&apos;est pas chargée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
@@ -12093,23 +12093,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>there is a {0} {1} already, in line {2}</source>
-        <translation>il y a déjà un {0} {1}, à la ligne {2}</translation>
+        <source>there is a {0} {1} already, in line {2}; rename one of the two</source>
+        <translation>il y a déjà un {0} {1}, à la ligne {2} ; renommez l&apos;un des deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>there is no &lt;{0}&gt;</source>
-        <translation>il n&apos;y a pas de &lt;{0}&gt;</translation>
+        <source>there is no &lt;{0}&gt;; choose the URDF of a robot</source>
+        <translation>il n&apos;y a pas de &lt;{0}&gt; ; choisissez l&apos;URDF d&apos;un robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>there is no URDF {0}</source>
-        <translation>il n’y a pas d’URDF {0}</translation>
+        <source>there is no URDF {0}; check the path</source>
+        <translation>il n’y a pas d’URDF {0} ; vérifiez le chemin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program/build.py"/>
-        <source>there is no bead {0} in a layer {1}; the job has layers 0 to {2}</source>
-        <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; le travail a les couches 0 à {2}</translation>
+        <source>there is no bead {0} in a layer {1}; choose from layers 0 to {2}</source>
+        <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; choisissez parmi les couches 0 à {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
@@ -12137,14 +12137,14 @@
         <translation>il n&apos;y a pas de dossier {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>there is no joint</source>
-        <translation>il n&apos;y a pas d&apos;articulation</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>there is no joint path yet; recompute the document</source>
         <translation>il n&apos;y a pas encore de trajectoire articulaire ; recalculez le document</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <source>there is no joint; add one for each axis</source>
+        <translation>il n&apos;y a pas d&apos;articulation ; ajoutez-en une par axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
@@ -12158,18 +12158,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>there is no layer above {0}: the last one of {1} is {2}</source>
-        <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} est {2}</translation>
+        <source>there is no layer above {0}: the last one of {1} is {2}; give a lower one</source>
+        <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} est {2} ; donnez-en une plus basse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>there is no link {0}</source>
-        <translation>il n&apos;y a pas de corps {0}</translation>
+        <source>there is no link {0}; name one that is there</source>
+        <translation>il n&apos;y a pas de corps {0} ; nommez-en un qui existe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>there is no machine file {0}</source>
-        <translation>il n&apos;y a pas de fichier machine {0}</translation>
+        <source>there is no machine file {0}; check the path</source>
+        <translation>il n&apos;y a pas de fichier machine {0} ; vérifiez le chemin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -12243,8 +12243,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
-        <source>theta, d, a and alpha must be numbers</source>
-        <translation>theta, d, a et alpha doivent être des nombres</translation>
+        <source>theta, d, a and alpha must be numbers; give all four</source>
+        <translation>theta, d, a et alpha doivent être des nombres ; donnez les quatre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/step_wires.py"/>
@@ -12268,8 +12268,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>this cannot be planned for: {0}</source>
-        <translation>on ne peut pas planifier pour cela : {0}</translation>
+        <source>this cannot be planned for: {0}; correct its geometry, or choose another machine</source>
+        <translation>on ne peut pas planifier pour cela : {0} ; corrigez sa géométrie, ou choisissez une autre machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -12278,8 +12278,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>this is &lt;{0}&gt;, not the &lt;robot&gt; of a URDF</source>
-        <translation>c&apos;est &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF</translation>
+        <source>this is &lt;{0}&gt;, not the &lt;robot&gt; of a URDF; choose the URDF of a robot</source>
+        <translation>c&apos;est &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF ; choisissez l&apos;URDF d&apos;un robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
@@ -12293,8 +12293,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>this is not XML: {0}</source>
-        <translation>ce n&apos;est pas du XML : {0}</translation>
+        <source>this is not XML: {0}; export the URDF again</source>
+        <translation>ce n&apos;est pas du XML : {0} ; exportez de nouveau l&apos;URDF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
@@ -12530,6 +12530,11 @@
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
         <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <source>use one of {0}</source>
+        <translation>utilisez l&apos;un de {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
@@ -12868,8 +12873,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} axes carry the part; one or two turning axes can be planned</source>
-        <translation>{0} axes portent la pièce ; un ou deux axes rotatifs peuvent être planifiés</translation>
+        <source>{0} axes carry the part; give one or two turning axes</source>
+        <translation>{0} axes portent la pièce ; donnez un ou deux axes tournants</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
@@ -12948,8 +12953,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} carries the robot and is not a track, which is one axis that slides; nothing else can be planned</source>
-        <translation>{0} porte le robot et n&apos;est pas un rail, c&apos;est-à-dire un axe qui coulisse ; rien d&apos;autre ne peut être planifié</translation>
+        <source>{0} carries the robot and is not a track, which is one axis that slides; choose a track</source>
+        <translation>{0} porte le robot et n&apos;est pas un rail, c&apos;est-à-dire un axe qui coulisse ; choisissez un rail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
@@ -13048,8 +13053,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/expressions.py"/>
-        <source>{0} gives {1}, which is not a number</source>
-        <translation>{0} donne {1}, qui n&apos;est pas un nombre</translation>
+        <source>{0} gives {1}, which is not a number; write one that gives a number</source>
+        <translation>{0} donne {1}, qui n&apos;est pas un nombre ; écrivez-en une qui donne un nombre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
@@ -13078,13 +13083,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} has neither I and J nor R; an arc needs its middle or its radius</source>
-        <translation>{0} n&apos;a ni I et J ni R ; un arc a besoin de son centre ou de son rayon</translation>
+        <source>{0} has neither I and J nor R; give the middle of the arc or its radius</source>
+        <translation>{0} n&apos;a ni I et J ni R ; donnez le centre de l&apos;arc ou son rayon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>{0} has no faces that a deposit could be held against</source>
-        <translation>{0} n&apos;a pas de faces auxquelles comparer un dépôt</translation>
+        <source>{0} has no faces that a deposit could be held against; choose another object</source>
+        <translation>{0} n&apos;a pas de faces auxquelles comparer un dépôt ; choisissez un autre objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
@@ -13093,8 +13098,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
-        <source>{0} has no link {1}; it has {2}</source>
-        <translation>{0} n’a pas de corps {1} ; il a {2}</translation>
+        <source>{0} has no link {1}; name one of {2}</source>
+        <translation>{0} n&apos;a pas de corps {1} ; nommez-en un de {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -13108,13 +13113,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
-        <source>{0} has no {1}; it may have {2}</source>
-        <translation>{0} n&apos;a pas de {1} ; elle peut avoir {2}</translation>
+        <source>{0} has no {1}; use one of {2}</source>
+        <translation>{0} n&apos;a pas de {1} ; utilisez l&apos;un de {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
-        <source>{0} has other axes than the joint path</source>
-        <translation>{0} a d&apos;autres axes que la trajectoire articulaire</translation>
+        <source>{0} has other axes than the joint path; recompute the joint path</source>
+        <translation>{0} a d&apos;autres axes que la trajectoire articulaire ; recalculez la trajectoire articulaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
@@ -13173,8 +13178,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
-        <source>{0} is a mesh, which has no edges or faces</source>
-        <translation>{0} est un maillage, qui n&apos;a ni arêtes ni faces</translation>
+        <source>{0} is a mesh, which has no edges or faces; choose a shape</source>
+        <translation>{0} est un maillage, qui n&apos;a ni arêtes ni faces ; choisissez une forme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
@@ -13278,8 +13283,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>{0} is carried by {1}, as the robot is; a positioner must stand on the floor</source>
-        <translation>{0} est porté par {1}, comme le robot ; un positionneur doit être posé au sol</translation>
+        <source>{0} is carried by {1}, as the robot is; let the positioner stand on the floor</source>
+        <translation>{0} est porté par {1}, comme le robot ; posez le positionneur au sol</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -13333,8 +13338,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>{0} is neither a length nor six numbers</source>
-        <translation>{0} n&apos;est ni une longueur ni six nombres</translation>
+        <source>{0} is neither a length nor six numbers; give one such as 300, or x y z RX RY RZ</source>
+        <translation>{0} n&apos;est ni une longueur ni six nombres ; donnez-en une comme 300, ou x y z RX RY RZ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
@@ -13348,8 +13353,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/feature_kinds.py"/>
-        <source>{0} is none of {1}</source>
-        <translation>{0} n&apos;est aucun de {1}</translation>
+        <source>{0} is none of {1}; use one of these</source>
+        <translation>{0} n&apos;est aucun de {1} ; utilisez l&apos;un d&apos;eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
@@ -13428,13 +13433,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not a list</source>
-        <translation>{0} n&apos;est pas une liste</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not a list of {1}</source>
-        <translation>{0} n&apos;est pas une liste de {1}</translation>
+        <source>{0} is not a list of {1}; write one in square brackets</source>
+        <translation>{0} n&apos;est pas une liste de {1} ; écrivez-en une entre crochets</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
@@ -13447,24 +13447,39 @@
         <translation>{0} n&apos;est pas une liste ; donnez [x, y, z, RX, RY, RZ]{1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
+        <source>{0} is not a list; write one in square brackets</source>
+        <translation>{0} n&apos;est pas une liste ; écrivez-en une entre crochets</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0} is not a name; use words without = and ;</source>
         <translation>{0} n&apos;est pas un nom ; utilisez des mots sans = ni ;</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>{0} is not a number</source>
-        <translation>{0} n&apos;est pas un nombre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not a number or {1}</source>
-        <translation>{0} n&apos;est pas un nombre ou {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>{0} is not a number; give one such as 0.1</source>
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 0.1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a number; give one such as 2</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a number; give one such as 2 or {1}</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2 ou {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <source>{0} is not a number; give one such as 2{1}</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
+        <source>{0} is not a number; give the file as ur_calibration wrote it</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/quantity.py"/>
@@ -13477,9 +13492,9 @@
         <translation>{0} n&apos;est pas un nombre ; donnez {1} comme nombre à point décimal</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} is not a number{1}</source>
-        <translation>{0} n&apos;est pas un nombre{1}</translation>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
+        <source>{0} is not a number; write one such as 12.5</source>
+        <translation>{0} n&apos;est pas un nombre ; écrivez-en un comme 12.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -13587,14 +13602,19 @@
         <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not a text</source>
-        <translation>{0} n&apos;est pas un texte</translation>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a text; give one in quotes</source>
+        <translation>{0} n&apos;est pas un texte ; donnez-en un entre guillemets</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is not a text; give one, in quotes where it is a number</source>
         <translation>{0} n&apos;est pas un texte ; donnez-en un, entre guillemets si c&apos;est un nombre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
+        <source>{0} is not a text; write one in quotes</source>
+        <translation>{0} n&apos;est pas un texte ; écrivez-en un entre guillemets</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
@@ -13623,16 +13643,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>{0} is not a unit vector</source>
-        <translation>{0} n&apos;est pas un vecteur unitaire</translation>
+        <source>{0} is not a unit vector; give one of length 1</source>
+        <translation>{0} n&apos;est pas un vecteur unitaire ; donnez-en un de longueur 1</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not a whole number</source>
-        <translation>{0} n&apos;est pas un nombre entier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
         <source>{0} is not a whole number; give one such as 3</source>
         <translation>{0} n&apos;est pas un nombre entier ; donnez-en un comme 3</translation>
     </message>
@@ -13653,8 +13668,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
-        <source>{0} is not above 0</source>
-        <translation>{0} n&apos;est pas supérieur à 0</translation>
+        <source>{0} is not above 0; give a larger one</source>
+        <translation>{0} n&apos;est pas supérieur à 0 ; donnez plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -13673,13 +13688,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not an object</source>
-        <translation>{0} n&apos;est pas un objet</translation>
+        <source>{0} is not an object with the keys {1}; write it as one in braces</source>
+        <translation>{0} n&apos;est pas un objet avec les clés {1} ; écrivez-le comme tel entre accolades</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not an object with the keys {1}</source>
-        <translation>{0} n&apos;est pas un objet avec les clés {1}</translation>
+        <source>{0} is not an object; write one in braces</source>
+        <translation>{0} n&apos;est pas un objet ; écrivez-en un entre accolades</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
@@ -13763,8 +13778,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>{0} is not the name of the file, {1}</source>
-        <translation>{0} n&apos;est pas le nom du fichier, {1}</translation>
+        <source>{0} is not the name of its file, {1}; rename it</source>
+        <translation>{0} n&apos;est pas le nom de son fichier, {1} ; renommez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -13773,8 +13788,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not true or false</source>
-        <translation>{0} n&apos;est ni vrai ni faux</translation>
+        <source>{0} is not true or false; give one of them</source>
+        <translation>{0} n&apos;est ni vrai ni faux ; donnez l&apos;un des deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -13953,8 +13968,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} mechanisms carry the robot; one track can be planned</source>
-        <translation>{0} mécanismes portent le robot ; un seul rail peut être planifié</translation>
+        <source>{0} mechanisms carry the robot; give one track</source>
+        <translation>{0} mécanismes portent le robot ; donnez un seul rail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/first_layer.py"/>
@@ -14083,13 +14098,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>{0} must be 1 or -1 each</source>
-        <translation>{0} doivent être 1 ou -1 chacun</translation>
+        <source>{0} must be 1 or -1 each; give one for each joint</source>
+        <translation>{0} doivent être 1 ou -1 chacun ; donnez-en un par articulation</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/entries.py"/>
-        <source>{0} must lie within +-180</source>
-        <translation>{0} doit être compris entre -180 et 180</translation>
+        <source>{0} must lie within +-180; give the same angles in that range</source>
+        <translation>{0} doit être compris entre -180 et 180 ; donnez les mêmes angles dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
@@ -14113,8 +14128,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>{0} of the points left out, expected 0 or more and less than 0.5</source>
-        <translation>{0} des points laissés de côté ; attendu : 0 ou plus et moins de 0.5</translation>
+        <source>{0} of the points cannot be left out; give 0 or more and less than 0.5</source>
+        <translation>une part de {0} des points ne peut pas être écartée ; donnez 0 ou plus et moins de 0.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
@@ -14363,8 +14378,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} unpacks to more than {1} MB</source>
-        <translation>{0} occupe plus de {1} Mo une fois décomprimé</translation>
+        <source>{0} unpacks to more than {1} MB; export it with a coarser mesh</source>
+        <translation>{0} occupe plus de {1} Mo une fois décomprimé ; exportez-le avec un maillage plus grossier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
@@ -14683,13 +14698,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>{0}={1} of &lt;{2}&gt; holds {3}, which is not a number</source>
-        <translation>{0}={1} de &lt;{2}&gt; contient {3}, qui n&apos;est pas un nombre</translation>
+        <source>{0}={1} of &lt;{2}&gt; holds {3}, which is not a number; write one such as 0.25</source>
+        <translation>{0}={1} de &lt;{2}&gt; contient {3}, qui n&apos;est pas un nombre ; écrivez-en un comme 0.25</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>{0}={1} of &lt;{2}&gt; is not {3} numbers</source>
-        <translation>{0}={1} de &lt;{2}&gt; n&apos;est pas {3} nombres</translation>
+        <source>{0}={1} of &lt;{2}&gt; is not {3} numbers; write so many, with blanks between</source>
+        <translation>{0}={1} de &lt;{2}&gt; n&apos;est pas {3} nombres ; écrivez-en autant, séparés par des espaces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
@@ -14938,13 +14953,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
-        <source>{} is not a number</source>
-        <translation>{} n&apos;est pas un nombre</translation>
+        <source>{} is not a number; enter one such as 12.5</source>
+        <translation>{} n&apos;est pas un nombre ; saisissez-en un comme 12.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>{} is not below {}</source>
-        <translation>{} n&apos;est pas inférieur à {}</translation>
+        <source>{} is not below {}; enter the smaller end first</source>
+        <translation>{} n&apos;est pas inférieur à {} ; saisissez d&apos;abord la plus petite extrémité</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/preview.py"/>

@@ -212,7 +212,7 @@ LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key
     [
         ("layer_height: 1 mm", "layer_heigth: 1 mm", "UNKNOWN_KEY", "strategy.layer_heigth", "did you mean layer_height"),
         ("half_angle: 20 deg", "angle: 20 deg", "UNKNOWN_KEY", "cell.nozzle.angle", "half_angle"),
-        ("version: 1", "version: 2", "BAD_VERSION", "version", "reads 1"),
+        ("version: 1", "version: 2", "BAD_VERSION", "version", "write version: 1"),
         ("version: 1", "version: true", "BAD_VERSION", "version", "true"),
         ("layer_height: 1 mm", "layer_height: 0 mm", "BAD_VALUE", "strategy.layer_height", "more than 0 mm"),
         ("layer_height: 1 mm", "layer_height: -1 mm", "BAD_VALUE", "strategy.layer_height", "-1 mm"),

@@ -52,7 +52,7 @@ def test_the_list_is_of_those_asked_for(workshop, words, listed):
 
 
 @pytest.mark.parametrize("words,told", [
-    (["--maker", "kukka"], "no machine known is of 'kukka'; titles begin with ABB, FANUC"),
+    (["--maker", "kukka"], "no machine known is of 'kukka'; use one of ABB, FANUC"),
     (["--payload", "heavy"], "'heavy' is not a mass"), (["--reach", "3 s"], "--reach"),
     (["--post", "krl"], "use one of fanuc"),
     (["kuka-kr16-2", "--urdf", "--reach", "1 m"], "leave 'kuka-kr16-2' out"),

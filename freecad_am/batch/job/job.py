@@ -97,7 +97,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
     fields.known_keys(values, SECTIONS, "")
     version = values.get("version", 1)
     if version != 1 or isinstance(version, bool):
-        raise InputError("BAD_VERSION", "version", "{} is not understood; this program reads 1", quantity.shown(version))
+        raise InputError("BAD_VERSION", "version", "{} is not understood; write version: 1", quantity.shown(version))
     name = _name(values.get("name"), path)
     if values.get("features") is None:
         if values.get("sequence") is not None:

@@ -36,7 +36,7 @@ def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = Fal
 
 def _no_surfaces() -> InputError:
     return InputError(
-        "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces: a part of this family needs STEP, IGES, "
+        "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces; give a part of this family as STEP, IGES, "
         "BREP or FCStd; a mesh may be the substrate, or a fixture",
     )
 
@@ -94,7 +94,7 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
     found = [obj for obj in document.Objects if obj.Name == name] or document.getObjectsByLabel(name)
     if len(found) != 1:
         names = ", ".join(obj.Label for obj in document.Objects)
-        raise InputError("NO_OBJECT", place, "{} objects are called {!r}; there are {}", len(found), name, names)
+        raise InputError("NO_OBJECT", place, "{} objects are called {!r}; name one of {}", len(found), name, names)
     obj = found[0]
     try:
         if constraints:
@@ -108,7 +108,7 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
             setattr(obj, key, _typed(getattr(obj, key), text))
     except AttributeError:
         near = ", ".join(sorted(obj.PropertiesList))
-        raise InputError("BAD_VALUE", place, "{} has no property {!r}; it has {}", name, key, near) from None
+        raise InputError("BAD_VALUE", place, "{} has no property {!r}; use one of {}", name, key, near) from None
     except (ValueError, TypeError, ArithmeticError, RuntimeError, IndexError, NameError):
         message = Text("{!r} does not fit this property; give a value such as it has now", text)
         raise InputError("BAD_VALUE", place, message) from None

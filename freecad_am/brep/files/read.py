@@ -40,7 +40,7 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
     if suffix in MESHES:
         raise InputError(
             "UNSUPPORTED_FILE", where,
-            "a mesh has no exact surfaces; a part of revolution needs a boundary representation: STEP, IGES or BREP",
+            "a mesh has no exact surfaces; give a part of revolution as STEP, IGES or BREP",
         )
     if suffix not in READABLE:
         raise InputError("UNSUPPORTED_FILE", where, "{} is not read; use {}", suffix or "no ending", ", ".join(READABLE))
@@ -49,7 +49,7 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
         with file.open("rb") as stream:
             stream.read(1)
     except OSError as error:
-        raise InputError("BAD_FILE", where, "it cannot be read: {}", error.strerror) from error
+        raise InputError("BAD_FILE", where, "it cannot be read: {}; choose a file that can", error.strerror) from error
     if size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
     return apart(_shape, file, where)

@@ -135,7 +135,8 @@ class _Package:
             while chunk := stream.read(CHUNK):
                 size += len(chunk)  # what the zip tells of itself need not be true
                 if size > LARGEST:
-                    raise InputError("UNSUPPORTED_FILE", self.where, "{} unpacks to more than {} MB", name, LARGEST >> 20)
+                    raise InputError("UNSUPPORTED_FILE", self.where, "{} unpacks to more than {} MB; export it with a "
+                                     "coarser mesh", name, LARGEST >> 20)
                 parser.Parse(chunk, False)
                 if size - max(parser.CurrentByteIndex, 0) > LONGEST:  # it would be read again with each chunk
                     raise _bad(self.where, Text("an element of {} is longer than {} MB", name, LONGEST >> 20))

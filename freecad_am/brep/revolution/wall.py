@@ -55,7 +55,7 @@ def _chosen(named: list[Named], faces: Sequence[str], label: str) -> list[Named]
     known = dict(named)
     for name in faces:
         if name not in known:
-            raise InputError("UNKNOWN_FACE", label, "it has no {}; its faces are Face1 to Face{}", name, len(named))
+            raise InputError("UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(named))
     return [(name, known[name]) for name in dict.fromkeys(faces)]
 
 

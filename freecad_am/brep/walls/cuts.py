@@ -47,8 +47,8 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
                 break
         if len(row):
             raise InputError(
-                "SELF_INTERSECTION", f"{label} {wall.faces[k]}", "the face folds back and cuts itself at {}; a bend must "
-                "have a larger radius than the tube", place(patch.at(start[:1])[0][0]),
+                "SELF_INTERSECTION", f"{label} {wall.faces[k]}", "the face folds back and cuts itself at {}; give the "
+                "bend a larger radius than the tube", place(patch.at(start[:1])[0][0]),
             )
 
 
@@ -91,8 +91,8 @@ def _refuse_cuts(wall: PatchWall, corner: Array, normal: Array, one: Index, othe
                 continue
             names = sorted({wall.faces[wall.patch[face]] for face in faces})
             raise InputError(
-                "SELF_INTERSECTION", label, "the wall cuts itself at {} ({}); a bend must have a larger radius than the "
-                "tube, and faces must not cross", place(found), Text.joined(" and ", names),
+                "SELF_INTERSECTION", label, "the wall cuts itself at {} ({}); give bends a larger radius than the "
+                "tube, and let no faces cross", place(found), Text.joined(" and ", names),
             )
 
 

@@ -197,7 +197,7 @@ def _refuse_inside(tube: Tube, solid: Any, label: str, substrate_label: str) -> 
     inside = [solid.isInside(FreeCAD.Vector(*point), 1e-7, False) for point in _ring(tube, tube.end)]
     if any(inside):
         raise InputError(
-            "INSIDE", label, "both ends of the wall lie in {}; a wall starts on it and ends outside of it", substrate_label
+            "INSIDE", label, "both ends of the wall lie in {}; let one of them end outside of it", substrate_label
         )
 
 
@@ -218,5 +218,5 @@ def _refuse_edges(tube: Tube, points: Array, named: list[tuple[str, Any]], label
             if from_end.max() > ON_EDGE and above.max() > TOUCH:
                 raise InputError(
                     "WALL_EDGE", f"{label} {name}", "it has an edge that is neither straight across the tube at its end nor "
-                    "below the first layer; walls with openings or slanted ends cannot be deposited yet",
+                    "below the first layer, which cannot be deposited yet; fill openings, and cut ends straight",
                 )

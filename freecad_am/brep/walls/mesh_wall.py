@@ -100,7 +100,7 @@ def _from_edges(wall: MeshWall, names: Sequence[str], label: str) -> _Start:
                 ", ", (Text("Edge{} at {}", k + 1, place(loop.mean(axis=0))) for k, loop in enumerate(loops[:8]))
             ) or "none"
             raise InputError(
-                "UNKNOWN_EDGE", label, "it has no {}; the edges of a mesh are its open ends, by height: {}", name, known
+                "UNKNOWN_EDGE", label, "it has no {}; choose from the open ends of the mesh, by height: {}", name, known
             )
         chosen.append(_curve(loops[number - 1]))
     return _Start(chosen, np.zeros(len(wall.vertices), dtype=bool), [])

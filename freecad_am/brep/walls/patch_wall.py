@@ -149,8 +149,8 @@ def from_substrate(
     if not outside.any():
         at, depth = nearest(wall.vertices, ground, value)
         raise InputError(
-            "INSIDE", label, "the wall lies wholly in {} (at {} it is {:.4g} mm deep, and nowhere less); a wall starts on "
-            "the substrate and ends outside of it", substrate.label, place(wall.vertices[at]), depth,
+            "INSIDE", label, "the wall lies wholly in {} (at {} it is {:.4g} mm deep, and nowhere less); let it end "
+            "outside of the substrate", substrate.label, place(wall.vertices[at]), depth,
         )
     dropped = _stays_in(wall, outside, substrate)
     value[dropped] = np.minimum(value[dropped], -1e-6)

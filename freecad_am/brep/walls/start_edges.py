@@ -28,7 +28,7 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
     for name in dict.fromkeys(names):
         number = int(name.removeprefix("Edge")) if name.removeprefix("Edge").isdigit() else 0
         if not 1 <= number <= len(shape.Edges):
-            raise InputError("UNKNOWN_EDGE", label, "it has no {}; its edges are Edge1 to Edge{}", name, len(shape.Edges))
+            raise InputError("UNKNOWN_EDGE", label, "it has no {}; choose from Edge1 to Edge{}", name, len(shape.Edges))
         edge = shape.Edges[number - 1]
         points = np.array([tuple(edge.valueAt(t)) for t in np.linspace(*edge.ParameterRange, 9)])
         off = np.linalg.norm(wall.project(points)[0] - points, axis=1)

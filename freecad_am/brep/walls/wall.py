@@ -73,7 +73,7 @@ def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any
     known = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
     for name in names:
         if name not in known:
-            raise InputError("UNKNOWN_FACE", label, "it has no {}; its faces are Face1 to Face{}", name, len(known))
+            raise InputError("UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(known))
     return known
 
 
@@ -219,7 +219,8 @@ def _refuse_seam(
         ends = [surface.tangent(b, a)[0] if closed_u else surface.tangent(a, b)[1] for b in around]
         one, other = (_unit(_array(end)) for end in ends)
         if np.linalg.norm(one - other) > SMOOTH:
-            raise InputError("ROUGH_WALL", where, "it has an edge along its seam; walls with edges cannot be deposited yet")
+            raise InputError("ROUGH_WALL", where, "it has an edge along its seam, which cannot be deposited yet; make it "
+                             "smooth there")
 
 
 def _array(vector: Any) -> Array:

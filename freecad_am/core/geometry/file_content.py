@@ -41,4 +41,5 @@ def _pieces(path: str | Path, largest: int, code: str, where: str) -> Iterator[b
             yield piece
             size = max(size, stream.tell())
     if size > largest * MB:
-        raise InputError(code, where, "the file is larger than {} MB, the most that is read; is it the right one?", largest)
+        raise InputError(code, where, "the file is larger than {} MB, the most that is read; check that it is the right one",
+                         largest)

@@ -59,8 +59,8 @@ def fitted(toolpath: Toolpath, scan: Scan, parameters: ScanParameters, left_out:
     first = parameters.first
     if first >= len(toolpath.layers):
         raise InputError(
-            "NO_LAYER", "substrate.after_layer", "there is no layer above {}: the last one of {} is {}", first - 1,
-            len(toolpath.layers), len(toolpath.layers) - 1
+            "NO_LAYER", "substrate.after_layer", "there is no layer above {}: the last one of {} is {}; give a lower one",
+            first - 1, len(toolpath.layers), len(toolpath.layers) - 1
         )
     ways = ways_of(toolpath)
     beads = toolpath.layers[first].beads

@@ -77,7 +77,8 @@ def register(
     """
     refuse_too_few(points, where)
     if not 0.0 <= trim < 0.5:
-        raise InputError("OUT_OF_RANGE", where, "{:g} of the points left out, expected 0 or more and less than 0.5", trim)
+        raise InputError("OUT_OF_RANGE", where, "{:g} of the points cannot be left out; give 0 or more and less than 0.5",
+                         trim)
     best = roughly(points, surface, starts, trim, radius, allowed, free)
     motion, _, moved = _converged(points, surface, best, trim, radius, ROUNDS, allowed, free)
     if moved > still:

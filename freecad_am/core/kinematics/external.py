@@ -137,9 +137,9 @@ def _check(found: Sequence[tuple[External, Machine]]) -> None:
     for machine in tracks:
         if machine.chain.axes != 1 or not machine.chain.sliding.all():
             raise InputError("NOT_YET", WHERE, "{} carries the robot and is not a track, which is one axis that slides; "
-                             "nothing else can be planned", machine.title)
+                             "choose a track", machine.title)
     if len(tracks) > 1:
-        raise InputError("NOT_YET", WHERE, "{} mechanisms carry the robot; one track can be planned", len(tracks))
+        raise InputError("NOT_YET", WHERE, "{} mechanisms carry the robot; give one track", len(tracks))
     others = [machine for one, machine in found if one.carries == PART]
     for machine in others:
         if machine.chain.sliding.any():
@@ -147,7 +147,7 @@ def _check(found: Sequence[tuple[External, Machine]]) -> None:
                              "yet; use turning axes", machine.title)
     count = sum(machine.chain.axes for machine in others)
     if count > 2:
-        raise InputError("NOT_YET", WHERE, "{} axes carry the part; one or two turning axes can be planned", count)
+        raise InputError("NOT_YET", WHERE, "{} axes carry the part; give one or two turning axes", count)
 
 
 def _check_names(robot: Machine, found: Sequence[tuple[External, Machine]]) -> None:

@@ -52,8 +52,8 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
                          "of the wire or nozzle at the origin of the file, Z out of the nozzle, in mm", away)
     low = float(found.vertices[:, 2].min())
     if low < -BEYOND:
-        raise InputError(CODE, WHERE, "it reaches {:.4g} mm beyond its origin along Z, where the deposit is; Z of the file "
-                         "points out of the nozzle, away from the torch, and the origin is its tip", -low)
+        raise InputError(CODE, WHERE, "it reaches {:.4g} mm beyond its origin along Z, where the deposit is; let Z of the "
+                         "file point out of the nozzle, away from the torch, and put the origin at its tip", -low)
     _refuse_wider(found, nozzle)
     return Torch(found, tuple(_cylinders(cut(found.vertices, found.triangles, nozzle.length, above=True))))
 

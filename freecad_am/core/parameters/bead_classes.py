@@ -163,7 +163,7 @@ def _values(name: str, text: str) -> dict[str, float | int | None]:
     for entry in filter(str.strip, text.split(",")):
         key, _, number = entry.strip().partition(" ")
         if key not in SPECS:
-            raise InputError("BAD_VALUE", WHERE, "{} has no {!r}; it may have {}", name, key, ", ".join(SPECS))
+            raise InputError("BAD_VALUE", WHERE, "{} has no {!r}; use one of {}", name, key, ", ".join(SPECS))
         try:
             value = float(number)
         except ValueError:

@@ -111,7 +111,8 @@ class CellParameters:
         self.upward()
         if isinstance(self.platform, (tuple, list)):
             if len(self.platform) != 6:
-                raise InputError("BAD_VALUE", "cell.platform", "{!r} is neither a length nor six numbers", self.platform)
+                raise InputError("BAD_VALUE", "cell.platform", "{!r} is neither a length nor six numbers; give one such as "
+                                 "300, or x y z RX RY RZ", self.platform)
             object.__setattr__(self, "platform", tuple(self.platform))
         if not isinstance(self.branch, str):
             object.__setattr__(self, "branch", checked_branch(self.branch))

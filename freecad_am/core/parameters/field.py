@@ -104,10 +104,10 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
             raise unknown_choice(key, value, spec.choices)
     elif spec.kind == FLAG:
         if not isinstance(value, bool):
-            raise InputError("BAD_VALUE", key, "{!r} is not true or false", value)
+            raise InputError("BAD_VALUE", key, "{!r} is not true or false; give one of them", value)
     elif spec.kind == TEXT:
         if not isinstance(value, str):
-            raise InputError("BAD_VALUE", key, "{!r} is not a text", value)
+            raise InputError("BAD_VALUE", key, "{!r} is not a text; give one in quotes", value)
     elif spec.kind == POSE:
         if isinstance(value, str) or len(value) != 6 or not all(math.isfinite(number) for number in value):
             also = Text.joined(" or ", ("", *spec.words))
@@ -130,9 +130,9 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
 def _check_number(spec: Spec, value: Any, key: str) -> None:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or math.isnan(value):
         also = Text(" or {}", ", ".join(spec.words)) if spec.words else ""
-        raise InputError("BAD_VALUE", key, "{!r} is not a number{}", value, Word(also))
+        raise InputError("BAD_VALUE", key, "{!r} is not a number; give one such as 2{}", value, Word(also))
     if spec.kind == COUNT and (math.isinf(value) or value != int(value)):
-        raise InputError("BAD_VALUE", key, "{!r} is not a whole number", value)
+        raise InputError("BAD_VALUE", key, "{!r} is not a whole number; give one such as 3", value)
     too_low = spec.low is not None and (value <= spec.low if spec.open_low else value < spec.low)
     if too_low or (spec.high is not None and value > spec.high):
         raise InputError("BAD_VALUE", key, "{} is out of range; give {}", outer_text(spec, value), range_text(spec))

@@ -152,5 +152,5 @@ def number(text: str, where: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise InputError("BAD_VALUE", where, tr("{} is not a number").format(repr(text)))
+        raise InputError("BAD_VALUE", where, tr("{} is not a number; enter one such as 12.5").format(repr(text)))
     return value

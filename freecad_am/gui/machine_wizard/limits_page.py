@@ -46,11 +46,13 @@ class LimitsPage(Page):
             if np.isnan(lower) != np.isnan(upper):
                 raise InputError("BAD_VALUE", name, tr("give both ends of its range, or none for an endless axis"))
             if lower >= upper:
-                raise InputError("BAD_VALUE", name, tr("{} is not below {}").format(f"{lower:g}", f"{upper:g}"))
+                raise InputError("BAD_VALUE", name, tr("{} is not below {}; enter the smaller end "
+                                                       "first").format(f"{lower:g}", f"{upper:g}"))
             if draft.chain.sliding[row] and np.isnan(lower):
-                raise InputError("BAD_VALUE", name, tr("an axis that slides has two ends"))
+                raise InputError("BAD_VALUE", name, tr("an axis that slides has two ends; enter both"))
             if any(rate <= 0.0 for rate in rates):
-                raise InputError("BAD_VALUE", name, tr("speed, acceleration and jerk are more than 0, or left empty"))
+                raise InputError("BAD_VALUE", name, tr("enter speed, acceleration and jerk of more than 0, or leave them "
+                                                       "empty"))
         values = np.where(np.isnan(values), [-np.inf, np.inf, np.inf, np.inf, np.inf], values) * draft.units[:, None]
         self.owner.draft = replace(
             draft, lower=values[:, 0], upper=values[:, 1], max_speed=values[:, 2], max_acceleration=values[:, 3],

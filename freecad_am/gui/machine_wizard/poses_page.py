@@ -141,7 +141,8 @@ class PosesPage(Page):
                     raise
                 continue
             if not line[self.axes + 3:].any() and str(self.convention.currentData()) == pose_figures.QUATERNION:
-                raise InputError("BAD_VALUE", tr("Pose {}").format(row + 1), tr("a quaternion is not all zeros"))
+                raise InputError("BAD_VALUE", tr("Pose {}").format(row + 1), tr("a quaternion is not all zeros; enter the "
+                                                                                "one that the controller shows"))
             values.append(line[: self.axes])
             figures.append(line[self.axes:])
             rows.append(row)
@@ -157,10 +158,10 @@ class PosesPage(Page):
         draft = self.owner.draft
         values, poses, rows = self._entered(whole=True)
         if len(rows) < LEAST:
-            raise InputError("NO_POSES", tr("Check poses"), tr("there are {}; at least {} are needed, for a machine without "
+            raise InputError("NO_POSES", tr("Check poses"), tr("there are {}; enter at least {}, for a machine without "
                              "them is not loaded").format(len(rows), LEAST))
         if not np.isclose(values, draft.shown.zeros, atol=1e-9).all(axis=1).any():
-            raise InputError("NO_POSES", tr("Check poses"), tr("the pose at the serial zeros is missing"))
+            raise InputError("NO_POSES", tr("Check poses"), tr("the pose at the serial zeros is missing; enter it too"))
         if np.ptp(values, axis=0).min() < 1.0:
             still = axis_names(self.owner)[int(np.argmin(np.ptp(values, axis=0)))]
             raise InputError("NO_POSES", still, tr("it is the same in all poses, which proves nothing; add another pose"))

@@ -86,8 +86,9 @@ def source_of(obj: Any) -> Source:
     cell = resolved(looks, toolpath, user_machines.folders())
     if not cell.machine.free or not value.joint_path.branch:
         raise InputError(
-            "NO_MAP", obj.Label, "its machine has two rotary axes, which leave no rotation about the tool to choose; a map "
-            "is for robots",
+            "NO_MAP", obj.Label, "its machine has two rotary axes, which leave no rotation about the tool to choose; open "
+            "the map "
+            "of a robot",
         )
     return Source(
         document=obj.Document.Name, name=obj.Name, title=obj.Label,

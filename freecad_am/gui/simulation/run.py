@@ -68,7 +68,7 @@ def prepared(obj: Any) -> Callable[[], Run]:
     folders = user_machines.folders()
     process = path.Toolpath.Proxy.parameters(path.Toolpath, ProcessParameters)
     if not len(planned.motion):
-        raise InputError("NO_RESULT", path.Label, "it has no points; there is nothing to play")
+        raise InputError("NO_RESULT", path.Label, "it has no points to play; choose another path")
     issues, stale, label = issues_of(path), path.Status == STALE, obj.Label
     deposited = _predicted(path.Toolpath)
     names = tuple(dict.fromkeys((obj.Name, path.Name, path.Toolpath.Name, path.Cell.Name)))

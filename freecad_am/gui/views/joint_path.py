@@ -182,14 +182,15 @@ def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
     """(n,) the smallest share left to a limit, or the largest share used of a joint speed, of all rows. InputError of the
     machine."""
     if obj.Cell is None:
-        raise InputError("NO_INPUT", obj.Label, "its cell is gone")
+        raise InputError("NO_INPUT", obj.Label, "its cell is gone; choose a cell for it")
     folders, settings = tuple(user_machines.folders()), obj.Cell.Proxy.parameters(obj.Cell, CellParameters)
     machine = machines.load(settings.machine, folders)
     joints, limits, mechanisms = seen.course.joints, machine.limits(seen.limits), externals(settings.external)
     if mechanisms:
         machine, limits, _ = coupled(machine, limits, mechanisms, settings.upward(), folders)
     if joints.shape[1] != limits.axes:
-        raise InputError("BAD_INPUT", obj.Label, "{} has other axes than the joint path", machine.title)
+        raise InputError("BAD_INPUT", obj.Label, "{} has other axes than the joint path; recompute the joint path",
+                         machine.title)
     if kind == MARGIN:
         return limits.smallest_share(joints)
     motion = seen.read().motion

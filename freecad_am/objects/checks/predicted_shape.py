@@ -87,7 +87,7 @@ def predicted(toolpath: CoreToolpath, targets: Sequence[Target], report: Report)
     report(0.8, "comparing the predicted deposit with the part")
     found = compare.compared(deposit, uncovered(asked))
     if not len(found.faces):
-        raise InputError(NOTHING, "toolpath", "the part has no faces above where the deposit begins")
+        raise InputError(NOTHING, "toolpath", "the part has no faces above where the deposit begins; choose another part")
     return deposit, found
 
 
@@ -131,7 +131,8 @@ def _of_source(source: Taken, names: Sequence[str]) -> Faces:
     known = {f"Face{number}": face for number, face in enumerate(shape.Faces, start=1)}
     chosen: list[Any] = [known[name] for name in dict.fromkeys(names) if name in known]
     if not chosen and not known:
-        raise InputError(NOTHING, "toolpath", "{} has no faces that a deposit could be held against", source.label)
+        raise InputError(NOTHING, "toolpath", "{} has no faces that a deposit could be held against; choose another object",
+                         source.label)
     side = OUTSIDE if shape.Solids else BOTH
     return together([faces(*triangles_of(face, DEFLECTION), side) for face in chosen or known.values()])
 

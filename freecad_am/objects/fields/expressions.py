@@ -25,7 +25,8 @@ def evaluated(value: str, obj: Any, where: str) -> Any:
     except Exception as error:  # FreeCAD's own errors share no base
         raise _wrong(value, where, error) from None
     if isinstance(found, bool) or not (isinstance(found, (int, float)) or hasattr(found, "Unit")):
-        raise InputError("BAD_EXPRESSION", where, "{!r} gives {!r}, which is not a number", value, found)
+        raise InputError("BAD_EXPRESSION", where, "{!r} gives {!r}, which is not a number; write one that gives a number",
+                         value, found)
     return found
 
 

@@ -237,7 +237,7 @@ def _number(spec: f.Spec, value: Any, where: str) -> Any:
         try:
             number = float(value)
         except (TypeError, ValueError):
-            raise InputError("BAD_VALUE", where, "{!r} is not a number{}", value, also) from None
+            raise InputError("BAD_VALUE", where, "{!r} is not a number; give one such as 2{}", value, also) from None
         if spec.kind == f.COUNT:
             return int(number) if number.is_integer() else number
         return number * f.TO_INNER.get(spec.kind, 1.0)

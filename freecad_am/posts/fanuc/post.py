@@ -127,7 +127,7 @@ def refuse_setup(
             " (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post fanuc cannot write {}", setup)
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post fanuc cannot write {}; use another post", setup)
     if external:
         _refuse_coordinated(motion, external)
 

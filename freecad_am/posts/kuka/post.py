@@ -104,7 +104,7 @@ def refuse_setup(
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP, REMOTE_TCP or JOINT_DEPOSIT for what cannot be said to this controller."""
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post kuka cannot write {}", setup)
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post kuka cannot write {}; use another post", setup)
     if setup == "part-on-robot":
         raise InputError(
             "REMOTE_TCP", "cell.setup",

@@ -132,13 +132,15 @@ def _refuse(program: Program) -> None:
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
-            "digital outputs are 1 to {} (motion.digital-out-00 is number 1), not {}", LAST_PIN, program.deposit_output,
+            "digital outputs are 1 to {} (motion.digital-out-00 is number 1), not {}; use one of these", LAST_PIN,
+            program.deposit_output,
         )
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_PIN:
             raise InputError(
                 "DEPOSIT_INPUT", "process.between_layers.input",
-                "digital inputs are 1 to {} (motion.digital-in-00 is number 1), not {}", LAST_PIN, block.number,
+                "digital inputs are 1 to {} (motion.digital-in-00 is number 1), not {}; use one of these", LAST_PIN,
+                block.number,
             )
     refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
     if program.motion == "cartesian":

@@ -63,7 +63,7 @@ def refuse_setup(post: str, motion: str, setup: str) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what is not a machine with rotary axes; both motions of these can be said."""
     if setup != "rotary-table":
         raise InputError(
-            "UNSUPPORTED_SETUP", "cell.setup", "the post {} cannot write {} ({} motion), only rotary-table", post, setup,
+            "UNSUPPORTED_SETUP", "cell.setup", "the post {} cannot write {} ({} motion); use rotary-table", post, setup,
             motion
         )
 

@@ -110,7 +110,8 @@ def refuse_setup(
 ) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
     if setup not in SETUPS:
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post staubli cannot write {} ({} motion)", setup, motion)
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post staubli cannot write {} ({} motion); use another post",
+                         setup, motion)
 
 
 def _refuse(program: Program) -> None:

@@ -128,7 +128,7 @@ def refuse_setup(
             " URScript holds; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post ur cannot write {}", setup)
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post ur cannot write {}; use another post", setup)
 
 
 def _refuse(program: Program) -> None:
@@ -140,18 +140,21 @@ def _refuse(program: Program) -> None:
     refuse_continuous(program)
     refuse_without_positions(program)
     if program.holds_part and any(run.flange is None for run in program.moves):
-        raise InputError("NO_POSITIONS", "program", "the program does not tell where the flange is, which blends count on")
+        raise InputError("NO_POSITIONS", "program", "the program does not tell where the flange is, which blends count on; "
+                         "plan the joint path again")
     if not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
-            "digital outputs are 1 to {} (1 to 8 are digital_out[0] to [7], 9 to {} the configurable ones), not {}",
+            "digital outputs are 1 to {} (1 to 8 are digital_out[0] to [7], 9 to {} the configurable ones), not {}; use one "
+            "of these",
             LAST_PIN, LAST_PIN, program.deposit_output,
         )
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_PIN:
             raise InputError(
                 "DEPOSIT_INPUT", "process.between_layers.input",
-                "digital inputs are 1 to {} (1 to 8 are digital_in[0] to [7], 9 to {} the configurable ones), not {}",
+                "digital inputs are 1 to {} (1 to 8 are digital_in[0] to [7], 9 to {} the configurable ones), not {}; use "
+                "one of these",
                 LAST_PIN, LAST_PIN, block.number,
             )
 

@@ -133,7 +133,7 @@ def refuse_setup(
             " point, whose instruction is not documented well enough to write it; use `motion: joint`",
         )
     if setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post yaskawa cannot write {}", setup)
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", "the post yaskawa cannot write {}; use another post", setup)
     if external:
         _refuse_coordinated(motion, external)
 

@@ -76,7 +76,7 @@ def test_arcs_are_within_the_chord_error(words, middle, radius, turn):
     ("", "part.gcode", "no bead"), ("G0 X1 Y1 Z1\nG1 X5\n", "part.gcode", "no move of it extrudes"),
     ("G20\nG1 X1 Y1 Z1 E1\n", "line 1", "inches"), ("G18\n", "line 1", "plane of X and Z"),
     ("G1 X1 E1\n", "line 1", "before the program says where"),
-    ("G0 X0 Y0 Z0\nG2 X5 Y5 E1\n", "line 2", "its middle or its radius"),
+    ("G0 X0 Y0 Z0\nG2 X5 Y5 E1\n", "line 2", "give the middle of the arc or its radius"),
     ("G0 X0 Y0 Z0\nG2 X5 Y5 I1 J0 E1\n", "line 2", "from its middle"),
     ("G0 X0 Y0 Z0\nG3 X9 Y0 R2 E1\n", "line 2", "makes no arc"),
     ("G5 X1 Y1\n", "line 1", "splines"), ("G0 X99999999\n", "line 1", "at most"),

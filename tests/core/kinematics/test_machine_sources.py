@@ -320,7 +320,7 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
         assert found.axes == given.axes and found.posts == () and found.free
         assert "does not tell what the controller shows" in found.controller_remark
     for name, words in (
-        (f"{path} tip=hand", "arm.urdf has no link 'hand'; it has base_link, "), (f"{path} base=tool0", "moves anything"),
+        (f"{path} tip=hand", "arm.urdf has no link 'hand'; name one of base_link"), (f"{path} base=tool0", "moves anything"),
         (f"{path} tip=link_5", "from base_link to link_5: .* it has 5 axes"), (tmp_path / "no.urdf", "there is no URDF"),
     ):
         with pytest.raises(InputError, match=words):

@@ -17,7 +17,7 @@ BY_COUNT = {3: COLUMNS[:3], 4: (*COLUMNS[:3], "bead"), 6: COLUMNS[:6], 7: COLUMN
 CODE = "BAD_TABLE"
 APART = 1e-6  # mm; points no farther apart are one
 MAX_MM = 1e7  # mm; farther away is a slip of the pen
-FORM = "a table has the columns x,y,z, then i,j,k where directions are given, then bead where there are several"
+FORM = "give a table of the columns x,y,z, then i,j,k where directions are given, then bead where there are several"
 
 
 def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:

@@ -31,7 +31,8 @@ REFUSED = {
     "G20": "it is in inches; let the slicer write mm (G21)",
     "G18": "arcs are in the plane of X and Z; let the slicer write arcs in the plane of X and Y, or lines alone",
     "G19": "arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines alone",
-    "G5": "splines are not known; let the slicer write lines and arcs", "G6": "direct moves of steppers are not known",
+    "G5": "splines are not known; let the slicer write lines and arcs",
+    "G6": "direct moves of steppers are not known; let the slicer write G1",
     "G43": "tool lengths are not known; let the slicer leave them out",
     "G68": "turned coordinates are not known; let the slicer leave them out",
 }
@@ -164,7 +165,7 @@ class _Reader:
         if "I" in words or "J" in words:
             return np.asarray(start[:2] + np.array([words.get("I", 0.0), words.get("J", 0.0)]))
         if "R" not in words:
-            raise self._error(Text("{} has neither I and J nor R; an arc needs its middle or its radius", name))
+            raise self._error(Text("{} has neither I and J nor R; give the middle of the arc or its radius", name))
         radius, chord = words["R"], end[:2] - start[:2]
         length = float(np.hypot(*chord))
         if length < APART or abs(2.0 * radius) < length * (1.0 - 1e-6):

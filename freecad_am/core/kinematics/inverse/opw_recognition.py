@@ -194,4 +194,5 @@ def clean(value: float) -> float:
 
 
 def refused(reason: str, where: str = "geometry") -> InputError:
-    return InputError("NO_CLOSED_FORM", where, "this cannot be planned for: {}", reason)
+    return InputError("NO_CLOSED_FORM", where, "this cannot be planned for: {}; correct its geometry, or choose another "
+                      "machine", reason)

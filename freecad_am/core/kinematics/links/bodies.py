@@ -55,7 +55,7 @@ def _piece(node: Node, last: bool) -> LinkShape | Solid:
     kind, count = ("box", 3) if node.has("box") else ("cylinder", 2)
     size = node[kind].numbers(count)
     if (size <= 0.0).any():
-        raise node[kind].bad("sizes are larger than 0: of a box along x, y and z, of a cylinder its diameter and length")
+        raise node[kind].bad("give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length")
     pose = node.pose() if node.has("origin") or node.has("rpy") else np.eye(4)
     tone = BRIGHT if last else BODY
     return (box if kind == "box" else cylinder)(size, tone).moved(pose)

@@ -59,7 +59,8 @@ def read(path: Path) -> tuple[Array, str]:
     try:
         text = content(path, LARGEST, "BAD_CALIBRATION", str(path)).decode("utf-8")
     except (OSError, ValueError) as error:
-        raise InputError("BAD_CALIBRATION", str(path), "cannot be read as a calibration: {}", error) from None
+        raise InputError("BAD_CALIBRATION", str(path), "cannot be read as a calibration: {}; give the file as "
+                         "ur_calibration wrote it", error) from None
     entries = _entries(text, path)
     poses = [_pose(entries, joint, path) for joint in JOINTS]
     return np.stack(poses), entries.get("kinematics.hash", "").strip("'\"")
@@ -101,7 +102,8 @@ def _entries(text: str, path: Path) -> dict[str, str]:
             open_.pop()
         key = ".".join([*(name for _, name in open_), entry["key"]])
         if key in found:
-            raise InputError("BAD_CALIBRATION", f"{path}: line {number}", "the key {} is there twice", key)
+            raise InputError("BAD_CALIBRATION", f"{path}: line {number}", "the key {} is there twice; give the file as "
+                             "ur_calibration wrote it", key)
         found[key] = entry["value"] or ""
         open_.append((indent, entry["key"]))
     return found
@@ -119,7 +121,8 @@ def _pose(entries: dict[str, str], joint: str, path: Path) -> Array:
         except ValueError:
             number = math.nan
         if not math.isfinite(number):
-            raise InputError("BAD_CALIBRATION", f"{path}: {key}", "{} is not a number", _short(entries[key]))
+            raise InputError("BAD_CALIBRATION", f"{path}: {key}", "{} is not a number; give the file as ur_calibration "
+                             "wrote it", _short(entries[key]))
         numbers.append(number)
     return frames.from_rpy(np.array(numbers[:3]) * 1000.0, np.array(numbers[3:]))
 

@@ -46,7 +46,7 @@ def chosen(
     not tell a figure that is asked for, its machine is left out. InputError USAGE for a maker that no machine is of."""
     if maker is not None and not any(entry.is_of(maker) for entry in known):
         makers = ", ".join(sorted({entry.title.split()[0] for entry in known}))
-        raise InputError("USAGE", "freecad-am machines", "no machine known is of {!r}; titles begin with {}", maker, makers)
+        raise InputError("USAGE", "freecad-am machines", "no machine known is of {!r}; use one of {}", maker, makers)
     return [
         entry for entry in known
         if (maker is None or entry.is_of(maker))

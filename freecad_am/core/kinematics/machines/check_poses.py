@@ -23,10 +23,10 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
     of its closed form where it has one."""
     poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
     if len(poses) < 3:
-        raise node.bad(Text("there are {}; a machine needs at least 3 joint vectors with their flange poses", len(poses)))
+        raise node.bad(Text("there are {}; give at least 3 joint vectors with their flange poses", len(poses)))
     q = np.array([pose["q"].numbers(chain.axes) for pose in poses]) * np.where(chain.sliding, 1.0, math.radians(1.0))
     if not (q == 0.0).all(axis=1).any():
-        raise node.bad("the pose at all zeros is missing")
+        raise node.bad("the pose at all zeros is missing; add it")
     wanted = np.stack([frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses])
     allowed = np.array([_within(pose) for pose in poses])
     solvers = {"the joint frames give": chain.forward}

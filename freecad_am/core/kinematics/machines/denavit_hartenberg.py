@@ -81,7 +81,7 @@ def _check(table: Table) -> None:
     for number, row in enumerate(table.rows, 1):
         where = Text("table, row {}", number)
         if not np.isfinite([row.theta, row.d, row.a, row.alpha]).all():
-            raise InputError("BAD_TABLE", where, "theta, d, a and alpha must be numbers")
+            raise InputError("BAD_TABLE", where, "theta, d, a and alpha must be numbers; give all four")
         if row.sign not in (1, -1):
             raise InputError("BAD_TABLE", where, "{} is not a sign; use 1 or -1", row.sign)
 

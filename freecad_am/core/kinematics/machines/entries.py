@@ -49,7 +49,7 @@ def unit_of(node: Node) -> Array:
     axis = node.numbers(3)
     length = float(np.linalg.norm(axis))
     if abs(length - 1.0) > 1e-6:
-        raise node.bad(Text("{} is not a unit vector", node.value))
+        raise node.bad(Text("{} is not a unit vector; give one of length 1", node.value))
     return axis / length
 
 
@@ -91,13 +91,14 @@ def opw_arm(node: Node, count: int) -> OpwArm:
     lengths = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
     node.only(*lengths, "offsets", "signs")
     if count != 6:
-        raise node.bad(Text("the closed form is for six joints, there are {}", count))
+        raise node.bad(Text("the closed form is for six joints, there are {}; leave opw out", count))
     signs = node["signs"].numbers(6)
     if (np.abs(signs) != 1.0).any():
-        raise node["signs"].bad(Text("{} must be 1 or -1 each", node["signs"].value))
+        raise node["signs"].bad(Text("{} must be 1 or -1 each; give one for each joint", node["signs"].value))
     offsets = node["offsets"].numbers(6)
     if (np.abs(offsets) > 180.0).any():
-        raise node["offsets"].bad(Text("{} must lie within +-180", node["offsets"].value))
+        raise node["offsets"].bad(Text("{} must lie within +-180; give the same angles in that range",
+                                       node["offsets"].value))
     for name in ("c2", "c3"):
         if node[name].number() <= 0.0:
             raise node[name].bad(Text("{} is not the length of an arm; give more than 0 mm", node[name].value))

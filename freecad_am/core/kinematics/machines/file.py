@@ -36,7 +36,8 @@ class Node:
     def only(self, *known: str) -> Node:
         """Itself, if it is an object without unknown keys."""
         if not isinstance(self.value, dict):
-            raise self.bad(Text("{} is not an object with the keys {}", _short(self.value), ", ".join(known)))
+            raise self.bad(Text("{} is not an object with the keys {}; write it as one in braces", _short(self.value),
+                                ", ".join(known)))
         for key in self.value:
             if key not in known:
                 raise self.bad(Text("the key {!r} is not known; use {}", key, ", ".join(known)))
@@ -48,26 +49,26 @@ class Node:
 
     def __getitem__(self, key: str) -> Node:
         if not isinstance(self.value, dict) or key not in self.value:
-            raise self.bad(Text("the key {!r} is missing", key))
+            raise self.bad(Text("the key {!r} is missing; add it", key))
         return Node(self.value[key], self.path, f"{self.key}.{key}".lstrip("."))
 
     def items(self, length: int | None = None) -> list[Node]:
         """The parts of a list, of `length` where given."""
         if not isinstance(self.value, list) or (length is not None and len(self.value) != length):
-            raise self.bad(Text("{} is not a list{}", _short(self.value),
+            raise self.bad(Text("{} is not a list{}; write one in square brackets", _short(self.value),
                                 Word(Text(" of {}", length) if length is not None else "")))
         return [Node(value, self.path, f"{self.key}[{index}]") for index, value in enumerate(self.value)]
 
     def pairs(self) -> Iterator[tuple[str, Node]]:
         """The keys and values of an object."""
         if not isinstance(self.value, dict):
-            raise self.bad(Text("{} is not an object", _short(self.value)))
+            raise self.bad(Text("{} is not an object; write one in braces", _short(self.value)))
         return ((key, self[key]) for key in self.value)
 
     def text(self) -> str:
         """A text that is not empty."""
         if not isinstance(self.value, str) or not self.value:
-            raise self.bad(Text("{} is not a text", _short(self.value)))
+            raise self.bad(Text("{} is not a text; write one in quotes", _short(self.value)))
         return self.value
 
     def texts(self) -> tuple[str, ...]:
@@ -77,7 +78,7 @@ class Node:
     def number(self) -> float:
         """A finite number."""
         if isinstance(self.value, bool) or not isinstance(self.value, (int, float)) or not abs(self.value) <= LARGEST_NUMBER:
-            raise self.bad(Text("{} is not a number", _short(self.value)))
+            raise self.bad(Text("{} is not a number; write one such as 12.5", _short(self.value)))
         return float(self.value)
 
     def numbers(self, length: int) -> Array:
@@ -111,9 +112,11 @@ def read(path: Path) -> Node:
     try:
         return Node(json.loads(content(path, LARGEST, "BAD_MACHINE", str(path)).decode("utf-8")), path)
     except RecursionError:
-        raise InputError("BAD_MACHINE", str(path), "it is nested too deeply to be a machine file") from None
+        raise InputError("BAD_MACHINE", str(path), "it is nested too deeply to be a machine file; choose another "
+                         "file") from None
     except (OSError, ValueError) as error:
-        raise InputError("BAD_MACHINE", str(path), "cannot be read as a machine file: {}", error) from None
+        raise InputError("BAD_MACHINE", str(path), "cannot be read as a machine file: {}; mend that place, or choose "
+                         "another file", error) from None
 
 
 def _short(value: Any) -> str:

@@ -173,7 +173,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
     if text.lower().endswith(".json"):
         path = Path(text).expanduser()
         if not is_there(path):
-            raise InputError("UNKNOWN_MACHINE", "cell.machine", "there is no machine file {}", text)
+            raise InputError("UNKNOWN_MACHINE", "cell.machine", "there is no machine file {}; check the path", text)
         return _parse(read(path))
     meant = reference(text)
     if meant is not None:
@@ -181,7 +181,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
     path = file_of(text, folders)
     machine = _built_in(path, located(path).stat().st_mtime_ns) if path.parent == BUILT_IN else _parse(read(path))
     if machine.id != text:
-        raise InputError("BAD_MACHINE", f"{path}: id", "{!r} is not the name of the file, {!r}", machine.id, text)
+        raise InputError("BAD_MACHINE", f"{path}: id", "{!r} is not the name of its file, {!r}; rename it", machine.id, text)
     return machine
 
 
@@ -219,7 +219,7 @@ def _near(name: str, names: list[str]) -> str:
     import difflib  # only when a name was wrong: starting is most of a small job's time
 
     near = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
-    return Text("did you mean {}?", ", ".join(near)) if near else Text("known are {}", ", ".join(names))
+    return Text("did you mean {}?", ", ".join(near)) if near else Text("use one of {}", ", ".join(names))
 
 
 def _parse(top: Node) -> Machine:
@@ -227,7 +227,7 @@ def _parse(top: Node) -> Machine:
     keys = ("name", "label", "type", "origin", "rpy", "axis", "max_speed", "max_acceleration", "max_jerk")
     joints = [joint.only(*keys) for joint in top["joints"].items()]
     if not joints:
-        raise top["joints"].bad("there is no joint")
+        raise top["joints"].bad("there is no joint; add one for each axis")
     count = len(joints)
     sliding = np.array([entry.slides(joint) for joint in joints])
     units = unit_values(sliding)
@@ -260,9 +260,9 @@ def _parse(top: Node) -> Machine:
         shapes=shapes, payload=entry.payload_of(top), bodies=link_bodies(top, links, shapes),
     )
     if MAKER not in machine.limit_sets:
-        raise top["limits"].bad(Text("the set {!r} is missing", MAKER))
+        raise top["limits"].bad(Text("the set {!r} is missing; add it", MAKER))
     if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
-        raise controller["matrix"].bad("the matrix has no inverse")
+        raise controller["matrix"].bad("the matrix has no inverse; give that of the controller")
     for array in (machine.base, machine.max_speed, machine.max_acceleration, machine.max_jerk, machine.controller_matrix,
                   machine.controller_offset):
         array.flags.writeable = False

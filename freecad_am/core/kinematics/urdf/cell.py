@@ -91,7 +91,7 @@ class UrdfCell:
         others = [way for way in self.farthest if way[: len(robot)] != robot]
         for way in others:
             if way[0] == robot[0]:
-                self._refuse(Text("{!r} is carried by {!r}, as the robot is; a positioner must stand on the floor", way[-1],
+                self._refuse(Text("{!r} is carried by {!r}, as the robot is; let the positioner stand on the floor", way[-1],
                                   way[0]))
         if len(others) > 1:
             names = ", ".join(" - ".join(way) for way in others)
@@ -143,7 +143,7 @@ def texts_of(meant: Reference) -> tuple[str, str]:
         raise InputError("BAD_VALUE", WHERE, "{} takes all of the file; leave out base and tip of the machine, or name the "
                          "mechanisms one by one", WHOLE)
     if not is_there(meant.file):
-        raise InputError("UNKNOWN_MACHINE", "cell.machine", "there is no URDF {}", meant.file)
+        raise InputError("UNKNOWN_MACHINE", "cell.machine", "there is no URDF {}; check the path", meant.file)
     found = UrdfCell(meant.file)
     external = f"{MORE} ".join(map(str, found.external()))
     return str(found.machine()), external or "none"

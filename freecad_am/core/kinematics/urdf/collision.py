@@ -86,5 +86,5 @@ def _solid(element: Element) -> Solid | None:
 
 def _sizes(element: Element, sizes: Array) -> Array:
     if (sizes <= 0.0).any():
-        raise element.bad(Text("<{}> has a size that is not larger than 0", element.tag))
+        raise element.bad(Text("<{}> has a size that is not larger than 0; give its sizes in m", element.tag))
     return sizes

@@ -48,21 +48,22 @@ class Element:
         found = self.first(tag)
         if found is None:
             name = Text(" {!r}", self.attributes["name"]) if "name" in self.attributes else ""
-            raise self.bad(Text("<{}>{} has no <{}>", self.tag, Word(name), tag))
+            raise self.bad(Text("<{}>{} has no <{}>; add it", self.tag, Word(name), tag))
         return found
 
     def text(self, name: str) -> str:
         """An attribute that must be there and not be empty."""
         value = self.attributes.get(name, "").strip()
         if not value:
-            raise self.bad(Text("<{}> has no {}", self.tag, name))
+            raise self.bad(Text("<{}> has no {}; add it", self.tag, name))
         return value
 
     def words(self, name: str, count: int, default: str) -> list[str]:
         """So many words of an attribute, or of the default where it is left out."""
         words = self.attributes.get(name, default).split()
         if len(words) != count:
-            raise self.bad(Text("{}={!r} of <{}> is not {} numbers", name, self.attributes.get(name, ""), self.tag, count))
+            raise self.bad(Text("{}={!r} of <{}> is not {} numbers; write so many, with blanks between", name,
+                                self.attributes.get(name, ""), self.tag, count))
         return words
 
     def number(self, name: str, default: str | None = None) -> float:
@@ -94,8 +95,8 @@ class Element:
             value = math.nan
         if not math.isfinite(value):
             raise self.bad(
-                Text("{}={!r} of <{}> holds {!r}, which is not a number", name, self.attributes.get(name, word), self.tag,
-                    word)
+                Text("{}={!r} of <{}> holds {!r}, which is not a number; write one such as 0.25", name,
+                     self.attributes.get(name, word), self.tag, word)
             )
         return value
 
@@ -111,7 +112,8 @@ def read(path: Path) -> Element:
         stack.append(element)
 
     def refuse(name: str, *_: object) -> None:
-        raise InputError(CODE, f"{path.name}: line {parser.CurrentLineNumber}", "entities such as {!r} are not read", name)
+        raise InputError(CODE, f"{path.name}: line {parser.CurrentLineNumber}", "entities such as {!r} are not read; write "
+                         "out what they stand for", name)
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda _: stack.pop()
@@ -119,10 +121,11 @@ def read(path: Path) -> Element:
     try:
         parser.Parse(content(path, LARGEST, CODE, str(path)), True)
     except OSError as error:
-        raise InputError(CODE, str(path), "cannot be read: {}", error.strerror or error) from None
+        raise InputError(CODE, str(path), "cannot be read: {}; choose a file that can", error.strerror or error) from None
     except xml.parsers.expat.ExpatError as error:
         text = xml.parsers.expat.errors.messages[error.code]
-        raise InputError(CODE, f"{path.name}: line {error.lineno}", "this is not XML: {}", text) from None
+        raise InputError(CODE, f"{path.name}: line {error.lineno}", "this is not XML: {}; export the URDF again",
+                         text) from None
     return stack[0].children[0]
 
 

@@ -59,14 +59,14 @@ def _ends(meant: Reference, where: str) -> tuple[Urdf, str, str]:
     """A file, and the links that a chain begins and ends with: those that are meant, or that the file proposes."""
     path = Path(meant.file).expanduser()
     if not is_there(path):
-        raise InputError("UNKNOWN_MACHINE", where, "there is no URDF {}", meant.file)
+        raise InputError("UNKNOWN_MACHINE", where, "there is no URDF {}; check the path", meant.file)
     robot = Urdf(path)
     base = meant.base or robot.bases()[0]
     tips = robot.tips(base) if base in robot.links else []
     for link in (base, meant.tip):
         if link is not None and link not in robot.links:
             known = ", ".join(robot.links)
-            raise InputError("BAD_URDF", where, "{} has no link {!r}; it has {}", path.name, link, known)
+            raise InputError("BAD_URDF", where, "{} has no link {!r}; name one of {}", path.name, link, known)
     if meant.tip is None and not tips:
         raise InputError("BAD_URDF", where, "no joint of {} moves anything against {!r}; name another link as base",
                          path.name, base)

@@ -63,7 +63,7 @@ class Urdf:
             raise InputError(CODE, self.path.name, "this is xacro; make a URDF of it first, with the program xacro of ROS")
         self.top = urdf_xml.read(self.path)
         if self.top.tag != "robot":
-            raise self.top.bad(Text("this is <{}>, not the <robot> of a URDF", self.top.tag))
+            raise self.top.bad(Text("this is <{}>, not the <robot> of a URDF; choose the URDF of a robot", self.top.tag))
         # what xacro wrote may still name its namespace
         if any(child.tag.startswith("xacro:") for child in self.top.children):
             raise self.top.bad("this is xacro; make a URDF of it first, with the program xacro of ROS")
@@ -74,7 +74,7 @@ class Urdf:
             for end in ("parent", "child"):
                 link = joint.one(end).text("link")
                 if link not in self.links:
-                    raise joint.one(end).bad(Text("there is no link {!r}", link))
+                    raise joint.one(end).bad(Text("there is no link {!r}; name one that is there", link))
             child = joint.one("child").text("link")
             if child in self.parent:
                 raise joint.bad(Text("the link {!r} is moved by {!r} already", child, self.parent[child].text("name")))
@@ -85,10 +85,11 @@ class Urdf:
         for element in self.top.all(tag):
             name = element.text("name")
             if name in found:
-                raise element.bad(Text("there is a {} {!r} already, in line {}", tag, name, found[name].line))
+                raise element.bad(Text("there is a {} {!r} already, in line {}; rename one of the two", tag, name,
+                                       found[name].line))
             found[name] = element
         if not found:
-            raise self.top.bad(Text("there is no <{}>", tag))
+            raise self.top.bad(Text("there is no <{}>; choose the URDF of a robot", tag))
         return found
 
     def bases(self) -> list[str]:
@@ -162,7 +163,8 @@ class Urdf:
         while link in self.parent:
             link = self.parent[link].one("parent").text("link")
             if link in found:
-                raise self.parent[link].bad(Text("the link {!r} carries itself", link))
+                raise self.parent[link].bad(Text("the link {!r} carries itself; correct parent and child of its joints",
+                                                 link))
             found.append(link)
         return found
 

@@ -139,7 +139,7 @@ def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
     if not (run & motion.deposit).any() or not ((motion.layer == start.layer) & (motion.bead == start.bead)).any():
         raise InputError(
             "START_AT", "program.start_at",
-            "there is no bead {} in a layer {}; the job has layers 0 to {}", start.bead, start.layer, motion.layer.max(),
+            "there is no bead {} in a layer {}; choose from layers 0 to {}", start.bead, start.layer, motion.layer.max(),
         )
     first = int(np.flatnonzero(run)[0])
     ahead = np.arange(len(motion)) < first + int(motion.deposit[first:].argmax())

@@ -78,7 +78,7 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     header = [] if not lines else next(csv.reader(lines[:1]))
     missing = [column for column in COLUMNS if column not in header]
     if missing:
-        raise InputError("BAD_TABLE", path.name, "it has no column {}; its first line names {}", missing[0],
+        raise InputError("BAD_TABLE", path.name, "it has no column {}; name in its first line {}", missing[0],
                          ", ".join(COLUMNS))
     table = np.array([
         [_number(row, column, row_name(path.name, number, numbers)) for column in COLUMNS] for number, row in enumerate(rows)

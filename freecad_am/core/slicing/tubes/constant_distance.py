@@ -69,8 +69,8 @@ def _asked(offset: Offset, v: Array, height: float, label: str) -> Places:
     if (places.run < 0).any():
         where = v[np.flatnonzero(places.run < 0)[0]]
         raise InputError(
-            "LAYER_HEIGHT", label, "no point of the wall at v = {:.4g} lies {:g} mm from the layer below: the layer height "
-            "must stay below the wall's smallest radius of curvature", where, height,
+            "LAYER_HEIGHT", label, "no point of the wall at v = {:.4g} lies {:g} mm from the layer below; keep the layer "
+            "height below the wall's smallest radius of curvature", where, height,
         )
     return places
 

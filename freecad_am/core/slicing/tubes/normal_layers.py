@@ -85,8 +85,8 @@ def _in_plane(surface: Surface, v: Array, start: float, origin: Array, normal: A
             break
     if not np.isfinite(u).all() or np.abs((surface.point(u, v) - origin) @ normal).max() > 1e-6:
         raise InputError(
-            "NOT_NORMAL", label, "the planes normal to its centreline do not cut it in one curve each; such layers are not "
-            "for this wall",
+            "NOT_NORMAL", label, "the planes normal to its centreline do not cut it in one curve each; choose other "
+            "layers for this wall",
         )
     u[-1] = u[0]
     _, along, around = surface.derivatives(u, v)
