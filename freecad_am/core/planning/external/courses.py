@@ -10,7 +10,7 @@ import numpy as np
 from ...kinematics.cell import Cell
 from ...kinematics.external import ExternalAxes
 from ...kinematics.inverse import rotary_pair
-from ...types import Array
+from ...types import Array, Index
 from ..reserve import RESERVE
 from ..turns import rotary_courses
 
@@ -54,12 +54,9 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
 def chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
     """Of all courses and whole turns the one within the limits that moves least, then the one that starts nearest to the
     values before (k,)."""
-    own = cell.robot.chain.axes
-    assert cell.external is not None
-    turned = own + cell.external.turned
-    lower, upper = cell.limits.lower[turned] + RESERVE, cell.limits.upper[turned] - RESERVE
-    speed, start = cell.machine.max_speed[turned], before
-    before = start[cell.external.turned]
+    rows, lower, upper = limits_of(cell)
+    speed, start = cell.machine.max_speed[cell.robot.chain.axes + rows], before
+    before = start[rows]
     ranked = []
     for course in courses:
         moved = rotary_courses.in_turns(course, before, lower, upper)
@@ -68,5 +65,13 @@ def chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
         ranked.append((max(over, 0.0), round(motion, 6), float((np.abs(moved[0] - before) / speed).max()), moved))
     best = min(range(len(ranked)), key=lambda k: ranked[k][:3])
     values = np.tile(start, (len(ranked[best][3]), 1))
-    values[:, cell.external.turned] = ranked[best][3]
+    values[:, rows] = ranked[best][3]
     return values
+
+
+def limits_of(cell: Cell) -> tuple[Index, Array, Array]:
+    """Which of the external values turn the part, and their limits (k,), the reserve taken off."""
+    assert cell.external is not None
+    rows = cell.external.turned
+    axes = cell.robot.chain.axes + rows
+    return rows, cell.limits.lower[axes] + RESERVE, cell.limits.upper[axes] - RESERVE

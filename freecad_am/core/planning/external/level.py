@@ -20,11 +20,11 @@ from ...kinematics.external import ExternalAxes, tilt_from
 from ...toolpath import Bead, Toolpath
 from ...types import Array
 from ..joint_path import BeadPath, JointPath
-from ..turns.unwrap import seam_notes
+from ..turns.unwrap import is_otherwise, seam_notes
 from . import courses, stroke
 from .courses import middle, on_face
+from .stroke import ROUNDING
 
-ROUNDING = 1e-9
 Place = tuple[int, int]
 Levelled = tuple[list[Bead], list[Place], list[Issue]]
 
@@ -72,7 +72,7 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
             before = one.external[-1]
         done += held
         places += [(layer, index)] * len(held)
-        if len(held) > 1 or held[0].points[0].tolist() != bead.points[0].tolist():
+        if is_otherwise(bead, held):
             helped[len(held) > 1].append(layer)
     return done, places, [*issues, *seam_notes(*helped)]
 

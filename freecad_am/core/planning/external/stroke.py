@@ -22,7 +22,7 @@ from ...kinematics.external import ExternalAxes, tilt_from
 from ...toolpath import Bead
 from ...types import Array, Index, Mask
 from ..reserve import RESERVE
-from .courses import chosen, middle, on_face, upright
+from .courses import chosen, limits_of, middle, on_face, upright
 
 ROUNDING = 1e-9
 ROUNDS = 6  # of points between those of a bead
@@ -32,7 +32,7 @@ WAITS = RESERVE
 
 def lacks(cell: Cell, values: Array, whole_turns: bool = False) -> bool:
     """Whether an axis is out of its limits at some of the values (n, k): one that has less than a whole turn, or any."""
-    rows, lower, upper = _limits(cell)
+    rows, lower, upper = limits_of(cell)
     over = np.maximum(lower - values[:, rows], values[:, rows] - upper)
     return bool((over[:, whole_turns | (upper - lower < TURN)] > ROUNDING).any())
 
@@ -113,7 +113,7 @@ def runs_on(cell: Cell, bead: Bead, most: float, overlap: float) -> bool:
 def waiting(cell: Cell, values: Array, on: Array) -> Array:
     """Values (m, k) with which a bead runs on over its beginning, on (m, k) there: the same, or where that leaves the limits
     of an axis, whole turns aside, those of its end: there the axes wait. values: (n, k) of the bead."""
-    rows, lower, upper = _limits(cell)
+    rows, lower, upper = limits_of(cell)
     turned = on[:, rows] + TURN * np.round((values[-1, rows] - values[0, rows]) / TURN)
     every = np.concatenate([values[:, rows], turned])
     fewest = np.ceil((lower - every.min(axis=0)) / TURN - ROUNDING)
@@ -138,7 +138,7 @@ class _Ways:
 
     @classmethod
     def along(cls, cell: Cell, bead: Bead, most: float) -> _Ways:
-        external, (rows, lower, upper) = cell.external, _limits(cell)
+        external, (rows, lower, upper) = cell.external, limits_of(cell)
         assert external is not None
         once = on_face(cell, bead.tool)
         directions = np.concatenate([once[:-1], once[:-1], once]) if bead.closed else once
@@ -218,14 +218,6 @@ def _run_on(bead: Bead, start: int, overlap: float) -> int:
         return 0
     along = np.cumsum(np.roll(lengths(np.diff(bead.points, axis=0)), -start))
     return 1 + int(np.searchsorted(along[:-1], overlap))
-
-
-def _limits(cell: Cell) -> tuple[Index, Array, Array]:
-    """Which of the external values turn the part, and their limits (k,), the reserve taken off."""
-    assert cell.external is not None
-    rows = cell.external.turned
-    axes = cell.robot.chain.axes + rows
-    return rows, cell.limits.lower[axes] + RESERVE, cell.limits.upper[axes] - RESERVE
 
 
 def _turned(course: Array, lower: Array, upper: Array) -> Iterator[Array]:

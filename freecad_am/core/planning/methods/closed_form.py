@@ -23,7 +23,7 @@ from ..joint_path import BeadPath
 from ..reserve import RESERVE
 from ..task import Task
 from ..turns import directed
-from ..turns.unwrap import seam_notes
+from ..turns.unwrap import is_otherwise, seam_notes
 
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
@@ -61,7 +61,7 @@ def plan(
         progress(number / len(beads), Text("bead {} of {}", number + 1, len(beads)))
         index = index if paths and paths[-1].layer == layer else 0
         runs = _within_stroke(task, bead, before)
-        if len(runs) > 1 or runs[0].bead.points[0].tolist() != bead.points[0].tolist():
+        if is_otherwise(bead, [run.bead for run in runs]):
             helped[len(runs) > 1].append(layer)
         for run in runs:
             paths.append(_path(task, run, (layer, index)))

@@ -9,6 +9,7 @@ has not even the stroke for a full turn, the bead is split.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -139,6 +140,11 @@ def _cut(along: Array, rising: bool, low: float, high: float) -> list[slice]:
 def is_spiral(bead: Bead) -> bool:
     """True for an open bead that runs more than one turn about the axis."""
     return not bead.closed and abs(bead.parameter[-1] - bead.parameter[0]) > 1.01 * TURN
+
+
+def is_otherwise(bead: Bead, pieces: Sequence[Bead]) -> bool:
+    """Whether a bead is laid from another seam, or in several pieces."""
+    return len(pieces) > 1 or bool((pieces[0].points[0] != bead.points[0]).any())
 
 
 def seam_notes(moved: list[int], split: list[int]) -> list[Issue]:

@@ -10,7 +10,7 @@ from ...parameters.bead_classes import CLASSES
 from ...parameters.process import ProcessParameters
 from ...toolpath import Toolpath
 from .bead_model import BeadModel
-from .wire_taken import by_wire, taken_of
+from .wire_taken import by_wire, follows_speed, taken_of
 
 AUTO, CODE = "auto", "FEED_BALANCE"
 TOLERANCE = 0.1  # of what beads take; a wire that feeds more or less by no more than this balances
@@ -65,7 +65,7 @@ def _of_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     """The toolpath with an issue where classes of beads, or their starts and ends, have travel speeds of their own at which
     the wire does not balance, and no schedule of their own that could feed it otherwise."""
     given = (toolpath.wire_feed or 0.0) * process.wire.section
-    if given == 0.0 or not _at_other_speeds(process) or any(bead.wire_share is not None for _, _, bead in toolpath):
+    if given == 0.0 or not _at_other_speeds(process) or follows_speed(toolpath):
         return toolpath
     off = [one for one in taken_of(toolpath) if by_wire(one, process) and abs(given - one.rate) > TOLERANCE * one.rate]
     if not off:

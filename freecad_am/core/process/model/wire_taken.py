@@ -53,11 +53,16 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
     known = [one for one in taken_of(toolpath) if by_wire(one, process)]
     if not known or given == 0.0:
         return None
-    follows = any(bead.wire_share is not None for _, _, bead in toolpath)  # the travel speed: so many mm3 to a mm
+    follows = follows_speed(toolpath)  # so many mm3 to a mm
     return max((
         (abs((given / process.travel_speed / one.section if follows else given / one.rate) - 1.0), one.layer, one.bead)
         for one in known
     ), key=lambda found: found[0])
+
+
+def follows_speed(toolpath: Toolpath) -> bool:
+    """Whether the wire follows the travel speed along a bead."""
+    return any(bead.wire_share is not None for _, _, bead in toolpath)
 
 
 def taken_of(toolpath: Toolpath) -> list[Taken]:
