@@ -9062,11 +9062,6 @@
         <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>its first axis slides and carries the six that turn, as a track does; let the machine begin with the robot, and name the track in `cell.external` with `carries: robot`</source>
-        <translation>son premier axe coulisse et porte les six qui tournent, comme un rail ; faites commencer la machine au robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>its function is called {0}</source>
         <translation>sa fonction s&apos;appelle {0}</translation>
@@ -12078,8 +12073,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
-        <source>there are {}; enter at least {}, for a machine without them is not loaded</source>
-        <translation>il y en a {} ; saisissez-en au moins {}, car une machine sans elles n&apos;est pas chargée</translation>
+        <source>there are {}; at least {} are needed, for a machine without them is not loaded; enter more</source>
+        <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée ; saisissez-en d&apos;autres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
@@ -12265,6 +12260,11 @@
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>this and most other lines are not points; give rows of x y z</source>
         <translation>celle-ci et la plupart des autres lignes ne sont pas des points ; donnez des lignes de x y z</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>this cannot be planned for: its first axis slides and carries the six that turn, as a track does; let the machine begin with the robot, and name the track in `cell.external` with `carries: robot`</source>
+        <translation>on ne peut pas planifier pour cela : son premier axe coulisse et porte les six qui tournent, comme un rail ; faites commencer la machine au robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -13778,8 +13778,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>{0} is not the name of its file, {1}; rename it</source>
-        <translation>{0} n&apos;est pas le nom de son fichier, {1} ; renommez-le</translation>
+        <source>{0} is not the name of the file, {1}; rename it</source>
+        <translation>{0} n&apos;est pas le nom du fichier, {1} ; renommez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>

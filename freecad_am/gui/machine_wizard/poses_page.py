@@ -158,8 +158,8 @@ class PosesPage(Page):
         draft = self.owner.draft
         values, poses, rows = self._entered(whole=True)
         if len(rows) < LEAST:
-            raise InputError("NO_POSES", tr("Check poses"), tr("there are {}; enter at least {}, for a machine without "
-                             "them is not loaded").format(len(rows), LEAST))
+            raise InputError("NO_POSES", tr("Check poses"), tr("there are {}; at least {} are needed, for a machine without "
+                             "them is not loaded; enter more").format(len(rows), LEAST))
         if not np.isclose(values, draft.shown.zeros, atol=1e-9).all(axis=1).any():
             raise InputError("NO_POSES", tr("Check poses"), tr("the pose at the serial zeros is missing; enter it too"))
         if np.ptp(values, axis=0).min() < 1.0:

@@ -57,8 +57,9 @@ def recognise(chain: Chain) -> OpwArm:
     if chain.axes != 6 or chain.sliding.any():
         slides = int(chain.sliding.sum())
         if track_of(chain):
-            raise refused("its first axis slides and carries the six that turn, as a track does; let the machine begin with "
-                          "the robot, and name the track in `cell.external` with `carries: robot`")
+            raise InputError("NO_CLOSED_FORM", "geometry", "this cannot be planned for: its first axis slides and carries "
+                             "the six that turn, as a track does; let the machine begin with the robot, and name the track "
+                             "in `cell.external` with `carries: robot`")
         raise refused(Text("it has {} axes, {} of which slide; a robot that can be planned has six that turn", chain.axes,
                            slides))
     at_rest = chain.frames(np.zeros(6))

@@ -181,7 +181,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
     path = file_of(text, folders)
     machine = _built_in(path, located(path).stat().st_mtime_ns) if path.parent == BUILT_IN else _parse(read(path))
     if machine.id != text:
-        raise InputError("BAD_MACHINE", f"{path}: id", "{!r} is not the name of its file, {!r}; rename it", machine.id, text)
+        raise InputError("BAD_MACHINE", f"{path}: id", "{!r} is not the name of the file, {!r}; rename it", machine.id, text)
     return machine
 
 
