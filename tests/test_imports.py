@@ -17,6 +17,7 @@ OURS = {
     "core/issues": set(),
     "core/program": set(),
     "core/controller": set(),
+    "core/orientation": {"core/geometry"},
     "core/read_moves": set(),
     "core/motion": set(),
     "core/one_thread": set(),
@@ -50,7 +51,7 @@ OURS = {
         "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/process", "core/kinematics", "core/motion",
         "core/simulation", "core/strategies",
     },
-    "posts": {"core/issues", "core/controller", "core/program", "core/read_moves"},
+    "posts": {"core/issues", "core/controller", "core/orientation", "core/program", "core/read_moves"},
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},
     "read_back": {
         "core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "core/read_moves", "kdl",

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 from ..core.controller import Controller
 from ..core.issues import InputError
+from ..core.orientation import Pendant
 from ..core.program import Program
 from ..core.read_moves import ReadMoves
 
@@ -18,12 +19,14 @@ NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb", "kuk
 
 
 class Post(Protocol):
-    """What a post module offers. CONTROLLER: what planning must know of the controller. NO_WIRE: why programs cannot tell
-    the speed of the wire along a bead, '' where they can. NO_SCHEDULE: why it cannot be told schedules, by the ways
-    ('output', 'arc') in which it cannot. NO_WEAVE: why beads cannot be woven, '' where they can. MOVE_LINE: how a line
-    begins that tells a move, or, in a loop, several. ON_CONTROLLER: what only the controller can show."""
+    """What a post module offers. CONTROLLER: what planning must know of the controller. PENDANT: how its pendant shows
+    frames, None where it shows axes alone. NO_WIRE: why programs cannot tell the speed of the wire along a bead, '' where
+    they can. NO_SCHEDULE: why it cannot be told schedules, by the ways ('output', 'arc') in which it cannot. NO_WEAVE: why
+    beads cannot be woven, '' where they can. MOVE_LINE: how a line begins that tells a move, or, in a loop, several.
+    ON_CONTROLLER: what only the controller can show."""
 
     CONTROLLER: Controller
+    PENDANT: Pendant | None
     NO_WIRE: str
     NO_SCHEDULE: Mapping[str, str]
     NO_WEAVE: str

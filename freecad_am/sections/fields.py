@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from ..core.issues import InputError, Text, Word
 from ..core.parameters import field as f
-from ..core.parameters import pendant
+from ..objects.fields import pendants
 from . import quantity
 
 Parameters = TypeVar("Parameters")
@@ -96,7 +96,7 @@ def _is_pose(spec: f.Spec, field: dataclasses.Field[Any]) -> bool:
 def as_shown(value: Any, key: str) -> tuple[float, float, float, float, float, float] | None:
     """The pose that a text or list says as a pendant shows it, mm and rad: kuka 1000 0 300 90 0 0; None of other values."""
     words = value.split() if isinstance(value, str) else list(map(str, value)) if isinstance(value, list) else []
-    return pendant.six(words, key) if pendant.named(words) else None
+    return pendants.six(words, key) if pendants.named(words) else None
 
 
 def _plain(spec: f.Spec, value: Any, key: str) -> Any:

@@ -10387,7 +10387,7 @@
         <translation>proportionnelle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/pendant.py"/>
+        <location filename="../../freecad_am/objects/fields/pendants.py"/>
         <source>q1 to q4 are together {0} long, a quaternion is 1; look at the digits</source>
         <translation>q1 à q4 ont ensemble une longueur de {0}, un quaternion en a une de 1 ; vérifiez les chiffres</translation>
     </message>
@@ -11652,7 +11652,7 @@
         <translation>la rotation autour de l&apos;axe de l&apos;outil serait de {0} deg, hors de la plage permise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/pendant.py"/>
+        <location filename="../../freecad_am/objects/fields/pendants.py"/>
         <source>the rotation vector is {0} rad long, more than a turn; give RX RY RZ in rad, as the pendant shows them</source>
         <translation>le vecteur de rotation a une longueur de {0} rad, plus d&apos;un tour ; donnez RX RY RZ en rad, comme le pupitre les affiche</translation>
     </message>
@@ -13527,7 +13527,7 @@
         <translation>{0} n&apos;est pas une pose ; donnez x y z en mm et RX RY RZ en deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/pendant.py"/>
+        <location filename="../../freecad_am/objects/fields/pendants.py"/>
         <source>{0} is not a pose; write such as: {1} X Y Z {2}</source>
         <translation>{0} n&apos;est pas une pose ; écrivez par exemple : {1} X Y Z {2}</translation>
     </message>

@@ -39,6 +39,4 @@ def test_no_other_room_names_a_controller():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, ast.Constant) and node.value in catalogue.NAMES
     }
-    # which figures the pendants of makers show for a frame is read with a cell, where no post is at hand yet
-    named = {(file, name) for file, name in named if file not in ("core/parameters/pendant.py", "gui/widgets/pendant.py")}
     assert named == {("core/parameters/program.py", "fanuc")}

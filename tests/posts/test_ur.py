@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
+from freecad_am.core.orientation import ROTATION_VECTOR
 from freecad_am.core.program import (
     Call,
     DepositOff,
@@ -217,7 +218,7 @@ def test_rotations_of_half_a_turn_and_of_none():
     for axis in np.eye(3)[[0, 1, 2]], np.array([[0.6, 0.0, 0.8], [-0.6, 0.8, 0.0]]):
         for angle in (0.0, 1e-9, 1e-4, 3.0, np.pi - 1e-7, np.pi):
             given = np.array([rotated(angle * one) for one in axis])
-            vectors = ur.numbers.rotation_vectors(given)
+            vectors = ROTATION_VECTOR.numbers(given)
             np.testing.assert_allclose([rotated(vector) for vector in vectors], given, atol=1e-8)
             assert np.linalg.norm(vectors, axis=1).max() <= np.pi + 1e-12
 

@@ -75,7 +75,7 @@ class CellParameters:
     external: str = f.parameter(
         NO_AXES, f.TEXT, "Robots: axes beside them that carry the part or the robot, such as: motoman-motopos-d500 at "
         "1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot's base frame; "
-        "more than one with ; between.", advanced=True,
+        "more than one with ; between.", advanced=True, poses=True,
     )
     world_up: str = f.parameter(
         "0 0 1", f.TEXT, "Against gravity, as x y z in the world.", advanced=True,

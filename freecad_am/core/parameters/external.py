@@ -8,7 +8,6 @@ import re
 from dataclasses import dataclass
 
 from ..issues import InputError
-from . import pendant
 
 Pose = tuple[float, float, float, float, float, float]
 
@@ -56,8 +55,6 @@ def _external(text: str) -> External:
     if found is None:
         raise InputError("BAD_VALUE", WHERE, "{!r} names no external axes; {}", text, _FORM)
     words = found["pose"].replace(",", " ").split()
-    if pendant.named(words):
-        return External(found["machine"], pendant.six(words, WHERE), found["carries"])
     try:
         numbers = [float(word) for word in words]
     except ValueError:

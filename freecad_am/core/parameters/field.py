@@ -32,7 +32,7 @@ class Spec:
     `low` and `high` are in inner units and belong to the allowed range unless `open_low`.
     `optional` parameters may be None. `words` are texts allowed in place of a number (such as 'auto').
     `advanced` parameters are folded away in a panel. `unit` is that of a NUMBER, or of a TEXT of numbers, that has one
-    unit alone: panels tell it.
+    unit alone: panels tell it. `poses`: a TEXT says where things stand, which may be typed as a pendant shows it.
     """
 
     kind: str
@@ -45,6 +45,7 @@ class Spec:
     optional: bool = False
     advanced: bool = False
     unit: str = ""
+    poses: bool = False
 
 
 def parameter(default: Any, kind: str, help: str, **more: Any) -> Any:

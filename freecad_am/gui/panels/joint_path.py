@@ -13,6 +13,7 @@ import numpy as np
 from ...core.issues import ERROR, InputError, Issue
 from ...core.kinematics import cell as cells
 from ...core.kinematics.machines import machine as machines
+from ...core.parameters.cell import CellParameters
 from ...core.parameters.external import externals
 from ...core.parameters.joints import LEVEL
 from ...core.planning.joint_path import JointPath as JointsOfBeads
@@ -79,7 +80,7 @@ class JointPathPanel(PreviewPanel):
                 return
             method = self.places[METHOD][0].value
             others = {name for one, names in _OF_METHODS.items() if one != method for name in names}
-            if not externals(cell.External):
+            if not externals(cell.Proxy.parameters(cell, CellParameters).external):
                 others.add("external_axes")
             self.leave_out({_place(name) for name in (*_OF_ROTARY_AXES, *others)})
 

@@ -11,14 +11,9 @@ from typing import Any
 from PySide import QtGui
 
 from ...core.issues import InputError
-from ...core.parameters import pendant
+from ...objects.fields import pendants
 from ..colours import WRONG
 from ..texts.translation import tr, translated
-
-MAKERS = {
-    "abb": "ABB", "fanuc": "FANUC", "kuka": "KUKA", "staubli": "Stäubli", "ur": "Universal Robots", "yaskawa": "Yaskawa",
-}
-DIGITS = {"abb": 7, "ur": 6}  # of what turns; of degrees four
 
 
 class PendantLine:
@@ -31,8 +26,8 @@ class PendantLine:
         self.choice.setObjectName(f"{name}Pendant")
         self.line.setObjectName(f"{name}Shown")
         self.choice.addItem(tr("as on the pendant of"), "")
-        for controller, maker in MAKERS.items():
-            self.choice.addItem(maker, controller)
+        for controller, pendant in pendants.pendants().items():
+            self.choice.addItem(pendant.maker, controller)
         self.choice.setToolTip(tr("Type the pose as this controller's pendant shows it, X Y Z in mm first"))
         self.line.hide()
         self.choice.currentIndexChanged.connect(lambda *_: self.tell())
@@ -45,13 +40,14 @@ class PendantLine:
         self._wrong("")
         if not controller:
             return
-        self.line.setPlaceholderText(" ".join(("X", "Y", "Z", *pendant.SHOWN[controller])))
+        pendant = pendants.pendants()[controller]
+        self.line.setPlaceholderText(" ".join(("X", "Y", "Z", *pendant.letters)))
         self.line.clear()
         with contextlib.suppress(InputError, TypeError, ValueError):  # a field holds an expression, or nothing
             x, y, z, *angles = self.read()
-            numbers = pendant.shown(controller, (x, y, z, *map(math.radians, angles)))
+            numbers = pendants.shown(controller, (x, y, z, *map(math.radians, angles)))
             text = " ".join(
-                f"{number + 0.0:.{3 if k < 3 else DIGITS.get(controller, 4)}f}" for k, number in enumerate(numbers))
+                f"{number + 0.0:.{3 if k < 3 else pendant.digits}f}" for k, number in enumerate(numbers))
             self.line.setText(text.replace(".", str(self.line.locale().decimalPoint())))
         self.put = self.line.text()
         self.line.setCursorPosition(0)
@@ -64,7 +60,7 @@ class PendantLine:
         try:
             point = str(self.line.locale().decimalPoint())
             words = self.line.text().replace(point, ".").replace(",", " ").split()
-            pose = pendant.six([controller, *words], self.name)
+            pose = pendants.six([controller, *words], self.name)
         except InputError as error:
             self._wrong(translated(error.message))
             return

@@ -17,7 +17,7 @@ import FreeCAD as App
 
 from ...core.issues import InputError, Text, Word
 from ...core.parameters import field as f
-from ...core.parameters import pendant
+from . import pendants
 
 TEXT_LIST, MIXED, LENGTH_OR_POSE = "text list", "mixed", "length or pose"
 ENDS = ("low", "high")
@@ -92,7 +92,7 @@ class Row:
         if isinstance(value, str) and value.strip() in self.spec.words:
             return value.strip()
         if self.spec.kind in (f.TEXT, f.CHOICE, f.FLAG):
-            return value
+            return pendants.plain(value, where) if self.spec.poses and isinstance(value, str) else value
         if self.spec.kind == f.POSE:
             return _pose(value, where)
         return _number(self.spec, value, where)
@@ -269,8 +269,8 @@ def _pose(value: Any, where: str) -> tuple[float, ...]:
 
         return pose_of(value)
     numbers = split(value, where) if isinstance(value, str) else list(value)
-    if pendant.named([one for one in numbers if isinstance(one, str)]):
-        return pendant.six([str(one) for one in numbers], where)
+    if pendants.named([one for one in numbers if isinstance(one, str)]):
+        return pendants.six([str(one) for one in numbers], where)
     try:
         floats = [float(number) for number in numbers]
     except (TypeError, ValueError):

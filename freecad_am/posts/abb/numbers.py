@@ -15,6 +15,7 @@ import numpy as np
 from freecad_am.core.types import Array, Mask
 
 from ...core.issues import InputError
+from ...core.orientation import MOVING_XYZ, QUATERNION
 from ...core.program import DEPOSIT, LINEAR_MOVE, Moves, Program, Six
 from ..parts import place
 from ..refusals import speeds_within
@@ -52,17 +53,7 @@ def positions(position: Array) -> Array:
 def quaternions(rotation: Array) -> Array:
     """(n, 4) w x y z of rotations (n, 3, 3), as the text has them: of the two that there are, the one whose first number
     that is not 0 is positive."""
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation.transpose(1, 2, 0)
-    # each row is the quaternion times four times one of its numbers; the largest of these is told best
-    rows = np.array([
-        [1.0 + xx + yy + zz, zy - yz, xz - zx, yx - xy],
-        [zy - yz, 1.0 + xx - yy - zz, yx + xy, xz + zx],
-        [xz - zx, yx + xy, 1.0 - xx + yy - zz, zy + yz],
-        [yx - xy, xz + zx, zy + yz, 1.0 - xx - yy + zz],
-    ])
-    largest = np.argmax(np.einsum("iin->in", rows), axis=0)
-    found = rows[largest, :, np.arange(len(rotation))]
-    found = np.round(found / np.linalg.norm(found, axis=1, keepdims=True), TURN_DECIMALS)
+    found = np.round(QUATERNION.numbers(rotation), TURN_DECIMALS)
     first = found[np.arange(len(found)), np.argmax(found != 0.0, axis=1)]
     signed: Array = np.where(first[:, None] < 0.0, -found, found) + 0.0
     return signed
@@ -71,12 +62,7 @@ def quaternions(rotation: Array) -> Array:
 def pose(six: Six | None) -> Pose:
     """A frame given as X Y Z mm, RX RY RZ rad, of which R = Rx Ry Rz; none is that of all zeros."""
     x, y, z, rx, ry, rz = (0.0,) * 6 if six is None else six
-    (sx, cx), (sy, cy), (sz, cz) = ((math.sin(angle), math.cos(angle)) for angle in (rx, ry, rz))
-    rotation = np.array([[
-        [cy * cz, -cy * sz, sy],
-        [cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy],
-        [sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy],
-    ]])
+    rotation = MOVING_XYZ.rotations(np.array([[rx, ry, rz]]))
     return Pose(tuple(positions(np.array([x, y, z])).tolist()), tuple(quaternions(rotation)[0].tolist()))
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...core.controller import Controller
 from ...core.issues import InputError
+from ...core.orientation import QUATERNION, Pendant
 from ...core.program import (
     LINEAR_MOVE,
     Block,
@@ -50,6 +51,7 @@ __all__ = ["read", "write"]
 LAST_ANALOGUE = 4096
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(external=True, positioner="STN1", whole_beads=True, straight_in_part=True)
+PENDANT = Pendant("ABB", ("q1", "q2", "q3", "q4"), QUATERNION, 7)
 NO_WIRE = "an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried"
 NO_WEAVE = "a weave is an argument of ArcL, which runs at the speed of its welddata while the arc burns, so far as is known"
 NO_SCHEDULE = {

@@ -8,6 +8,7 @@ import numpy as np
 from freecad_am.core.types import Array
 
 from ...core.issues import InputError
+from ...core.orientation import FIXED_XYZ
 from ...core.program import RAPID, Moves
 from ..parts import place
 from ..refusals import speeds_within
@@ -63,18 +64,7 @@ def within_half_turn(degrees: Array) -> Array:
 
 def poses(position: Array, rotation: Array) -> Array:
     """X Y Z in mm and W P R in degrees, 3 decimals, (n, 6). The rotation (n, 3, 3) is Rz(R) Ry(P) Rx(W)."""
-    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
-    rotation = np.array(rotation.transpose(1, 2, 0), order="C").transpose(2, 0, 1)
-    across = np.hypot(rotation[:, 0, 0], rotation[:, 1, 0])
-    upright = across > 1e-9  # else only the sum or difference of W and R counts, and W is 0
-    w = np.where(upright, np.arctan2(rotation[:, 2, 1], rotation[:, 2, 2]), 0.0)
-    p = np.arctan2(-rotation[:, 2, 0], across)
-    r = np.where(
-        upright,
-        np.arctan2(rotation[:, 1, 0], rotation[:, 0, 0]),
-        np.arctan2(-rotation[:, 0, 1], rotation[:, 1, 1]),
-    )
-    angles = within_half_turn(np.round(np.degrees(np.stack((w, p, r), axis=1)), 3))
+    angles = within_half_turn(np.round(np.degrees(FIXED_XYZ.numbers(rotation)), 3))
     return np.hstack((np.round(position, 3), angles)) + 0.0
 
 

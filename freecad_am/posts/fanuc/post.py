@@ -16,6 +16,7 @@ import numpy as np
 
 from ...core.controller import Controller
 from ...core.issues import InputError, Text, Word
+from ...core.orientation import FIXED_XYZ, Pendant
 from ...core.program import (
     FIRST_SHARE,
     LINEAR_MOVE,
@@ -56,6 +57,7 @@ __all__ = ["read", "write"]
 LAST_ANALOGUE = 25  # analogue inputs
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(external=True, positioner="2")
+PENDANT = Pendant("FANUC", ("W", "P", "R"), FIXED_XYZ)
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 NO_WEAVE = ""  # linear moves can be woven
 LAST_WEAVE = 255  # of numbers of weave schedules

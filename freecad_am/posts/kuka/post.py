@@ -14,6 +14,7 @@ import numpy as np
 
 from ...core.controller import Controller
 from ...core.issues import InputError
+from ...core.orientation import MOVING_XYZ, MOVING_ZYX, Pendant
 from ...core.program import Block, Call, DepositOff, DepositOn, LayerStart, Program, Schedule, Wait, WaitInput
 from ..names import Naming
 from ..on_controller import on_controller
@@ -38,6 +39,7 @@ __all__ = ["read", "write"]
 NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found documented"
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(external=True, positioner="2")
+PENDANT = Pendant("KUKA", ("A", "B", "C"), MOVING_ZYX)
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
 NO_WEAVE = "ArcTech weaves by data that only the pendant makes"
 NO_SCHEDULE = {"arc": "instructions of ArcTech name weld data that only the pendant makes"}
@@ -162,7 +164,7 @@ def _own_remarks(program: Program) -> Iterator[str]:
            " nozzle:")
     for what, six in (("BASE", program.station), ("TOOL", program.carried)):
         if six is not None:
-            values = text.frames(np.array([six[:3]]), text.turned(six[3:])[None])[0]
+            values = text.frames(np.array([six[:3]]), MOVING_XYZ.rotations(np.array([six[3:]])))[0]
             yield what + "".join(f" {axis} {value:.3f}" for axis, value in zip("XYZABC", values.tolist(), strict=True))
     for axis in np.flatnonzero(program.slides).tolist():
         stands = f"the base of MACHINE_DEF[{program.unit}]" if program.on_positioner else "BASE_DATA"

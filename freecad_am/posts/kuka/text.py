@@ -12,6 +12,7 @@ import numpy as np
 from freecad_am.core.types import Array, Mask
 
 from ...core.issues import InputError
+from ...core.orientation import MOVING_ZYX
 from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 from ..names import plain
 from ..parts import place
@@ -61,26 +62,9 @@ def shown(joints: Array, slides: Mask) -> Array:
 
 def frames(position: Array, rotation: Array) -> Array:
     """X Y Z in mm and A B C in degrees, (n, 6), of positions (n, 3) and rotations (n, 3, 3) = Rz(A) Ry(B) Rx(C)."""
-    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
-    turn = np.array(rotation.transpose(1, 2, 0), order="C").transpose(2, 0, 1)
-    across = np.hypot(turn[:, 0, 0], turn[:, 1, 0])
-    upright = across > 1e-9  # else only the sum or difference of A and C counts, and A is 0
-    a = np.where(upright, np.arctan2(turn[:, 1, 0], turn[:, 0, 0]), 0.0)
-    b = np.arctan2(-turn[:, 2, 0], across)
-    c = np.where(upright, np.arctan2(turn[:, 2, 1], turn[:, 2, 2]), np.arctan2(-turn[:, 1, 2], turn[:, 1, 1]))
-    angles = np.round(np.degrees(np.stack((a, b, c), axis=1)), ANGLE_DECIMALS)
+    angles = np.round(np.degrees(MOVING_ZYX.numbers(rotation)), ANGLE_DECIMALS)
     values: Array = np.hstack((np.round(position, LENGTH_DECIMALS), angles)) + 0.0
     return values
-
-
-def turned(angles: Sequence[float]) -> Array:
-    """(3, 3) the rotation Rx Ry Rz of RX, RY, RZ in rad."""
-    (sx, cx), (sy, cy), (sz, cz) = ((math.sin(angle), math.cos(angle)) for angle in angles)
-    return np.array([
-        [cy * cz, -cy * sz, sy],
-        [cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy],
-        [sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy],
-    ])
 
 
 class Lines:

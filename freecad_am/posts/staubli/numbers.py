@@ -11,6 +11,7 @@ import numpy as np
 from freecad_am.core.types import Array
 
 from ...core.issues import InputError
+from ...core.orientation import MOVING_XYZ
 from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 from ..parts import place
 
@@ -29,16 +30,7 @@ def degrees(joints: Array) -> Array:
 
 def frames(position: Array, rotation: Array) -> Array:
     """X Y Z in mm and RX RY RZ in degrees, (n, 6), of positions (n, 3) and rotations (n, 3, 3) = Rx Ry Rz."""
-    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
-    rotation = np.array(rotation.transpose(1, 2, 0), order="C").transpose(2, 0, 1)
-    upright = np.hypot(rotation[:, 1, 2], rotation[:, 2, 2])
-    rx = np.where(upright > 1e-12, np.arctan2(-rotation[:, 1, 2], rotation[:, 2, 2]), 0.0)
-    sine, cosine = np.sin(rx), np.cos(rx)
-    # with the RX found, so that the three give the rotation back even where RX and RZ turn about one axis
-    rz = np.arctan2(
-        cosine * rotation[:, 1, 0] + sine * rotation[:, 2, 0], cosine * rotation[:, 1, 1] + sine * rotation[:, 2, 1]
-    )
-    angles = np.stack((rx, np.arctan2(rotation[:, 0, 2], upright), rz), axis=1)
+    angles = MOVING_XYZ.numbers(rotation)
     values: Array = np.hstack((np.round(position, LENGTH_DECIMALS), np.round(np.degrees(angles), ANGLE_DECIMALS))) + 0.0
     return values
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...core.controller import Controller
 from ...core.issues import InputError
+from ...core.orientation import MOVING_XYZ, Pendant
 from ...core.program import JOINT_MOVE, Block, Call, DepositOff, DepositOn, LayerStart, Program, Six, Wait, WaitInput
 from ..names import Naming
 from ..on_controller import on_controller
@@ -36,6 +37,7 @@ __all__ = ["read", "write"]
 NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(whole_beads=True)
+PENDANT = Pendant("Stäubli", ("Rx", "Ry", "Rz"), MOVING_XYZ)
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
 NO_WEAVE = "VAL 3 has no weave, so far as is documented"
 NO_SCHEDULE = {

@@ -8,6 +8,7 @@ import numpy as np
 from freecad_am.core.types import Array
 
 from ...core.issues import InputError
+from ...core.orientation import ROTATION_VECTOR
 from ...core.program import LINEAR_MOVE, RAPID, Moves, Program
 from ..parts import place
 
@@ -104,25 +105,5 @@ def _speeds(moves: Moves) -> Array:
 
 def poses(position: Array, rotation: Array) -> Array:
     """x y z in m and the rotation vector in rad, (n, 6), as the text has them, of mm (n, 3) and (n, 3, 3)."""
-    values: Array = np.round(np.hstack([0.001 * position, rotation_vectors(rotation)]), DECIMALS) + 0.0
+    values: Array = np.round(np.hstack([0.001 * position, ROTATION_VECTOR.numbers(rotation)]), DECIMALS) + 0.0
     return values
-
-
-def rotation_vectors(rotation: Array) -> Array:
-    """(n, 3) rad of rotations (n, 3, 3), none longer than half a turn; by the quaternion's largest part, which is sound
-    near half turns too."""
-    r = np.ascontiguousarray(rotation)
-    trace = r[:, 0, 0] + r[:, 1, 1] + r[:, 2, 2]
-    squares = np.stack([1.0 + trace, *(1.0 - trace + 2.0 * r[:, k, k] for k in range(3))], axis=1)
-    wx, wy, wz = r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]
-    xy, xz, yz = r[:, 1, 0] + r[:, 0, 1], r[:, 0, 2] + r[:, 2, 0], r[:, 2, 1] + r[:, 1, 2]
-    rows = np.stack([
-        np.stack([squares[:, 0], wx, wy, wz], axis=1), np.stack([wx, squares[:, 1], xy, xz], axis=1),
-        np.stack([wy, xy, squares[:, 2], yz], axis=1), np.stack([wz, xz, yz, squares[:, 3]], axis=1),
-    ], axis=1)  # fmt: skip
-    q = rows[np.arange(len(r)), np.argmax(squares, axis=1)]
-    q = q * np.where(q[:, :1] < 0.0, -1.0, 1.0) / np.linalg.norm(q, axis=1, keepdims=True)
-    sine = np.linalg.norm(q[:, 1:], axis=1)
-    turn = 2.0 * np.arctan2(sine, np.ascontiguousarray(q[:, 0]))
-    vectors: Array = q[:, 1:] * np.where(sine > 1e-12, turn / np.maximum(sine, 1e-300), 2.0)[:, None]
-    return vectors

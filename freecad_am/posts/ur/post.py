@@ -7,7 +7,6 @@ cannot load another file. What is written, what must be set on the controller an
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Sequence
 
@@ -17,6 +16,7 @@ from freecad_am.core.types import Array
 
 from ...core.controller import Controller
 from ...core.issues import InputError
+from ...core.orientation import MOVING_XYZ, ROTATION_VECTOR, Pendant
 from ...core.program import (
     LINEAR_MOVE,
     Block,
@@ -54,6 +54,7 @@ __all__ = ["read", "write"]
 AXES = 6
 # why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3)
+PENDANT = Pendant("Universal Robots", ("RX", "RY", "RZ"), ROTATION_VECTOR, 6)
 NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
 NO_WEAVE = "URScript has no weave of its own, so far as is documented"
 NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
@@ -180,11 +181,8 @@ def _frames(program: Program, tool_point: Array | None) -> list[str]:
 def _pose(six: Six | None) -> str:
     """X Y Z mm, RX RY RZ rad (Rx Ry Rz) as a pose of URScript."""
     x, y, z, rx, ry, rz = six or (0.0,) * 6
-    (a, b, c), (d, e, f) = ((math.cos(angle) for angle in (rx, ry, rz)), (math.sin(angle) for angle in (rx, ry, rz)))
-    rotation = np.array([
-        [b * c, -b * f, e], [a * f + d * e * c, a * c - d * e * f, -d * b], [d * f - a * e * c, d * c + a * e * f, a * b],
-    ])  # fmt: skip
-    return "p" + _JOINTS % tuple(numbers.poses(np.array([[x, y, z]]), rotation[None])[0].tolist())
+    rotation = MOVING_XYZ.rotations(np.array([[rx, ry, rz]]))
+    return "p" + _JOINTS % tuple(numbers.poses(np.array([[x, y, z]]), rotation)[0].tolist())
 
 
 def _instructions(program: Program, block: Block) -> list[str]:

@@ -9,8 +9,12 @@ from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import InputError
-from freecad_am.core.parameters import pendant
+from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.external import externals
+from freecad_am.objects.fields import pendants
+from freecad_am.objects.fields.rows import rows
+from freecad_am.posts.fanuc import numbers as tp
+from freecad_am.posts.kuka import text as krl
 
 
 def of(turn, controller):
@@ -22,17 +26,17 @@ def of(turn, controller):
     }[controller]()
 
 
-@pytest.mark.parametrize("controller", pendant.SHOWN)
+@pytest.mark.parametrize("controller", pendants.pendants())
 def test_what_scipy_says_is_read_and_shown(controller):
     turns = Rotation.random(200, random_state=3)
     for turn in [*turns, *Rotation.from_euler("x", [0.0, 180.0, 90.0], degrees=True)]:
         numbers = of(turn, controller)
-        found = pendant.six([controller, "10.5", "-20", "300", *(f"{number:.17g}" for number in numbers)], "here")
+        found = pendants.six([controller, "10.5", "-20", "300", *(f"{number:.17g}" for number in numbers)], "here")
         assert found[:3] == (10.5, -20.0, 300.0)
         assert np.abs(frames.bryant(found)[:3, :3] - turn.as_matrix()).max() < 1e-12
-        again = pendant.shown(controller, found)
+        again = pendants.shown(controller, found)
         assert again[:3] == found[:3]
-        back = pendant.six([controller, *(f"{number:.17g}" for number in again)], "here")
+        back = pendants.six([controller, *(f"{number:.17g}" for number in again)], "here")
         assert np.abs(frames.bryant(back)[:3, :3] - turn.as_matrix()).max() < 1e-9
         if controller == "abb":
             positive = numbers if numbers[0] >= 0.0 else -numbers
@@ -49,7 +53,7 @@ def test_what_scipy_says_is_read_and_shown(controller):
     ("staubli 0 0 0 90 90 0", [1, 0, 0]), ("staubli 0 0 0 90 0 90", [0, -1, 0]),
 ])
 def test_by_hand(text, z):
-    assert np.abs(frames.bryant(pendant.six(text.split(), "here"))[:3, 2] - z).max() < 1e-5
+    assert np.abs(frames.bryant(pendants.six(text.split(), "here"))[:3, 2] - z).max() < 1e-5
 
 
 @pytest.mark.parametrize(("text", "words"), [
@@ -58,10 +62,30 @@ def test_by_hand(text, z):
 ])
 def test_what_is_no_such_pose_is_told(text, words):
     with pytest.raises(InputError, match=words):
-        pendant.six(text.split(), "here")
+        pendants.six(text.split(), "here")
 
 
 def test_a_positioner_where_its_pendant_says():
-    (one,) = externals("motoman-motopos-d500 at 1100 60 -100 kuka 30 0 0 carries part")
-    (other,) = externals("motoman-motopos-d500 at 1100 60 -100 0 0 30 carries part")
-    assert np.allclose(one.pose, other.pose, atol=1e-12)
+    row = next(row for row in rows(CellParameters) if row.name == "External")
+    typed = "motoman-motopos-d500 at 1100 60 -100 kuka 30 0 0 carries part; track at abb, 0, 0, 5, 1, 0, 0, 0 carries robot"
+    text = row.inner(typed, "here")
+    assert text == row.inner(text, "here") and "kuka" not in text
+    other = externals("motoman-motopos-d500 at 1100 60 -100 0 0 30 carries part; track at 0 0 5 0 0 0 carries robot")
+    for one, wanted in zip(externals(text), other, strict=True):
+        assert (one.machine, one.carries) == (wanted.machine, wanted.carries)
+        assert np.allclose(one.pose, wanted.pose, atol=1e-12)
+    with pytest.raises(InputError, match="A B C") as raised:
+        row.inner("motoman-motopos-d500 at kuka 1 2 3 4 5 carries part", "cell.external")
+    assert raised.value.where == "cell.external"
+    plain = "m at 1 2 3 0 0 30 carries part"
+    assert row.inner(plain, "here") == plain
+
+
+def test_numbers_that_posts_write_and_pendants_show_are_the_same_ones():
+    """Of frames where only the sum of two angles counts too: what the pendant shows can be compared with the text."""
+    for angles in ((30, 90, 10), (-20, -90, 70), (10, 20, 30)):
+        turn = Rotation.from_euler("ZYX", angles, degrees=True)
+        six = (1.0, 2.0, 3.0, *frames.to_bryant(turn.as_matrix()))
+        place = np.array([[1.0, 2.0, 3.0]])
+        np.testing.assert_allclose(pendants.shown("kuka", six), krl.frames(place, turn.as_matrix()[None])[0], atol=1e-4)
+        np.testing.assert_allclose(pendants.shown("fanuc", six), tp.poses(place, turn.as_matrix()[None])[0], atol=1e-3)

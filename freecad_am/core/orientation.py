@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How rotations are told in numbers: by angles about three axes, by quaternions, by rotation vectors. Each formula stands
+here once. Posts write by it, and name the one of their controller with the letters of its pendant.
+
+Rotations are (n, 3, 3), numbers (n, 3) or (n, 4), angles in rad. Readers of programs have formulas of their own: they are to
+find what is wrong here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .geometry import frames
+from .types import Array
+
+
+@dataclass(frozen=True)
+class Orientation:
+    """numbers: what tells rotations (n, 3, 3). rotations: what numbers tell. degrees: whether pendants show degrees."""
+
+    numbers: Callable[[Array], Array]
+    rotations: Callable[[Array], Array]
+    degrees: bool = True
+
+
+@dataclass(frozen=True)
+class Pendant:
+    """How a controller's pendant shows what turns a frame: whose it is, the letters behind X Y Z, of how many decimals."""
+
+    maker: str
+    letters: tuple[str, ...]
+    orientation: Orientation
+    digits: int = 4
+
+
+def _of_bryant(angles: Array) -> Array:
+    return np.asarray(frames.about_x(angles[..., 0]) @ frames.about_y(angles[..., 1]) @ frames.about_z(angles[..., 2]))
+
+
+def about_fixed(rotation: Array, still: str) -> Array:
+    """(n, 3) rad about X, Y and Z of rotations Rz Ry Rx. Where that about Y is a right angle only the sum or difference of
+    the others counts, and that about the axis `still`, x or z, is 0."""
+    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
+    entry = np.array(rotation.transpose(1, 2, 0), order="C")
+    across = np.hypot(entry[0, 0], entry[1, 0])
+    upright = across > 1e-9
+    locked_x = np.arctan2(-entry[1, 2], entry[1, 1]) if still == "z" else 0.0
+    locked_z = np.arctan2(-entry[0, 1], entry[1, 1]) if still == "x" else 0.0
+    x = np.where(upright, np.arctan2(entry[2, 1], entry[2, 2]), locked_x)
+    z = np.where(upright, np.arctan2(entry[1, 0], entry[0, 0]), locked_z)
+    return np.stack((x, np.arctan2(-entry[2, 0], across), z), axis=1)
+
+
+def _of_fixed(angles: Array) -> Array:
+    return np.asarray(frames.about_z(angles[..., 2]) @ frames.about_y(angles[..., 1]) @ frames.about_x(angles[..., 0]))
+
+
+def quaternions(rotation: Array) -> Array:
+    """(n, 4) of rotations (n, 3, 3), the cosine first and not negative; by the largest of the four, which is sound near half
+    turns too."""
+    r = np.ascontiguousarray(rotation)
+    trace = r[:, 0, 0] + r[:, 1, 1] + r[:, 2, 2]
+    squares = np.stack([1.0 + trace, *(1.0 - trace + 2.0 * r[:, k, k] for k in range(3))], axis=1)
+    wx, wy, wz = r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]
+    xy, xz, yz = r[:, 1, 0] + r[:, 0, 1], r[:, 0, 2] + r[:, 2, 0], r[:, 2, 1] + r[:, 1, 2]
+    # each row is the quaternion times four times one of its numbers
+    rows = np.stack([
+        np.stack([squares[:, 0], wx, wy, wz], axis=1), np.stack([wx, squares[:, 1], xy, xz], axis=1),
+        np.stack([wy, xy, squares[:, 2], yz], axis=1), np.stack([wz, xz, yz, squares[:, 3]], axis=1),
+    ], axis=1)  # fmt: skip
+    found = rows[np.arange(len(r)), np.argmax(squares, axis=1)]
+    unit: Array = found * np.where(found[:, :1] < 0.0, -1.0, 1.0) / np.linalg.norm(found, axis=1, keepdims=True)
+    return unit
+
+
+def _of_quaternions(numbers: Array) -> Array:
+    vector = numbers[..., 1:]
+    return _about(vector, 2.0 * np.arctan2(np.linalg.norm(vector, axis=-1), numbers[..., 0]))
+
+
+def _vectors(rotation: Array) -> Array:
+    """(n, 3) rad, none longer than half a turn."""
+    found = quaternions(rotation)
+    sine = np.linalg.norm(found[:, 1:], axis=1)
+    turn = 2.0 * np.arctan2(sine, np.ascontiguousarray(found[:, 0]))
+    vectors: Array = found[:, 1:] * np.where(sine > 1e-12, turn / np.maximum(sine, 1e-300), 2.0)[:, None]
+    return vectors
+
+
+def _of_vectors(vectors: Array) -> Array:
+    return _about(vectors, np.linalg.norm(vectors, axis=-1))
+
+
+def _about(axes: Array, angles: Array) -> Array:
+    """The rotations by angles (n,) about axes (n, 3) of any length; about one of no length there is no turn."""
+    return np.asarray(frames.rotation_about(frames.unit(axes), np.where(axes.any(axis=-1), angles, 0.0)))
+
+
+def _reversed(numbers: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    return lambda given: numbers(given)[..., ::-1]
+
+
+# R = Rx Ry Rz, as poses are here; Rz Ry Rx with the angle about X first, and with that about Z first
+MOVING_XYZ = Orientation(frames.to_bryant, _of_bryant)
+FIXED_XYZ = Orientation(lambda rotation: about_fixed(rotation, "x"), _of_fixed)
+MOVING_ZYX = Orientation(_reversed(lambda rotation: about_fixed(rotation, "z")), lambda angles: _of_fixed(angles[..., ::-1]))
+QUATERNION = Orientation(quaternions, _of_quaternions, False)
+ROTATION_VECTOR = Orientation(_vectors, _of_vectors, False)

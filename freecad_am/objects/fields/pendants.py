@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Poses as the pendants of controllers show them, X Y Z in mm first: how each turns a frame is said by its post."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from functools import cache
+
+import numpy as np
+
+from ...core.geometry import frames
+from ...core.issues import InputError, Text, Word
+from ...core.orientation import QUATERNION, ROTATION_VECTOR, Pendant
+from ...core.types import Array
+from ...posts import catalogue
+
+UNIT = 1e-3  # by which a quaternion that is shown with few digits may be longer or shorter than 1
+WHOLE = 2.0 * math.pi + 1e-3  # rad, a rotation vector is no longer
+_AT = re.compile(r"(?<=\sat\s)(.+?)(?=\s+carries\s)")  # where a text says that something stands
+
+Pose = tuple[float, float, float, float, float, float]
+
+
+@cache
+def pendants() -> dict[str, Pendant]:
+    """The pendants that show frames otherwise than we do, by controller, in the order of their makers."""
+    found = {name: catalogue.load(name).PENDANT for name in catalogue.NAMES}
+    return dict(sorted(((name, one) for name, one in found.items() if one), key=lambda pair: pair[1].maker))
+
+
+def named(words: Sequence[str]) -> str:
+    """The controller that one of the words of a pose names, '' where none does."""
+    found = next((word.lower() for word in words if word.lower() in catalogue.NAMES), "")
+    return found if found in pendants() else ""
+
+
+def six(words: Sequence[str], where: str) -> Pose:
+    """x y z RX RY RZ, mm and rad (Bryant), of the words of a pose, of which one names the controller: kuka 1 0 3 90 0 0.
+
+    Raises InputError BAD_VALUE, at `where`.
+    """
+    controller = named(words)
+    pendant = pendants()[controller]
+    form = Text("write such as: {} X Y Z {}", controller, " ".join(pendant.letters))
+    try:
+        numbers = [float(word) for word in words if word.lower() != controller]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 3 + len(pendant.letters) or not all(map(math.isfinite, numbers)):
+        raise InputError("BAD_VALUE", where, "{!r} is not a pose; {}", " ".join(words), Word(form))
+    a, b, c = frames.to_bryant(_rotation(pendant, np.array(numbers[3:]), where)).tolist()
+    return numbers[0], numbers[1], numbers[2], a, b, c
+
+
+def _rotation(pendant: Pendant, numbers: Array, where: str) -> Array:
+    """(3, 3) of what a pendant shows after X Y Z."""
+    size = float(np.linalg.norm(numbers))
+    if pendant.orientation is QUATERNION and abs(size - 1.0) > UNIT:
+        raise InputError("BAD_VALUE", where, "q1 to q4 are together {:.4g} long, a quaternion is 1; look at the digits",
+                         size)
+    if pendant.orientation is ROTATION_VECTOR and size > WHOLE:
+        raise InputError("BAD_VALUE", where, "the rotation vector is {:.4g} rad long, more than a turn; give RX RY RZ in "
+                         "rad, as the pendant shows them", size)
+    numbers = np.radians(numbers) if pendant.orientation.degrees else numbers
+    return np.asarray(pendant.orientation.rotations(numbers[None])[0])
+
+
+def shown(controller: str, pose: Sequence[float]) -> tuple[float, ...]:
+    """What a pendant shows of a pose x y z RX RY RZ, mm and rad: X Y Z, and degrees, a quaternion, or rad."""
+    orientation = pendants()[controller].orientation
+    numbers = orientation.numbers(frames.bryant(pose)[None, :3, :3])[0]
+    return *map(float, pose[:3]), *(np.degrees(numbers) if orientation.degrees else numbers).tolist()
+
+
+def plain(text: str, where: str) -> str:
+    """A text that says where things stand, such as External: poses that name a controller as x y z RX RY RZ, mm and deg.
+
+    Raises InputError BAD_VALUE, at `where`.
+    """
+    return _AT.sub(lambda found: _plain(found[0], where), text)
+
+
+def _plain(pose: str, where: str) -> str:
+    words = pose.replace(",", " ").split()
+    if not named(words):
+        return pose
+    found = six(words, where)
+    numbers = (*found[:3], *(math.degrees(angle) for angle in found[3:]))
+    return " ".join(f"{number:.14g}" for number in numbers)
