@@ -49,7 +49,8 @@ def whole_cell(track=True, positioner=True, more=""):
 def placed(text, values):
     """(4, 4) mm of each link of a URDF, with values of its joints by name, rad and m."""
     top = ElementTree.fromstring(text)
-    above = {joint.find("child").get("link"): joint for joint in top.iter("joint")}
+    # others, of transmissions, are deeper in
+    above = {joint.find("child").get("link"): joint for joint in top.findall("joint")}
 
     def numbers(element, key, default):
         return np.array([float(word) for word in (default if element is None else element.get(key, default)).split()])
