@@ -20,6 +20,7 @@ OURS = {
     "core/orientation": {"core/geometry"},
     "core/read_moves": set(),
     "core/motion": set(),
+    "core/digits": set(),
     "core/one_thread": set(),
     "core/parameters": {"core/issues", "core/geometry"},
     "core/geometry": {"core/issues"},
@@ -41,7 +42,7 @@ OURS = {
     },
     "core/simulation": {
         "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
-        "core/motion",
+        "core/motion", "core/digits",
     },
     "core/placement": {
         "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
@@ -51,7 +52,7 @@ OURS = {
         "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/process", "core/kinematics", "core/motion",
         "core/simulation", "core/strategies",
     },
-    "posts": {"core/issues", "core/controller", "core/orientation", "core/program", "core/read_moves"},
+    "posts": {"core/issues", "core/digits", "core/controller", "core/orientation", "core/program", "core/read_moves"},
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},
     "read_back": {
         "core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "core/read_moves", "kdl",

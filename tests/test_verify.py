@@ -423,3 +423,78 @@ def test_a_wait_is_told_to_its_last_digit(told, meant, alike):
     half = 0.5 * 10.0 ** -len(told.split(".")[1])
     found, due = (Event(3, "wait", (value,), half) for value in (told, meant))
     assert _alike(None, found, due) is alike
+
+
+class _Standing:
+    """Rows of a text that are looked at by both solvers alone."""
+
+    def __init__(self, joints):
+        self.joints = joints
+
+    def issue(self, code, wrong, message):
+        return [(code, np.flatnonzero(wrong))] if wrong.any() else []
+
+
+@pytest.fixture(scope="module")
+def long_text(cell):
+    """Joint values of more rows than are all driven through PyKDL, in a corner of their ranges, axis 1 at 0."""
+    joints = np.random.default_rng(8).uniform(0.0, 0.1, (points.EVERY * 3**6 + 5, 6)) * [0.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    return _Standing(joints), cell.machine.to_controller(joints), cell.machine.chain.forward(joints)
+
+
+def test_of_a_long_text_some_rows_are_driven_by_the_second_solver(cell, long_text, monkeypatch):
+    driven = []
+
+    class Counted(points.kdl_chain.KdlArm):
+        def forward(self, q):
+            driven.append(len(q))
+            return super().forward(q)
+
+    monkeypatch.setattr(points.kdl_chain, "KdlArm", Counted)
+    assert points.second_opinion(cell, *long_text) == ([], ("chain", "pykdl"))
+    assert 3**6 + len(long_text[1]) / points.EVERY <= sum(driven) <= 3**6 + len(long_text[1]) / points.EVERY + 1
+
+
+@pytest.mark.parametrize("axis", range(6))
+def test_solvers_that_disagree_elsewhere_are_caught_by_any_long_text(cell, long_text, monkeypatch, axis):
+    """They differ where an axis is, by a tenth of a micrometre at most: nowhere on a text that leaves this axis there."""
+    planned, _, _ = long_text
+    joints = planned.joints.copy()
+    joints[:, axis] = 0.0
+
+    class Off(points.kdl_chain.KdlArm):
+        def forward(self, q):
+            poses = super().forward(q)
+            poses[:, 1, 3] += 1e-4 * np.sin(np.asarray(q)[:, axis])
+            return poses
+
+    text = _Standing(joints), cell.machine.to_controller(joints), cell.machine.chain.forward(joints)
+    monkeypatch.setattr(points.kdl_chain, "KdlArm", Off)
+    monkeypatch.setattr(points, "EVERY", 1)
+    (code, wrong), = points.second_opinion(cell, *text)[0]
+    assert code == "VERIFY_SOLVERS" and len(wrong) == len(joints)
+
+
+def test_a_row_that_is_driven_wrongly_is_caught_in_a_long_text(cell, long_text, monkeypatch):
+    planned, shown, flange = long_text
+    turned = flange.copy()
+    turned[4000, 0, 0] += 1e-8
+    (code, wrong), = points.second_opinion(cell, planned, shown, turned)[0]
+    assert code == "VERIFY_SOLVERS" and wrong.tolist() == [4000]
+
+
+def test_what_differs_on_the_grid_bounds_what_differs_anywhere(cell):
+    """Random sums of constants, sines and cosines of degree one in each of three angles, on a tenth of a radian."""
+    rng, joints = np.random.default_rng(12), np.zeros((1, 6))
+    grid = points.grid_of(cell.machine.chain, joints)
+    assert len(grid) == 3**6
+    fine = np.stack(np.meshgrid(*[np.arange(0.0, 6.3, 0.1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+
+    def value(q, factors):
+        terms = np.stack([np.ones_like(q), np.cos(q), np.sin(q)])
+        return np.einsum("an,bn,cn,abc->n", *(terms[:, :, k] for k in range(3)), factors)
+
+    for _ in range(20):
+        factors = rng.normal(size=(3, 3, 3))
+        largest, on_grid = (np.abs(value(q, factors)).max() for q in (fine, grid[:, :3]))
+        assert on_grid <= largest * (1.0 + 1e-2) and largest <= points.GRID_TO_ALL**3 * on_grid

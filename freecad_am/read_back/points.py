@@ -10,10 +10,15 @@ from freecad_am.core.types import Array, Mask
 from ..core.geometry.columns import lengths
 from ..core.issues import NOTE, Issue, Text
 from ..core.kinematics.cell import Cell
+from ..core.kinematics.chain import Chain
 from ..core.read_moves import ReadMoves
 from ..kdl import chain as kdl_chain
 from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned, pieces
 from .text_path import Joints, Path, digits, given_by_position
+
+EVERY = 8  # of a long text so many-th row is driven through PyKDL
+THIRDS = np.array([0.0, 2.0, 4.0]) * np.pi / 3.0
+GRID_TO_ALL = 5.0 / 3.0  # how much larger a sum of a constant, a sine and a cosine is anywhere than at three angles
 
 
 def joint_issues(cell: Cell, planned: Planned, read: ReadMoves, continuous: Mask) -> list[Issue]:
@@ -63,14 +68,38 @@ def point_issues(planned: Planned, path: Path) -> list[Issue]:
 
 
 def second_opinion(cell: Cell, planned: Planned, shown: Array, flange: Array) -> tuple[list[Issue], tuple[str, ...]]:
-    """The same joint values through PyKDL, where it is installed."""
+    """The same joint values through PyKDL, where it is installed: all of them, or of a long text some and joint values of
+    every kind (docs/decisions/0022)."""
     if not kdl_chain.available():
         message = "PyKDL is not installed; the program was checked by one solver alone"
         return [Issue(NOTE, "VERIFY_ONE_SOLVER", message)], ("chain",)
     arm, wrong = kdl_chain.KdlArm(cell.machine), np.zeros(len(shown), dtype=bool)
-    for rows in pieces(np.arange(len(shown))):
-        apart = arm.forward(cell.machine.from_controller(shown[rows])) - flange[rows]
-        wrong[rows] = lengths(apart[:, :3, 3]) > COMPUTED_MM
-        wrong[rows] |= np.abs(apart[:, :3, :3]).max(axis=(1, 2)) > COMPUTED_AXIS
+    grid = grid_of(cell.machine.chain, planned.joints)
+    long = len(shown) > EVERY * len(grid)
+    if long:
+        # what differs by so much on the grid may differ by as much again for each turning axis elsewhere
+        share = GRID_TO_ALL ** -np.count_nonzero(~cell.machine.chain.sliding)
+        wrong |= _differ(arm.forward(grid), cell.machine.chain.forward(grid), share).any()
+    for rows in pieces(np.arange(0, len(shown), EVERY if long else 1)):
+        wrong[rows] |= _differ(arm.forward(cell.machine.from_controller(shown[rows])), flange[rows])
     issues = planned.issue("VERIFY_SOLVERS", wrong, "PyKDL and the joint-frame chain disagree")
     return issues, ("chain", "pykdl")
+
+
+def _differ(one: Array, other: Array, share: float = 1.0) -> Mask:
+    """(n,) whether poses (n, 4, 4) of two solvers differ by more than a share of what rounding explains."""
+    apart = one - other
+    found: Mask = lengths(apart[:, :3, 3]) > share * COMPUTED_MM
+    found |= np.abs(apart[:, :3, :3]).max(axis=(1, 2)) > share * COMPUTED_AXIS
+    return found
+
+
+def grid_of(chain: Chain, joints: Array) -> Array:
+    """Joint values (m, axes) on which two solvers that agree do so everywhere: three of each turning axis, two of each that
+    slides. The entries of a pose are a sum of constants, sines and cosines in each angle, and of degree one in each way;
+    so is their difference."""
+    low, high = np.nanmin(joints, axis=0), np.nanmax(joints, axis=0)
+    ways = np.stack([low, np.where(high > low, high, low + 1.0)], axis=1)
+    values = [way if slides else THIRDS for way, slides in zip(ways, chain.sliding, strict=True)]
+    grid: Array = np.stack(np.meshgrid(*values, indexing="ij"), axis=-1).reshape(-1, chain.axes)
+    return grid

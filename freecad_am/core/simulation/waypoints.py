@@ -3,25 +3,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .. import digits
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES
-from ..types import Array
+from ..types import Array, Index
 
 HEADER = "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm"
 WIRE = "wire_feed_mm_s"
 _LENGTHS, _DIRECTIONS, _ANGLES = 6, 9, 7  # decimals
-_ROWS_AT_ONCE = 20_000
+_ROWS_AT_ONCE = 4000
 CLASS = "class"
 _KINDS = np.frombuffer(b"rapid\0\0deposit", dtype=np.uint8).reshape(2, -1)
 _WIDEST = max(map(len, CLASSES))
 _CLASSES = np.array([list(name.encode().ljust(_WIDEST, b"\0")) for name in (*CLASSES, "")], dtype=np.uint8)
-
-Bytes = NDArray[np.uint8]
 
 
 def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
@@ -41,42 +39,27 @@ def has_wire(motion: Motion) -> bool:
 
 
 def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
-    """Rows as text, digit by digit for all at once: three times as fast as a formatting per row of Python's floats."""
+    """Rows as text."""
     slides = np.array([unit == "mm" for unit in units])
     angles = np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows]))
-    cells = [
-        *((column[rows], 0) for column in (motion.layer, motion.bead, motion.point)), None,
-        *((column, _LENGTHS) for column in motion.position[rows].T),
-        *((column, _DIRECTIONS) for vectors in (motion.build, motion.tool) for column in vectors[rows].T),
-        *((column[rows], _LENGTHS) for column in (motion.speed, motion.width)), *((column, _ANGLES) for column in angles.T),
-    ]
+    numbers = _cells((motion.layer[rows], motion.bead[rows], motion.point[rows]), 0)
+    x, y, z, speed, width = _cells((*motion.position[rows].T, motion.speed[rows], motion.width[rows]), _LENGTHS)
+    vectors = _cells((*motion.build[rows].T, *motion.tool[rows].T), _DIRECTIONS)
+    texts = [*numbers, _KINDS[motion.deposit[rows].astype(np.intp)].T, x, y, z, *vectors, speed, width]
+    texts += _cells((*angles.T,), _ANGLES)
     if has_wire(motion):
-        cells.append((motion.wire[rows], _LENGTHS))
-    texts = [_KINDS[motion.deposit[rows].astype(np.intp)].T if entry is None else _digits(*entry) for entry in cells]
+        texts += _cells((motion.wire[rows],), _LENGTHS)
     texts.append(_CLASSES[motion.bead_class[rows]].T)  # of none the last one
-    count = len(motion.deposit[rows])
-    parts = [part for text in texts for part in (text, np.full((1, count), ord(","), dtype=np.uint8))]
-    parts[-1][:] = ord("\n")
-    everything = np.concatenate(parts).T.ravel()
-    text: str = everything[everything > 0].tobytes().decode("ascii")
-    return text
+    ends = [*[b","] * (len(texts) - 1), b"\n"]
+    return digits.joined([part for pair in zip(texts, ends, strict=True) for part in pair], len(motion.deposit[rows]))
 
 
-def _digits(values: Array, decimals: int) -> Bytes:
-    """(w, n) characters of numbers (n,) with so many decimals, 0 where there is none: all of a NaN. No -0.000000."""
+def _cells(columns: Sequence[Array | Index], decimals: int) -> list[digits.Characters]:
+    """Characters (w, n) of columns (n,) of numbers with so many decimals, none of a NaN. No -0.000000."""
+    if not columns:
+        return []
+    values = np.concatenate(columns)
     known = np.isfinite(values)
-    whole = np.rint(np.where(known, values, 0.0) * 10.0**decimals).astype(np.int64)
-    left = np.abs(whole)
-    size = max(len(str(int(left.max(initial=0)))), decimals + 1)
-    text = np.zeros((size + 2, len(left)), dtype=np.uint8)
-    text[0] = np.where(whole < 0, ord("-"), 0)
-    for place in range(size):
-        rest = left // 10
-        shown = left - 10 * rest + ord("0")
-        # to the left of the decimals and one digit more, only what is not 0
-        text[size + (place < decimals) - place] = shown if place <= decimals else np.where(left > 0, shown, 0)
-        left = rest
-    if decimals:
-        text[size + 1 - decimals] = ord(".")
+    text = digits.plain(digits.whole(np.where(known, values, 0.0), decimals), decimals)
     text[:, ~known] = 0
-    return text
+    return [*text.reshape(len(text), len(columns), -1).transpose(1, 0, 2)]

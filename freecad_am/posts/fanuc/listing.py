@@ -7,14 +7,16 @@ confirmed where.
 
 from __future__ import annotations
 
+import re
 import textwrap
 import unicodedata
 from collections.abc import Sequence
-from itertools import chain
 
 import numpy as np
 
 from freecad_am.core.types import Array
+
+from ...core import digits
 
 END_OF_LINE = "\r\n"
 REMARK_WIDTH = 32
@@ -57,6 +59,7 @@ _JOINT_RECORD = (
     "\tJ1=%10.3f deg,\tJ2=%10.3f deg,\tJ3=%10.3f deg,\r\n"
     "\tJ4=%10.3f deg,\tJ5=%10.3f deg,\tJ6=%10.3f deg\r\n};\r\n"
 )
+_FIELD = re.compile(r"%d|%s|%10\.3f")
 _POSE_RECORD = (
     "P[%d]{\r\n   GP1:\r\n\t<frame>\t\tCONFIG : '%s',\r\n"
     "\tX =%10.3f  mm,\tY =%10.3f  mm,\tZ =%10.3f  mm,\r\n"
@@ -119,23 +122,26 @@ def joint_records(degrees: Array, track: Array, external: Array, user_frame: int
     more = f"   GP{group}:\r\n\t<frame>\t\r\n{values}\r\n}};" if values else "};"
     extended = "deg,\r\n\tE1=%10.3f  mm\r\n};" if track.shape[1] else "deg\r\n};"
     record = _JOINT_RECORD.replace("deg\r\n};", extended).replace("};", more)
-    return _records(record, user_frame, tool_frame, [*degrees.T, *track.T, *external.T])
+    return _records(record, user_frame, tool_frame, [], np.hstack([degrees, track, external]))
 
 
 def pose_records(pose: Array, configuration: Sequence[str], user_frame: int, tool_frame: int) -> str:
     """Records P[1].. of positions (n, 6) X Y Z mm, W P R deg, already rounded to 3 decimals, with their CONFIG."""
-    return _records(_POSE_RECORD, user_frame, tool_frame, [configuration, *pose.T])
+    return _records(_POSE_RECORD, user_frame, tool_frame, [configuration], pose)
 
 
-def _records(template: str, user_frame: int, tool_frame: int, columns: Sequence[Sequence[str] | Array]) -> str:
-    n = len(columns[0])
+def _records(template: str, user_frame: int, tool_frame: int, words: Sequence[Sequence[str]], values: Array) -> str:
+    """Positions 1.. by their template: its fields are the number, columns (n,) of words, and values (n, k)."""
+    n, count = values.shape
     one = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
-    lists = [column.tolist() if isinstance(column, np.ndarray) else column for column in columns]
-    values = tuple(chain.from_iterable(zip(range(1, n + 1), *lists, strict=True)))
-    return _shortened(one * n % values)
+    # .250 without its zero in the same width, but exact zero as 0.000
+    shown = digits.right_aligned(values.T.ravel(), 3, 10).reshape(-1, count, n)
+    columns = [np.array(column, dtype="S").view(np.uint8).reshape(n, -1).T for column in words]
+    texts = [digits.plain(np.arange(1, n + 1), 0), *columns, *shown.transpose(1, 0, 2)]
+    fixed = [text.encode("ascii") for text in _FIELD.split(one)]
+    return digits.joined([part for pair in zip(fixed, texts, strict=False) for part in pair] + fixed[-1:], n)
 
 
 def _shortened(text: str) -> str:
-    """Numbers as controllers list them: .250 without its zero in the same width, but exact zero as 0.000."""
-    text = text.replace(" 0.", "  .").replace("-0.", " -.")
-    return text.replace("  .000 ", " 0.000 ")
+    """A number as controllers list it, in the same width."""
+    return text.replace(" 0.", "  .").replace("-0.", " -.").replace("  .000 ", " 0.000 ")
