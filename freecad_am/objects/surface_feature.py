@@ -11,7 +11,7 @@ from ..brep.walls.wall_on import wall_on
 from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
-from ..core.parameters.strategy import SurfaceParameters
+from ..core.parameters.strategy import FRONTS, SurfaceParameters
 from ..core.strategies import size
 from .feature import source_of
 from .results.fingerprints import fingerprint
@@ -62,7 +62,8 @@ class SurfaceFeature(Stage):
             for substrate in substrates:
                 solid, name = (ground[0] if substrate.shape is None else substrate.shape), substrate.label
             shape = part.body() if part.shape is None else part.shape.copy(False)
-            wall = wall_on(shape, faces, solid, strategy.layer_height, label, name, edges, strategy.mend)
+            wall = wall_on(shape, faces, solid, strategy.layer_height, label, name, edges, strategy.mend,
+                           strategy.method == FRONTS)
             large = size.judged(size.of_wall(wall, strategy), strategy)
             depths = None if part.shape is None else of_faces(part.shape, wall.faces, label, ground[0] if ground else None)
             wall = dataclasses.replace(wall, surroundings=(*ground, *bodies(fixtures)), depths=depths)

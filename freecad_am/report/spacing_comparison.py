@@ -15,6 +15,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.cell import Cell
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.strategy import FRONTS, ISO
 from freecad_am.core.planning import comparison
 from freecad_am.core.planning.joint_path import JointPath
 from freecad_am.core.planning.motion import assemble
@@ -35,6 +36,7 @@ _MOTION = (
     "speed_ratio_max",
 )
 _LINES = "the wall is not one surface with one closed parameter, whose lines such layers follow"
+_FRONTS = "fronts follow no lines of the surface; leave strategy.method out to compare with such layers"
 _OTHER = "not planned; choose it as strategy.spacing"
 _REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut so
     "iso-parameter": _LINES,
@@ -48,7 +50,8 @@ def compare(wall: Any, strategy: Any) -> tuple[Compared | Refused, ...]:
     """A wall cut by every method; walls without one closed parameter by none."""
     if isinstance(wall, SurfaceWall):
         return wall_comparison.compare(wall, strategy)
-    return tuple(Refused(method, _REASONS[method]) for method in METHODS if method != strategy.spacing)
+    reasons = _REASONS if strategy.method != FRONTS else _REASONS | {ISO: _FRONTS, NORMAL: _FRONTS}
+    return tuple(Refused(method, reasons[method]) for method in METHODS if method != strategy.spacing)
 
 
 def rows(

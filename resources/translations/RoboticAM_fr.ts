@@ -339,6 +339,11 @@
         <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How layers are found: on a tube of one surface by its closed parameter and on all other walls as fronts (auto), or as fronts on every wall (fronts).</source>
+        <translation>Comment les couches sont trouvées : sur un tube d&apos;une seule surface par son paramètre fermé, sur toute autre paroi par des fronts (auto), ou par des fronts sur toutes les parois (fronts).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>How long computing took.</source>
         <translation>Combien de temps a pris le calcul.</translation>
@@ -2952,6 +2957,11 @@
         <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How layers are found: on a tube of one surface by its closed parameter and on all other walls as fronts (auto), or as fronts on every wall (fronts).</source>
+        <translation>Comment les couches sont trouvées : sur un tube d&apos;une seule surface par son paramètre fermé, sur toute autre paroi par des fronts (auto), ou par des fronts sur toutes les parois (fronts).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How long to wait between layers.</source>
         <translation>Temps d&apos;attente entre les couches.</translation>
@@ -3647,7 +3657,7 @@
         <translation>Réparer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Method</source>
         <translation>Méthode</translation>
     </message>
@@ -8020,6 +8030,16 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>front-up-noflip</source>
         <translation>avant-haut-non retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>fronts</source>
+        <translation>fronts</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>fronts follow no lines of a surface, as iso-parameter layers do; leave strategy.method out, or use constant-distance or smooth</source>
+        <translation>les fronts ne suivent pas les lignes d&apos;une surface comme le font les couches iso-parameter ; retirez strategy.method, ou utilisez constant-distance ou smooth</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/cell.py"/>

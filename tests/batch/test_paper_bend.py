@@ -32,15 +32,19 @@ def plans(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def sliced(plans):
-    """Beads of the layers up to the first wholly past 90 deg: (tube, layer height, spacing, chord error)."""
-    def beads(tube, height, spacing, chord_error):
+    """Beads of the layers up to the first wholly past 90 deg: (tube, layer height, spacing, chord error, method)."""
+    def beads(tube, height, spacing, chord_error, method="auto"):
         text = plans.exact(plans.text("tube-on-pipe"), chord_error)
-        text = text.replace("layer_height: 5 mm", f"layer_height: {height:g} mm").replace("constant-distance", spacing)
+        text = text.replace("layer_height: 5 mm", f"layer_height: {height:g} mm\n  method: {method}")
+        text = text.replace("constant-distance", spacing)
         text = text.replace("tube-on-pipe.step", "long-tube.step" if tube == TUBE else "long-wide-tube.step")
         layers = plans.plan("tube-on-pipe", text).layers
-        past = next(number for number, layer in enumerate(layers) if angle(layer[0].points).min() > PASSED)
-        assert all(len(layer) == 1 and layer[0].closed for layer in layers[: past + 1])
-        return [layer[0] for layer in layers[: past + 1]]
+        rings = [[bead for bead in layer if bead.closed] for layer in layers]
+        past = next(number for number, layer in enumerate(rings) if angle(layer[0].points).min() > PASSED)
+        assert all(len(ring) == 1 for ring in rings[: past + 1])
+        # fronts close with beads of their own what their corners leave
+        assert method == "fronts" or all(len(layer) == 1 for layer in layers[: past + 1])
+        return [ring[0] for ring in rings[: past + 1]]
 
     return beads
 
@@ -55,13 +59,14 @@ def distances(beads):
 
 
 @pytest.mark.parametrize(
-    "tube, height, count, chord_error",
-    [(TUBE, 5.0, 16, 2e-5), pytest.param(TUBE, 1.0, 72, 5e-5, marks=pytest.mark.long),
-     pytest.param(WIDE, 5.0, None, 2e-5, marks=pytest.mark.long)],
+    "tube, height, count, chord_error, method",
+    [(TUBE, 5.0, 16, 2e-5, "auto"), pytest.param(TUBE, 5.0, 16, 2e-5, "fronts", marks=pytest.mark.long),
+     pytest.param(TUBE, 1.0, 72, 5e-5, "auto", marks=pytest.mark.long),
+     pytest.param(WIDE, 5.0, None, 2e-5, "auto", marks=pytest.mark.long)],
 )
-def test_corrected_layers(sliced, tube, height, count, chord_error):
-    """Thousands of points around each layer, corners included."""
-    beads = sliced(tube, height, "constant-distance", chord_error)
+def test_corrected_layers(sliced, tube, height, count, chord_error, method):
+    """Thousands of points around each layer, corners included; fronts are the same layers."""
+    beads = sliced(tube, height, "constant-distance", chord_error, method)
     if count is not None:
         assert len(beads) == count
     assert min(len(bead.points) for bead in beads) > (1200 if height == 5.0 else 900)
@@ -69,7 +74,8 @@ def test_corrected_layers(sliced, tube, height, count, chord_error):
     for bead in beads:
         x, y, z = bead.points.T
         assert np.abs(np.hypot(np.hypot(x + BEND, z) - BEND, y) - tube).max() <= 1e-5
-    assert np.abs(rod(0.0, 0.0, PIPE)(beads[0].points)).max() <= 1e-5
+    # fronts run from a curve through points of both surfaces, as far off the pipe as chords may be
+    assert np.abs(rod(0.0, 0.0, PIPE)(beads[0].points)).max() <= (1e-5 if method == "auto" else chord_error)
 
 
 @pytest.mark.parametrize(
@@ -95,3 +101,20 @@ def test_the_corner_on_the_outside_of_the_bend(sliced, tube, turn):
     assert turns[corner] == pytest.approx(turn, abs=0.5)
     assert np.delete(turns, corner).max() < 1.0
     assert abs(points[corner, 1]) < 1e-5 and np.hypot(points[corner, 0] + BEND, points[corner, 2]) > BEND
+
+
+@pytest.mark.long
+def test_fronts_and_the_parameter_find_the_same_layers(sliced):
+    """Each layer of one lies on that of the other, and is as long."""
+    found = [sliced(TUBE, 5.0, "constant-distance", 2e-5, method) for method in ("auto", "fronts")]
+    for one, other in zip(*found, strict=True):
+        assert max(wall_checks.nearest(a.points, [b.points]).distance.max() for a, b in ((one, other), (other, one))) < 1e-3
+        lengths = [np.linalg.norm(np.diff(bead.points, axis=0), axis=1).sum() for bead in (one, other)]
+        assert lengths[0] == pytest.approx(lengths[1], abs=1e-2)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("method", ["auto", "fronts"])
+def test_smooth_layers_keep_the_band_by_either_method(sliced, method):
+    found = np.concatenate(distances(sliced(TUBE, 5.0, "smooth", 1e-3, method)))
+    assert 4.0 - 2e-3 <= found.min() < 4.2 and 5.8 < found.max() <= 6.0 + 2e-3

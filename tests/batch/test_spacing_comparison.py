@@ -92,6 +92,10 @@ def test_walls_of_several_faces_say_what_does_not_apply():
     assert {row["method"] for row in others} == set(METHODS) - {"constant-distance"}
     assert all(row["reason"] and row["layers"] is None and not row["planned"] for row in others)
 
+    others = spacing_comparison.compare(object(), SurfaceParameters(layer_height=2.0, method="fronts"))
+    told = {one.method: one.reason for one in others}
+    assert "strategy.method" in told["iso-parameter"] and "strategy.method" in told["centreline-normal"]
+
 
 def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
     bent = np.radians(40.0)

@@ -93,6 +93,19 @@ def test_half_shell_starts_in_a_chain_from_side_to_side():
     assert not wall.behind[np.hypot(wall.vertices[:, 0], wall.vertices[:, 2]) > PIPE + 1e-6].any()
 
 
+def test_fronts_may_be_asked_for_on_a_tube_of_one_surface():
+    assert isinstance(wall_on(bend(), (), pipe(), 5.0), SurfaceWall)
+    wall = wall_on(bend(), (), pipe(), 5.0, fronts=True)
+    assert isinstance(wall, PatchWall) and wall.faces == ("Face1",)
+    sound(wall, bend())
+    curve, = wall.first
+    assert curve.closed and [rim.closed for rim in wall.rims] == [True] * len(wall.rims)
+    on_both(curve.points)
+    assert np.abs(wall.symmetry_normal) == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
+    half = wall_on(bend(start=20.0, width=180.0), (), pipe(), 5.0)
+    assert half.symmetry_normal is None  # its bend may lean out of that plane
+
+
 def test_three_tangent_faces():
     foot = Part.makeCylinder(TUBE, 20, Vector(0, 0, -20)).Faces[0]
     head = Part.makeCylinder(TUBE, 30, Vector(-BEND, 0, BEND), Vector(-1, 0, 0)).Faces[0]

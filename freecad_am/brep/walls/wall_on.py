@@ -31,29 +31,30 @@ OTHER_KIND = frozenset({"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL",
 def wall_on(
     shape: Any, faces: Sequence[str], substrate: Any, height: float, label: str = "part",
     substrate_label: str = "substrate", start_edges: Sequence[str] = (), mend: float = 0.0,
+    fronts: bool = False,
 ) -> SurfaceWall | PatchWall:
     """The wall of a Part.Shape, or of a mesh (Body), for layers of `height` mm, in its coordinates. mend: the largest hole
     of a mesh that is closed, mm.
 
     substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from edges of the part, those
     that stand on the platform if none are named. A SurfaceWall where the faces are one surface that closes around, its end
-    straight across, and the first layer one loop; a PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and
-    `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
+    straight across, and the first layer one loop; a PatchWall otherwise, and always for fronts. Raises the InputErrors of
+    `find_patch_wall` and `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
     """
     with reported(substrate_label):
         carrier = None if substrate is None else substrate_of(substrate, substrate_label, mend)
     with reported(label):
-        wall = _wall_on(shape, faces, carrier, height, label, start_edges, mend)
+        wall = _wall_on(shape, faces, carrier, height, label, start_edges, mend, fronts)
     return wall if carrier is None else replace(wall, issues=(*carrier.issues, *wall.issues))
 
 
 def _wall_on(
     shape: Any, faces: Sequence[str], carrier: Substrate | None, height: float, label: str, start_edges: Sequence[str],
-    mend: float,
+    mend: float, fronts: bool,
 ) -> SurfaceWall | PatchWall:
     if isinstance(shape, Body):
         return find_mesh_wall(shape, carrier, height, label, start_edges, mend)
-    if carrier is not None and carrier.shape is not None and not start_edges:
+    if carrier is not None and carrier.shape is not None and not start_edges and not fronts:
         try:
             tube = find_wall(shape, faces, carrier.shape, label, carrier.label)
             if _starts_all_around(tube, carrier.shape):
@@ -66,7 +67,7 @@ def _wall_on(
             pass  # the wall as a sheet asks less of the kernel
     named = named_faces(shape, faces, label)
     found = find_patch_wall(shape, named, carrier, height, label, start_edges)
-    if carrier is None or carrier.shape is not None or start_edges:
+    if carrier is None or carrier.shape is not None or start_edges or fronts:
         return found
     return _as_tube(found, shape, faces, carrier, label) or found
 

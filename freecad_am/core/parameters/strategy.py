@@ -6,9 +6,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..issues import InputError
 from . import field as f
 
-SPACINGS = ("constant-distance", "smooth", "iso-parameter")
+ISO = "iso-parameter"
+SPACINGS = ("constant-distance", "smooth", ISO)
+FRONTS = "fronts"  # a method
 MEND = "Holes of meshes up to this size across are closed, which is told; larger ones are refused."
 LAYER_TIME = (
     "Least time of a layer, from its first bead to the next layer's; the machine waits for what is missing"
@@ -64,6 +67,10 @@ class SurfaceParameters(LayerParameters):
         "and without corners (smooth), or along the lines up the wall (iso-parameter).",
         choices=SPACINGS,
     )
+    method: str = f.parameter(
+        "auto", f.CHOICE, "How layers are found: on a tube of one surface by its closed parameter and on all other walls as "
+        "fronts (auto), or as fronts on every wall (fronts).", choices=("auto", FRONTS), advanced=True,
+    )
     band: float = f.parameter(
         0.2, f.RATIO, "Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter "
         "layers, before there is a warning.",
@@ -92,6 +99,9 @@ class SurfaceParameters(LayerParameters):
         for spacing in self.compare:
             if spacing not in SPACINGS:
                 raise f.unknown_choice("strategy.compare", spacing, SPACINGS)
+        if self.method == FRONTS and ISO in (self.spacing, *self.compare):
+            raise InputError("NO_PARAMETER", "strategy.method", "fronts follow no lines of a surface, as iso-parameter "
+                             "layers do; leave strategy.method out, or use constant-distance or smooth")
 
 
 @dataclass(frozen=True)

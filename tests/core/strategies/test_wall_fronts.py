@@ -6,7 +6,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.implicit import HalfSpace, Round
-from freecad_am.core.geometry.walls.patch import CYLINDER, PLANE, Patch
+from freecad_am.core.geometry.walls.patch import CYLINDER, PLANE, TORUS, Patch
+from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
@@ -14,6 +15,7 @@ from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.process.deposit.spacing import between_layers
 from freecad_am.core.slicing.fronts import layers as fronts
 from freecad_am.core.strategies.walls import fronts as wall_fronts
+from freecad_am.core.strategies.walls import plan as tubes
 from tests.core.patch_walls import ball, bend, grid, patch_wall, samples, sheet, tube
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
@@ -256,3 +258,27 @@ def test_random_walls(seed):
         assert not bead.closed
         assert np.hypot(*bead.points[:, :2].T) == pytest.approx(radius, abs=1e-4)
         assert np.abs((bead.build[:, :2] * bead.points[:, :2]).sum(axis=1)).max() < 0.01 * radius
+
+
+def test_a_bend_of_one_surface_has_by_fronts_the_layers_that_its_parameter_gives():
+    """Layers of 8 mm by the equation of the torus: at that distance, on it, and in the places that the tube's own way finds;
+    the tools in the plane of the bend. The fronts close what their corners leave, which the other way does not."""
+    v = 2.0 * np.pi * np.arange(480) / 480
+    reach = 60.0 + 15.0 * np.cos(v)
+    u = np.arccos((60.0**2 - 32.0**2 + reach**2) / (2.0 * 60.0 * reach))
+    first = np.stack([reach * np.cos(u) - 60.0, 15.0 * np.sin(v), reach * np.sin(u)], axis=1)
+    one = SurfaceWall(TORUS, (60.0, 15.0), np.eye(4), 0.5 * np.pi, first)
+    several = bend(PIPE, 0.4, 0.5 * np.pi, 3.0)
+    toolpath = planned(several, 8.0, mode="symmetry-plane")
+    build = BuildDirectionParameters("symmetry-plane", clearance="none", max_tilt=np.pi)
+    by_parameter = tubes.plan(one, SurfaceParameters(layer_height=8.0, chord_error=0.001), build, ProcessParameters())
+    layers = [[bead for bead in layer.beads if not bead.closing] for layer in toolpath.layers]
+    assert [len(layer) for layer in layers] == [len(layer.beads) for layer in by_parameter.layers]
+    for below, above, other in zip(layers, layers[1:], by_parameter.layers[1:]):
+        points = np.vstack([bead.points for bead in above])
+        x, y, z = points.T
+        assert np.abs(np.hypot(np.hypot(x + 60.0, z) - 60.0, y) - 15.0).max() < 1e-6
+        inside = np.vstack([bead.points[slice(None) if bead.closed else slice(1, -1)] for bead in above])
+        assert cKDTree(dense(below)).query(inside)[0] == pytest.approx(8.0, abs=3e-3)
+        assert cKDTree(dense(other.beads)).query(points)[0].max() < 0.02
+    assert max(np.abs(bead.tool[:, 1]).max() for _, _, bead in toolpath) < 1e-9

@@ -18,7 +18,7 @@ from ..mesh.triangle_mesh import Mesh
 from ..mesh.triangles import closest
 from ..obstacles import Body
 from .part_depths import PartDepths
-from .patch import Patch
+from .patch import TORUS, Patch
 from .surface import dot
 
 NEAREST = 8  # triangles, by their middles, among which the nearest one of a point is sought
@@ -98,6 +98,12 @@ class PatchWall:
         frame = np.eye(4)
         frame[2, 3] = 0.0 if self.ground is None else self.ground
         return frame
+
+    @property
+    def symmetry_normal(self) -> Array | None:
+        """Unit normal (3,) of the plane of the bend of a torus that closes around; other walls are not known to have one."""
+        whole = len(self.patches) == 1 and self.patches[0].kind == TORUS and all(rim.closed for rim in self.rims)
+        return np.array(self.patches[0].frame[:3, 2]) if whole else None
 
     @cached_property
     def mesh(self) -> Mesh:

@@ -51,7 +51,7 @@ def plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Arr
     given = build.plane_normal()
     if given is not None:
         return np.asarray(np.array(given) / np.linalg.norm(given))
-    normal = wall.symmetry_normal if isinstance(wall, SurfaceWall) else None
+    normal = wall.symmetry_normal
     if normal is None:
         raise InputError(
             "NO_SYMMETRY_PLANE", "build_direction.mode", "{} is not a bend of a torus, so its plane of symmetry is not "
