@@ -27,6 +27,7 @@ from typing import Any
 
 from .core.geometry.curves.bead_curves import POINT_FILES
 from .core.issues import InputError, Issue
+from .core.kinematics.arrangement import OF_ROBOTS
 from .core.kinematics.proposed_cell import cell_of
 from .core.kinematics.urdf import cell as urdf_cell
 from .core.kinematics.urdf import machine as urdf_machine
@@ -58,6 +59,7 @@ from .macro.features import (
 )
 from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
+from .macro.suit import suit
 from .objects import user_machines
 from .objects.cell import Cell
 from .objects.checks.controllers import post_of
@@ -149,45 +151,54 @@ def make_all(
     doc: Any, source: Any, faces: Sequence[str] = (), *, kind: str = "revolution", layers: str = "", substrate: Any = None,
     further: Sequence[Any] = (), base_faces: Sequence[str] = (), name: str = "", machine: str = "", cell: str = "",
     post: str = "", process: Mapping[str, Any] | None = None, then: Sequence[Mapping[str, Any]] = (), mend: float = 0.0,
+    setup: str = "", max_from_vertical: Any = None,
 ) -> tuple[Any, ...]:
     """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
 
     kind: revolution, surface (a wall of the source's faces on the substrate), developable (source and further solids on
     the substrate, on its base_faces), solid (source and further solids, in plane layers unless `layers` says others) or
     curves (edges of the source, named in faces). mend: mm across of the largest hole of a mesh that is closed; 0 for the
-    usual one. The program is for the machine's controller, in the words of `post` where
-    it reads them; there is none when no post is known that writes joint motion of this set-up for it, or the joint path is
-    infeasible. process: parameters of the toolpath by key. A robot other than the default one gets a deposition point and a
-    branch that suit it; `cell`, the path of a saved cell, stands in place of the machine. What reaches below the platform is
-    put on it, where mounting it by the feature does that.
-    `am.make_all(doc, doc.Pot)`
+    usual one. The program is for the machine's controller, in the words of `post` where it reads them; there is none when no
+    post is known that writes joint motion of this set-up for it, or the joint path is infeasible. process: parameters of the
+    toolpath by key. A robot other than the default one gets a deposition point and a branch that suit it, another where the
+    job cannot be done so, and with `setup="tool-on-robot"` a positioner where the torch would lean more than
+    max_from_vertical. `cell`, the path of a saved cell, stands in place of the machine. `am.make_all(doc, doc.Pot)`
 
-    then: features that are deposited after it, in this order and one program, each by its `source`, `kind`, `layers`,
-    `faces`, `substrate`, `further`, `base_faces` and `mend`; they come after the feature in what is returned.
+    then: features that are deposited after it, in this order and one program, each by the keys of the first one
+    (`source`, `kind`, `layers`, `faces` ...); they come after the feature in what is returned.
     `am.make_all(doc, doc.Hub, then=[{"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}])`
     """
-    chosen = read_cell(cell) if cell else cell_of(machine, user_machines.folders())
+    chosen = read_cell(cell) if cell else cell_of(machine, user_machines.folders(), setup or OF_ROBOTS[0].setup)
     with one_step(doc, "New job"):
         made = [make_cell(doc, parameters=chosen)]
         first = {
             "source": source, "kind": kind, "layers": layers, "faces": faces, "substrate": substrate, "further": further,
-            "base_faces": base_faces, "mend": mend,
+            "base_faces": base_faces, "mend": mend, "max_from_vertical": max_from_vertical,
         }
         features = [_feature_of_job(doc, one) for one in (first, *then)]
-        try:
-            toolpath = make_toolpath(doc, features, made[0], **(process or {}))
-        except InputError as error:
-            if error.code != "OFF_PLATFORM" or not error.mended_by:
-                raise
-            change(made[0], **error.mended_by)
-            toolpath = make_toolpath(doc, features, made[0], **(process or {}))
+        toolpath = _toolpath_on_platform(doc, features, made[0], process or {})
+        if setup:
+            suit(made[0], toolpath)
         path = make_joint_path(doc, toolpath, made[0])
+        if path.Status == "infeasible" and not (setup or cell):
+            suit(made[0], toolpath, path)
         made += [*features, toolpath, path]
         post = post_of(chosen, post, user_machines.folders())
         if path.Status == "up to date" and post:
             made.append(make_program(doc, path, name=name or proposed_name(source.Label), post=post))
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
+
+
+def _toolpath_on_platform(doc: Any, features: list[Any], cell: Any, process: Mapping[str, Any]) -> Any:
+    """The toolpath of a new job; what reaches below the platform is put on it, where mounting it by the cell does that."""
+    try:
+        return make_toolpath(doc, features, cell, **process)
+    except InputError as error:
+        if error.code != "OFF_PLATFORM" or not error.mended_by:
+            raise
+        change(cell, **error.mended_by)
+        return make_toolpath(doc, features, cell, **process)
 
 
 def read_cell(file: str) -> CellParameters:
@@ -204,7 +215,7 @@ def read_cell(file: str) -> CellParameters:
 
 def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
     """A feature at its defaults by the keys that `make_all` takes. InputError BAD_VALUE for another key."""
-    known = ("source", "kind", "layers", "faces", "substrate", "further", "base_faces", "mend")
+    known = ("source", "kind", "layers", "faces", "substrate", "further", "base_faces", "mend", "max_from_vertical")
     wrong = [key for key in given_keys if key not in known]
     if wrong or "source" not in given_keys:
         text = ", ".join(wrong) or "no source"
@@ -214,6 +225,8 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
         "BaseFaces": given_keys.get("base_faces", ()),
     }
     values = {key: given_keys[key] for key in ("layers", "mend") if given_keys.get(key)}
+    if given_keys.get("max_from_vertical") is not None:
+        values["max_from_vertical"] = given_keys["max_from_vertical"]
     return make_feature_of(
         doc, given_keys.get("kind", "revolution"), given_keys["source"], given_keys.get("faces", ()), links=links,
         values=values,

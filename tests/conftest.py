@@ -122,6 +122,7 @@ def doc():
 def no_remedies(monkeypatch):
     """What would make an infeasible job feasible is not looked for: it is planned several times over for that."""
     monkeypatch.setattr("freecad_am.objects.joint_path.remedies", lambda *_: [])
+    monkeypatch.setattr("freecad_am.api.suit", lambda *_: None)
 
 
 @pytest.fixture(scope="session")

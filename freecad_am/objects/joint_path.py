@@ -21,7 +21,8 @@ from ..core.planning.beads.speeds import SLOWED
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
-from ..core.planning.remedies import Fixed, Tried, most_points, remedies
+from ..core.planning.remedies import most_points, remedies
+from ..core.planning.tried import Fixed, Tried
 from ..core.process.model import bead_table, predicted
 from ..core.simulation import payload
 from ..core.simulation.timeline import timeline

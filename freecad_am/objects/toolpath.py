@@ -27,7 +27,7 @@ from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
 
 if TYPE_CHECKING:
-    from ..core.planning.remedies import Fixed
+    from ..core.planning.tried import Fixed
     from .checks.predicted_shape import Target
 
 FIXED = "fixed"
@@ -150,7 +150,7 @@ class Toolpath(Stage):
     def fixed(self, obj: Any) -> Fixed | None:
         """The toolpath with one build direction, the axis of the part, made anew without the document; None where it has
         that, and without walls. Of several features those alone are changed."""
-        from ..core.planning.remedies import Fixed
+        from ..core.planning.tried import Fixed
 
         features = features_of(obj)
         shapes = [stage_of(one) for one in features]

@@ -4747,7 +4747,7 @@
         <translation>Règle la vitesse d&apos;avance pour que les cordons gardent leur largeur dans les courbes : none, csw (acier, Dai 2020), li-2025 (aluminium), ou le chemin d&apos;une table d&apos;étalonnage.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Setup</source>
         <translation>Installation</translation>
     </message>
@@ -6240,6 +6240,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>What the positions of Cartesian programs are relative to, in the part&apos;s coordinates: x y z mm, RX RY RZ deg; auto: the frame that sits on the platform.</source>
         <translation>À quoi se rapportent les positions des programmes cartésiens, dans les coordonnées de la pièce : x y z mm, RX RY RZ deg ; auto : le repère qui repose sur le plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/new_job/fields.py"/>
+        <source>What the robot carries. Where the job cannot be done in the cell that suits the robot, another place, another branch or a positioner is proposed, and the robot shown there.</source>
+        <translation>Ce que porte le robot. Si le travail ne peut se faire dans la cellule qui convient au robot, un autre emplacement, une autre branche ou un positionneur est proposé, et le robot y est montré.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -9515,6 +9520,11 @@
         <location filename="../../freecad_am/report/of_document.py"/>
         <source>looking at what is promised</source>
         <translation>vérification de ce qui est promis</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/suited.py"/>
+        <source>looking for a cell in which it can be done: {0}</source>
+        <translation>recherche d&apos;une cellule où cela peut se faire : {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
@@ -12837,12 +12847,12 @@
         <translation>{0} ont toutes une paroi ; nommez les faces de celle à déposer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <location filename="../../freecad_am/core/planning/other_cells.py"/>
         <source>{0} and `cell.branch: auto`</source>
         <translation>{0} et `cell.branch: auto`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <location filename="../../freecad_am/core/planning/other_cells.py"/>
         <source>{0} and `cell.branch: {1}`</source>
         <translation>{0} et `cell.branch: {1}`</translation>
     </message>
@@ -15105,6 +15115,11 @@
         <location filename="../../freecad_am/gui/program/located.py"/>
         <source>{}: on the way there</source>
         <translation>{} : en chemin vers lui</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <source>{}: proposed for this job: {}; enter what yours really has.</source>
+        <translation>{} : proposé pour ce travail : {} ; saisissez ce que la vôtre a réellement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/background/busy.py"/>

@@ -9,6 +9,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from ... import api
+from ...core.parameters.external import externals
 from ...objects.staleness import UP_TO_DATE
 from ..texts.translation import tr, translated
 
@@ -38,6 +39,17 @@ def show_alone(stages: list[Any]) -> None:
     for obj in api.stages_of(stages[0].Document) if stages else []:
         if obj not in stages and obj.ViewObject.Visibility:
             obj.ViewObject.Visibility = False
+
+
+def show_machine(stages: list[Any], asked: bool) -> None:
+    """Show the robot at the job where its set-up was asked for, and tell which positioner was put there."""
+    cell = next((obj for obj in stages if obj.Proxy.kind == "cell"), None)
+    if cell is None or not asked:
+        return
+    cell.ViewObject.ShowMachine = True
+    if externals(cell.External):
+        App.Console.PrintWarning(tr("{}: proposed for this job: {}; enter what yours really has.").format(
+            cell.Label, cell.External) + "\n")
 
 
 def _show_whole() -> None:

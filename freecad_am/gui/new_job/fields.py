@@ -7,9 +7,14 @@ from typing import Any
 
 from PySide import QtGui
 
+from ...core.kinematics.arrangement import OF_ROBOTS
+from ...core.parameters.build_direction import BuildDirectionParameters
 from ...objects.fields import saved_cells
+from ...objects.fields.rows import rows
 from ..texts.translation import tr
-from ..widgets import choices
+from ..widgets import choices, fields
+
+LEANING = "max_from_vertical"
 
 
 def label(name: str) -> Any:
@@ -42,3 +47,34 @@ def machines(chosen: str, doc: Any) -> Any:
     choices.offer(machine, [*cells, *choices.machines()])
     choices.enter(machine, chosen)
     return machine
+
+
+class HowItStands:
+    """What a robot carries, `setup`, and, where that is the tool, how far it may lean, `leaning`."""
+
+    def __init__(self) -> None:
+        self.setup = QtGui.QComboBox()
+        self.setup.setObjectName("Setup")
+        self.setup.setToolTip(tr("What the robot carries. Where the job cannot be done in the cell that suits the robot, "
+                                 "another place, another branch or a positioner is proposed, and the robot shown there."))
+        for one in OF_ROBOTS:
+            if one.planned:
+                self.setup.addItem(choices.worded(one.setup), one.setup)
+        row = next(row for row in rows(BuildDirectionParameters) if row.key == LEANING)
+        self.leaning = fields.make(row, row.default)
+
+    def follow(self, is_robot: bool) -> None:
+        """Leave out what means nothing for a machine that is no robot, or a saved cell."""
+        self.setup.setEnabled(is_robot)
+        self.leaning.widget.setEnabled(bool(self.chosen()))
+
+    def chosen(self) -> str:
+        """The set-up that was chosen, '' where it is the usual one, or there is none to choose."""
+        return str(self.setup.currentData()) if self.setup.isEnabled() and self.setup.currentIndex() else ""
+
+    def arguments(self) -> dict[str, str]:
+        """Keywords of `make_all` and their values as text; none for the usual set-up. InputError for what cannot be read."""
+        if not self.chosen():
+            return {}
+        given, value = {"setup": repr(self.chosen())}, self.leaning.value
+        return given if value == self.leaning.shown else {**given, LEANING: repr(value)}

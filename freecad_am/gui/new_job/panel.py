@@ -31,7 +31,7 @@ from ..widgets.fold import Fold
 from ..widgets.wheel import scrolls
 from . import after, proposal
 from .as_macro import arguments
-from .fields import label, machines, shown
+from .fields import HowItStands, label, machines, shown
 from .left_out import left_out
 from .proposal import CLADDING, CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
 
@@ -71,16 +71,20 @@ class JobPanel:
         self.part = shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
         self.ground = shown("Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view"))
         self.machine = machines(_machine_before(self.document), self.document)
+        self.stands = HowItStands()
         self.name = inputs.NameChoice("")
         self.fold = Fold(tr("Inputs"), True)
         rows = (
             (tr("Deposit"), self.part), (tr("Grows on"), self.ground), (tr("Kind"), self.kind),
-            (tr("Machine"), self.machine), (tr("Name"), self.name.widget),
+            (tr("Machine"), self.machine), (tr("Setup"), self.stands.setup),
+            (self.stands.leaning.heading, self.stands.leaning.widget), (tr("Name"), self.name.widget),
         )
         notes = {widget: self.fold.add(text, widget) for text, widget in rows}
         # under the fields, by what errors call what is entered there
-        self.notes = {"cell.machine": notes[self.machine], "name": notes[self.name.widget]}
+        self.notes = {"cell.machine": notes[self.machine], "name": notes[self.name.widget],
+                      self.stands.leaning.label: notes[self.stands.leaning.widget]}
         connect(self.machine, "editTextChanged(QString)", self._entered_anew)
+        self.stands.setup.currentIndexChanged.connect(self._entered_anew)
         connect(self.name.widget, "textChanged(QString)", self._entered_anew)
         hint = QtGui.QLabel(tr("Cell, feature, toolpath, joint path and program are made with their defaults; "
                                "double-click one in the tree to change it."))
@@ -218,7 +222,8 @@ class JobPanel:
         """What was wrong is no longer there; a machine without a post is told now, not when all is planned."""
         for place in self.notes:
             self._tell(place, "")
-        without = suggestions.no_post(choices.entered(self.machine))
+        self.stands.follow(suggestions.is_robot(choices.entered(self.machine)))
+        without = suggestions.no_post(choices.entered(self.machine), self.stands.chosen())
         self.no_post.setText(without)
         self.no_post.setVisible(bool(without))
 
@@ -248,6 +253,7 @@ class JobPanel:
             self.close()
             made = [obj for obj in api.stages_of(self.document) if obj.Name not in before]
             after.show_alone(made)
+            after.show_machine(made, bool(self.stands.chosen()))
             after.tell_next(made)
             return True
         return False
@@ -260,7 +266,8 @@ class JobPanel:
             self.background.at_once()
 
     def _arguments(self) -> dict[str, str]:
-        return {**arguments(self.found, choices.entered(self.machine)), **self.name.arguments()}
+        given = arguments(self.found, choices.entered(self.machine))
+        return {**given, **self.stands.arguments(), **self.name.arguments()}
 
     def reject(self) -> Any:
         """Nothing was done."""

@@ -42,13 +42,22 @@ def _branches() -> list[str]:
     return ["auto", *(" ".join(words) for words in sides)]
 
 
-def no_post(name: str) -> str:
-    """What to say of a machine that no post writes a new job for; '' for others, and for one that cannot be read."""
+def is_robot(name: str) -> bool:
+    """Whether it is a machine that may carry part or tool; not of one that cannot be read, as of a saved cell."""
+    try:
+        return len(machine.load(name, user_machines.folders()).arrangements) > 1
+    except InputError:
+        return False
+
+
+def no_post(name: str, setup: str = "") -> str:
+    """What to say of a machine that no post writes a new job for in a set-up, '' for its usual one; '' for others, and for
+    one that cannot be read."""
     try:
         loaded = machine.load(name, user_machines.folders())
     except InputError:
         return ""
-    posts, setup = written_by(loaded), loaded.arrangements[0].setup
+    posts, setup = written_by(loaded), setup or loaded.arrangements[0].setup
     if posts is None or catalogue.fitting(posts, ProgramParameters().motion, setup):
         return ""
     if posts:

@@ -11,7 +11,7 @@ from ...core.toolpath import Toolpath
 from ..work import progress
 
 if TYPE_CHECKING:
-    from ...core.planning.remedies import Fixed
+    from ...core.planning.tried import Fixed
 
 CLEARANCE = "CLEARANCE"
 

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The cell that suits a job before it is planned: as it is where the job can be done in it, else another branch, another
+place, or a positioner under a part on which the torch would lean more than it may."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..issues import ERROR, AmError, Text
+from ..kinematics.arrangement import of_setup
+from ..parameters.cell import CellParameters
+from ..toolpath import Toolpath
+from . import other_cells
+from .external.remedies import NOT_LEVEL
+from .plan import Progress
+from .tried import LAYERS, POINTS, Tried
+
+
+def suited(job: Tried, progress: Progress) -> CellParameters:
+    """The parameters of the first cell in which some layers of a job can be done, those it has first; they themselves where
+    none was found. The layers are the first, the middle and the last one, and that which leans most. progress may raise to
+    cancel. Raises what reading the toolpath and resolving the cell raise."""
+    toolpath = job.toolpath()
+    some, left = _layers(toolpath), POINTS
+    errors = _errors(job, some, progress)
+    if not errors or not of_setup(job.settings.setup).free:
+        return job.settings
+    for change in _changes(job, errors):
+        left -= some.point_count
+        if left < 0:
+            break
+        progress(1.0, Text("looking for a cell in which it can be done: {}", change.remedy))
+        try:
+            if not _errors(change, some, progress):
+                return change.settings
+        except AmError:  # what cannot be asked for is no cell
+            continue
+    return job.settings
+
+
+def _changes(job: Tried, errors: set[str]) -> Iterator[Tried]:
+    if NOT_LEVEL in errors:  # which no turn about the tool mends, and no place of what stands still
+        return other_cells.external_axes(job, {NOT_LEVEL})
+    return itertools.chain(other_cells.branches(job), other_cells.points(job), other_cells.external_axes(job, errors))
+
+
+def _errors(job: Tried, toolpath: Toolpath, progress: Progress) -> set[str]:
+    return {issue.code for issue in job.issues(toolpath, False, progress) if issue.level == ERROR}
+
+
+def _layers(toolpath: Toolpath) -> Toolpath:
+    """Some of its layers, that which leans most from the part's axis among them."""
+    upright = [min((float((bead.tool @ toolpath.frame[:3, 2]).min()) for bead in layer.beads), default=1.0)
+               for layer in toolpath.layers]
+    chosen = {round(at) for at in np.linspace(0, len(upright) - 1, LAYERS)} | {int(np.argmin(upright))}
+    return dataclasses.replace(toolpath, layers=tuple(toolpath.layers[k] for k in sorted(chosen)))

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The cell in which the job of a toolpath in a document can be done."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...core.kinematics.arrangement import of_setup
+from ...core.parameters.cell import CellParameters
+from ...core.parameters.joints import JointParameters
+from ...core.parameters.process import ProcessParameters
+from ...core.planning.suited import suited
+from ...core.planning.tried import Tried
+from .. import user_machines
+from ..shapes import cell_obstacles
+from ..work import progress
+
+
+def of_toolpath(toolpath: Any) -> Callable[[CellParameters], CellParameters]:
+    """What finds, beside the document, the parameters of a cell that suits the job of a toolpath object: those it is asked
+    about, or with another branch, another place, or a positioner. It raises what resolving a cell raises."""
+    read, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
+    process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
+
+    def of(settings: CellParameters) -> CellParameters:
+        planned = read()
+        if not of_setup(settings.setup).planned:
+            return settings
+        cell = cell_obstacles.resolved(settings, planned, folders)
+        job = Tried(lambda: planned, settings, folders, process, JointParameters(), obstacles=cell.obstacles,
+                    torch=cell.torch, external_links=cell.external_links)
+        return suited(job, progress.report)
+
+    return of

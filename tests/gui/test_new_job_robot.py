@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A new job with the torch on a robot, by clicks: a positioner is proposed where the torch would lean too far, and the robot
+is shown there; no fields for machines that have no choice."""
+
+import math
+
+import numpy as np
+
+from freecad_am import api
+from freecad_am.core.parameters.external import externals
+
+ROBOT = "kuka-kr8-r2100-2-arc-hw"
+
+
+def test_a_positioner_is_proposed_in_new_job_and_the_robot_is_shown_there(person, hand, hemisphere, monkeypatch):
+    doc = hemisphere.Document
+    steps, make = doc.UndoCount, api.make_feature_of
+    monkeypatch.setattr(api, "make_feature_of", lambda *given, values, **named: make(
+        *given, values={"layer_height": 15.0, "chord_error": 0.3, **values}, **named))
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    setup, leaning = person.field(panel, "Setup"), person.field(panel, "MaxFromVertical")
+    assert setup.isEnabled() and not leaning.isEnabled() and setup.count() == 2
+    hand.enter(panel, "Machine", "table-xyzac")
+    person.until(lambda: not setup.isEnabled(), "no set-up of a machine with five axes", 5)
+    hand.enter(panel, "Machine", ROBOT)
+    person.until(setup.isEnabled, "the set-ups of a robot", 5)
+    person.choose(panel, "Setup", "tool-on-robot")
+    person.until(leaning.isEnabled, "how far a torch may lean", 5)
+    hand.enter(panel, "MaxFromVertical", "10 deg")
+    person.as_revolution()
+    before = len(person.console())
+    person.press("Ok")
+    person.panel_closed()
+    cell, feature, _, path = api.stages_of(doc)[:4]
+    assert (path.Status, doc.UndoCount) == ("up to date", steps + 1), api.issues(path)
+    assert math.isclose(feature.MaxFromVertical.Value, 10.0) and cell.Setup == "tool-on-robot"
+    (positioner,) = externals(cell.External)
+    assert positioner.carries == "part"
+    assert f"proposed for this job: {cell.External}" in person.console()[before:]
+    # the robot stands there with its torch on the part, drawn
+    assert cell.ViewObject.ShowMachine and cell.ViewObject.Proxy.nodes.machine is not None
+    person.look()
+    person.screenshot("new_job_positioner")
+    joints = np.concatenate([bead.joints for bead in api.result(path).joint_path.beads])
+    assert joints.shape[1] == 8 and np.ptp(joints[:, 6:], axis=0).max() > math.radians(20.0)

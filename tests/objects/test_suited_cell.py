@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A new job gets the cell in which it can be done: a positioner where the torch would lean too far, found before it is
+planned, and another place where the robot's usual one does not serve. Held against PyKDL chains of the machine files."""
+
+import json
+import math
+
+import numpy as np
+import PyKDL
+import pytest
+
+from freecad_am import api
+from freecad_am.core.kinematics import external
+from freecad_am.core.kinematics.proposed_cell import cell_of
+from freecad_am.core.parameters.external import externals
+from freecad_am.core.planning import suited
+
+ROBOT, TOOL, MOST = "kuka-kr8-r2100-2-arc-hw", "tool-on-robot", 10.0
+COARSE = {"layer_height": 15.0, "chord_error": 0.3}
+
+
+@pytest.fixture
+def dome(doc, monkeypatch):
+    make = api.make_feature_of
+
+    def coarse(*given, values, **named):
+        return make(*given, values={**COARSE, **values}, **named)
+
+    monkeypatch.setattr(api, "make_feature_of", coarse)
+    part = doc.addObject("Part::Sphere", "Dome")
+    part.Radius, part.Angle1 = 45, 0
+    doc.recompute()
+    return part
+
+
+@pytest.fixture
+def looked(monkeypatch):
+    """How many layers were planned to find a cell."""
+    counts, errors = [], suited._errors
+    monkeypatch.setattr(suited, "_errors", lambda job, some, told: counts.append(len(some.layers)) or errors(
+        job, some, told))
+    return counts
+
+
+def leaning(path, positioner):
+    """deg of the torch from the vertical at each point of a joint path object, by a PyKDL chain of the positioner's file."""
+    chain = PyKDL.Chain()
+    for joint in json.loads((external.MECHANISMS / f"{positioner.machine}.json").read_text(encoding="utf-8"))["joints"]:
+        chain.addSegment(PyKDL.Segment(PyKDL.Joint(), PyKDL.Frame(PyKDL.Vector(*joint["origin"]))))
+        axis = PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.RotAxis)
+        chain.addSegment(PyKDL.Segment(axis, PyKDL.Frame()))
+    solver, found = PyKDL.ChainFkSolverPos_recursive(chain), []
+    for bead in api.result(path).joint_path.beads:
+        for tool, values in zip(bead.bead.tool, bead.joints[:, 6:], strict=True):
+            angles, face = PyKDL.JntArray(2), PyKDL.Frame()
+            for k in (0, 1):
+                angles[k] = float(values[k])
+            solver.JntToCart(angles, face)
+            up = face.M * PyKDL.Vector(*map(float, tool))
+            found.append(math.degrees(math.acos(max(-1.0, min(1.0, up[2])))))
+    return np.array(found)
+
+
+def test_a_positioner_is_proposed_before_the_job_is_planned_without(doc, dome, looked):
+    cell, feature, _, path = api.make_all(doc, dome, machine=ROBOT, setup=TOOL, max_from_vertical=f"{MOST:g} deg")
+    assert math.isclose(feature.MaxFromVertical.Value, MOST)
+    assert path.Status == "up to date", api.issues(path)
+    made = api.result(cell)
+    (positioner,) = externals(made.external)
+    assert positioner.carries == "part" and made.setup == TOOL
+    assert leaning(path, positioner).max() <= MOST + 1e-6
+    assert len(looked) >= 2 and max(looked) <= 4
+
+
+def test_without_a_limit_the_platform_that_suits_the_robot_stays(doc, dome, looked):
+    cell, _, _, path, *_ = api.make_all(doc, dome, machine=ROBOT, setup=TOOL)
+    assert api.result(cell) == cell_of(ROBOT, setup=TOOL) and path.Status == "up to date"
+    assert len(looked) == 1
+
+
+@pytest.mark.parametrize("setup", ["", TOOL, "part-on-robot"])
+@pytest.mark.always(TOOL)
+def test_a_place_that_does_not_serve_is_changed(doc, dome, monkeypatch, looked, setup):
+    """Told to begin out of reach, a job of each set-up is done elsewhere."""
+    begin = cell_of(ROBOT)
+    far = (5000.0, 0.0, 900.0, 0.0, 0.0, 0.0)
+    monkeypatch.setattr(api, "cell_of", lambda *given: type(begin)(
+        machine=ROBOT, setup=given[2], deposition_point=far, branch=begin.branch))
+    cell, _, _, path, *_ = api.make_all(doc, dome, setup=setup)
+    assert path.Status == "up to date", api.issues(path)
+    assert api.result(cell).deposition_point != far and api.result(cell).setup == (setup or "part-on-robot")
+
+
+@pytest.mark.long
+def test_what_no_cell_helps_is_left_as_it_is(doc, dome, looked):
+    """A part too heavy for every positioner."""
+    cell, *_, path = api.make_all(
+        doc, dome, machine=ROBOT, setup=TOOL, max_from_vertical=f"{MOST:g} deg", process={"density": 1e6})[:4]
+    assert path.Status == "infeasible" and api.result(cell) == cell_of(ROBOT, setup=TOOL)
+    assert "NOT_LEVEL" in {issue.code for issue in api.issues(path)}
