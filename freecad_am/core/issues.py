@@ -58,6 +58,13 @@ class Text(str):
         return some[0] if some else ""
 
 
+def values_in(text: str) -> Iterator[str]:
+    """What was put into a text, and into those that were put into it; nothing of a plain one."""
+    for value in getattr(text, "values", ()):
+        yield value
+        yield from values_in(value)
+
+
 @dataclass(frozen=True)
 class Word:
     """A word or part of a sentence that is chosen, such as a plural: of the template, not a value that is put into it."""

@@ -9,6 +9,7 @@ from html import escape
 
 import numpy as np
 
+from freecad_am.core.geometry.formatting import round_step
 from freecad_am.core.types import Array
 
 _MOST_COLUMNS = 700
@@ -44,9 +45,7 @@ def ticks(low: float, high: float, most: int = 6) -> list[float]:
     """Round numbers inside low..high, at most about `most`."""
     if not high > low:
         return [low]
-    raw = (high - low) / most
-    power = 10.0 ** math.floor(math.log10(raw))
-    step = next(power * factor for factor in (1, 2, 2.5, 5, 10) if power * factor >= raw * 0.999)
+    step = round_step(0.999 * (high - low) / most, (1, 2, 2.5, 5, 10))
     return [k * step + 0.0 for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
 
 

@@ -7537,6 +7537,11 @@
         <translation>choisissez un fichier URDF</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>choose a robot with six that turn; those beside it are `cell.external`</source>
+        <translation>choisissez un robot qui en a six rotatifs ; ceux d&apos;à côté sont dans `cell.external`</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
         <source>clearance</source>
         <translation>distance</translation>
@@ -7695,6 +7700,11 @@
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>coordinates in {0}, as the file names no unit</source>
         <translation>coordonnées en {0}, car le fichier ne nomme pas d&apos;unité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>correct its geometry, or choose another machine</source>
+        <translation>corrigez sa géométrie, ou choisissez une autre machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -8085,6 +8095,11 @@
         <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
         <source>give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length</source>
         <translation>donnez des dimensions supérieures à 0 : d&apos;un pavé selon x, y et z, d&apos;un cylindre son diamètre et sa longueur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>give the geometry with more digits</source>
+        <translation>donnez la géométrie avec plus de chiffres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
@@ -8583,8 +8598,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>it has {0} axes, {1} of which slide; a robot that can be planned has six that turn</source>
-        <translation>il a {0} axes, dont {1} linéaires ; un robot planifiable en a six rotatifs</translation>
+        <source>it has {0} axes, {1} of which slide</source>
+        <translation>elle a {0} axes, dont {1} linéaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
@@ -9048,8 +9063,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>its closed form is {0} mm and {1} (entries of the rotation) off; give the geometry with more digits</source>
-        <translation>sa forme explicite s&apos;écarte de {0} mm et {1} (termes de la rotation) ; donnez la géométrie avec plus de chiffres</translation>
+        <source>its closed form is {0} mm and {1} (entries of the rotation) off</source>
+        <translation>sa forme explicite s&apos;écarte de {0} mm et {1} (termes de la rotation)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/files.py"/>
@@ -9085,6 +9100,11 @@
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>its faces that are not flat run on smoothly into {0}, which is; name the faces of the wall: part.faces of a job, or select them</source>
         <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>its first axis slides and carries the six that turn, as a track does</source>
+        <translation>son premier axe coulisse et porte les six qui tournent, comme un rail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -9138,8 +9158,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
-        <source>its solutions do not give back its poses; give the geometry with more digits</source>
-        <translation>ses solutions ne redonnent pas ses poses ; donnez la géométrie avec plus de chiffres</translation>
+        <source>its solutions do not give back its poses</source>
+        <translation>ses solutions ne redonnent pas ses poses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
@@ -9400,6 +9420,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>least allowed</source>
         <translation>minimum permis</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>let the machine begin with the robot, and name the track in `cell.external` with `carries: robot`</source>
+        <translation>faites commencer la machine au robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -10792,6 +10817,21 @@
         <translation>tableau, ligne {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>take another link of a URDF, such as tool0 or fanuc_flange, or turn the flange</source>
+        <translation>prenez un autre corps d&apos;un URDF, tel que tool0 ou fanuc_flange, ou tournez la bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>take the frame tool0 of a URDF, or move the flange</source>
+        <translation>prenez le repère tool0 d&apos;un URDF, ou déplacez la bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>take the frame tool0 of a URDF, or turn the flange</source>
+        <translation>prenez le repère tool0 d&apos;un URDF, ou tournez la bride</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>that VAL 3 sets several outputs to one number was not found documented</source>
         <translation>il n&apos;a pas été trouvé documenté que VAL 3 mette plusieurs sorties à un seul numéro</translation>
@@ -10803,13 +10843,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange</source>
-        <translation>le Z de la bride n&apos;est pas le long de l&apos;axe 6 ; prenez le repère tool0 d&apos;un URDF, ou tournez la bride</translation>
+        <source>the Z of the flange does not lie along axis 6</source>
+        <translation>le Z de la bride n&apos;est pas le long de l&apos;axe 6</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as tool0 or fanuc_flange, or turn the flange</source>
-        <translation>le Z de la bride pointe vers le poignet et non vers l’extérieur ; prendre un autre corps d’un URDF, tel que tool0 ou fanuc_flange, ou tourner la bride</translation>
+        <source>the Z of the flange points back into the wrist, not out of it</source>
+        <translation>le Z de la bride pointe vers le poignet et non vers l&apos;extérieur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -12293,13 +12333,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>this cannot be planned for: its first axis slides and carries the six that turn, as a track does; let the machine begin with the robot, and name the track in `cell.external` with `carries: robot`</source>
-        <translation>on ne peut pas planifier pour cela : son premier axe coulisse et porte les six qui tournent, comme un rail ; faites commencer la machine au robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>this cannot be planned for: {0}; correct its geometry, or choose another machine</source>
-        <translation>on ne peut pas planifier pour cela : {0} ; corrigez sa géométrie, ou choisissez une autre machine</translation>
+        <source>this cannot be planned for: {0}; {1}</source>
+        <translation>cette machine ne peut pas être planifiée : {0} ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>

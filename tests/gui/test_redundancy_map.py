@@ -15,10 +15,12 @@ from freecad_am.core.planning.redundancy import curve as spin_curve
 from freecad_am.core.planning.redundancy import map as spin_map
 from freecad_am.core.simulation.margins import speed_ratios
 from freecad_am.gui.path.colouring import NONE, TOO_NEAR
-from freecad_am.gui.redundancy_map import dock as docks
+from freecad_am.gui.redundancy_map import tool as docks
 from freecad_am.gui.redundancy_map.canvas import TURN
 from freecad_am.gui.redundancy_map.cells import FINE
+from freecad_am.gui.redundancy_map.dock import NAME
 from freecad_am.objects.staleness import UP_TO_DATE
+from tests.gui.positioner_jobs import on_positioner
 
 ROBOT = {"limits": "paper"}
 LONG = 30  # s
@@ -35,7 +37,7 @@ def job(hemisphere, layer_height=9, joints=None, **cell):
 def opened(person, path):
     person.select(path)
     person.click("RoboticAM_SpinMap")
-    panel = person.panel(docks.NAME)
+    panel = person.panel(NAME)
     one = docks._open[0]
     person.until(lambda: one.canvas.painted is not None, "the cells", LONG)
     person.until(lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG)
@@ -374,13 +376,7 @@ def test_a_table_has_no_map(person, hemisphere):
 
 def test_external_axes_go_along_or_stand_across(person, hand, hemisphere, monkeypatch, tmp_path):
     """Along the path they are as planned; across is one of them at the point that was clicked, where the plan is marked."""
-    doc = hemisphere.Document
-    feature = api.make_feature(doc, hemisphere, layer_height=12, max_from_vertical=10)
-    cell = api.make_cell(
-        doc, machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto", platform=20,
-        external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part", nozzle_tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0),
-    )
-    path = api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
+    path = on_positioner(hemisphere, 12)
     assert path.Status == UP_TO_DATE, api.issues(path)
     panel, one = opened(person, path)
     _coloured_by_all_axes(path, one.source.cell)

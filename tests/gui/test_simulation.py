@@ -22,6 +22,7 @@ from freecad_am.gui.simulation.scene import SLOW, WRONG
 from freecad_am.gui.texts.touching import link_touches
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.joint_path import Planned
+from tests.gui.positioner_jobs import on_positioner
 
 CELLS = {
     "part-on-robot": {"limits": "paper"},
@@ -428,13 +429,7 @@ def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(perso
 
 def test_positioner_and_its_bodies_are_drawn_where_its_axes_are(person, hemisphere):
     """Seen from what stands they are where PyKDL has the positioner's own chain, and the part goes with the last one."""
-    doc = hemisphere.Document
-    feature = api.make_feature(doc, hemisphere, layer_height=15, max_from_vertical=10)
-    cell = api.make_cell(
-        doc, machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto", platform=20,
-        external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part", nozzle_tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0),
-    )
-    path = api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
+    path = on_positioner(hemisphere, 15)
     panel, simulation = opened(person, path)
     scene, links, times = simulation.scene, simulation.scene.external_links, simulation.run.times
     numbers = [link.link for link in links.links]

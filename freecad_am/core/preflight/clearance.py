@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..issues import Issue, Text, Word
+from ..issues import Issue, Text, Word, values_in
 from ..kinematics.cell import Cell
 from ..kinematics.links.contact import LINKS_MORE
 from ..kinematics.links.rounds import NONE
@@ -88,7 +88,7 @@ def external_links(
     if len(rows):
         place = row_place(motion, int(rows[0]))
         met = Text("{} with {}", touches.names[touches.what[rows[0]]], touches.links[touches.link[rows[0]]])
-    text = [one for one in of_codes(issues, (*DEPOSITING, *RAPIDS)) if any(name in one.message for name in names)]
+    text = [one for one in of_codes(issues, (*DEPOSITING, *RAPIDS)) if not {*names}.isdisjoint(values_in(one.message))]
     broken = bool(text) or bool(len(rows) and (true_shapes or touches.link[rows[0]] > own))
     whole = true_shapes and not untold
     step = number(math.degrees(touches.step))

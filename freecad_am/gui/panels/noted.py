@@ -10,7 +10,7 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ...core.issues import AmError, InputError
+from ...core.issues import AmError, InputError, values_in
 from ...core.parameters.field import check_value
 from ...objects.fields import expressions
 from ...objects.stage import Stage
@@ -72,7 +72,7 @@ class Noted:
                 return known, translated(error.message)
         for choice in self.choices:
             own = choice.link.name if hasattr(choice, "link") else choice.widget.objectName()
-            missing = error.code == "NO_INPUT" and error.message.startswith(f"{own} is missing")
+            missing = error.code == "NO_INPUT" and own in values_in(error.message)
             if missing or error.where in [*choice.places, *(f"{name}.{own}" for name in names)]:
                 return choice.label, translated(error.message)
         return "", translated_error(error)

@@ -10,6 +10,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
+from ...core.geometry.formatting import round_step
 from ...core.process.deposit.spacing import local_distances
 from ...core.toolpath import Bead, Toolpath
 from ...objects.fields import preferences
@@ -190,9 +191,7 @@ def unknown(count: int, kind: str, why: str) -> tuple[Array, Scale]:
 
 def round_numbers(low: float, high: float, least: float) -> Array:
     """About TICKS round numbers from low to high, apart by one, two or five times a power of ten, `least` or more."""
-    apart = (high - low) / TICKS
-    power = 10.0 ** np.floor(np.log10(apart))
-    step = max(least, next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= apart * (1.0 - _TOLERANCE)))
+    step = max(least, round_step((high - low) / TICKS, (1.0, 2.0, 5.0, 10.0)))
     numbers = np.arange(np.ceil(low / step - _TOLERANCE), np.floor(high / step + _TOLERANCE) + 1.0)
     found: Array = numbers * step + 0.0  # no minus before zero
     return found

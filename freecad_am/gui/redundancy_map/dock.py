@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from typing import Any
 
 import FreeCADGui as Gui
@@ -42,8 +43,9 @@ WIDE, HIGH = 0.85, 380  # of the window's width; pixels
 class RedundancyMapDock:
     """Shows the map of one joint path until it is closed, or until the joint path goes."""
 
-    def __init__(self, obj: Any) -> None:
-        self.obj, self.gone = obj, False
+    def __init__(self, obj: Any, closed: Callable[[RedundancyMapDock], None]) -> None:
+        """closed: is told when it is."""
+        self.obj, self.closed, self.gone = obj, closed, False
         self.dock = places.dock(NAME, places.BELOW, WIDE, HIGH)
         self.holder = QtGui.QStackedWidget()
         self.canvas = Canvas()
@@ -275,7 +277,7 @@ class RedundancyMapDock:
             background.cancel()
         self.renewing.timer.stop()
         self.dock.empty()
-        _open[:] = [one for one in _open if one is not self]
+        self.closed(self)
 
     def end(self, why: str) -> None:
         """End it by itself, and say why."""
@@ -286,15 +288,3 @@ class RedundancyMapDock:
     def _changed_object(self, obj: Any, name: str) -> None:
         if name in ("Key", "Label"):
             self.renewing.ask()
-
-
-_open: list[RedundancyMapDock] = []  # Python must keep it as long as it is open; there is one
-
-
-def show(obj: Any) -> RedundancyMapDock:
-    """Open the map of a joint path, in place of the one that is open. Raises InputError where there is none."""
-    source_of(obj)
-    while _open:
-        _open[0].close()
-    _open.append(RedundancyMapDock(obj))
-    return _open[0]

@@ -12,7 +12,19 @@ from ...core.issues import AmError
 from ...objects.stage import stage_of
 from ..picking.selection import job_named, meant
 from ..texts.translation import error_line, tr, translated_error
-from . import dock
+from .dock import RedundancyMapDock
+from .source import source_of
+
+_open: list[RedundancyMapDock] = []  # Python must keep it as long as it is open; there is one
+
+
+def show(obj: Any) -> RedundancyMapDock:
+    """Open the map of a joint path, in place of the one that is open. Raises InputError where there is none."""
+    source_of(obj)
+    while _open:
+        _open[0].close()
+    _open.append(RedundancyMapDock(obj, _open.remove))
+    return _open[0]
 
 
 def redundancy_map() -> None:
@@ -27,7 +39,7 @@ def redundancy_map() -> None:
         _say(tr("There is no joint path to map; make one first."))
         return
     try:
-        dock.show(selected[0] if selected else made[-1])
+        show(selected[0] if selected else made[-1])
     except AmError as error:
         App.Console.PrintWarning(error_line(error))
         Gui.getMainWindow().statusBar().showMessage(translated_error(error), 8000)

@@ -25,7 +25,8 @@ def message_of(obj: Any) -> str:
 def store_issues(obj: Any, issues: Sequence[Issue]) -> None:
     """Store findings with the object."""
     obj.Issues = json.dumps([issue.as_dict() for issue in issues])
-    remember(obj, *(issue.message for issue in issues))
+    messages = [issue.message for issue in issues]
+    _remember(obj, messages, {obj.Message, *messages})
 
 
 def first_message(issues: Sequence[Issue]) -> str:
@@ -41,15 +42,14 @@ def say(obj: Any, status: str, message: str) -> None:
     """Set status and message, each only where it is another: views and panels follow every change."""
     if obj.Message != message:
         obj.Message = message
-    remember(obj, message)
+    _remember(obj, [message], {message, *(entry["message"] for entry in json.loads(obj.Issues or "[]"))})
     if obj.Status != status:
         obj.Status = status
 
 
-def remember(obj: Any, *messages: str) -> None:
-    """Keep how these messages were made, of those that the object tells now, beside what they say in English. One from a
+def _remember(obj: Any, messages: Sequence[str], said: set[str]) -> None:
+    """Keep how these messages were made, beside what they say in English, of all that the object says now. One from a
     document that had no such property is shown in English until its stage is computed again."""
-    said = {obj.Message, *(entry["message"] for entry in json.loads(obj.Issues or "[]"))}
     known = {**_texts(obj), **{str(one): one for one in messages if isinstance(one, Text) and one.values}}
     kept = json.dumps([_parts(text) for sentence, text in known.items() if sentence in said])
     if kept != (obj.Texts or "[]"):

@@ -163,6 +163,15 @@ class Lesson:
         """File, Import: into the same document."""
         self.in_file_dialog(path, lambda: self.menu("File", "Import"))
 
+    def parts(self, *files):
+        """Open one of the examples and add others, and see them all; the document, and its objects."""
+        first, *others = (ROOT / "resources" / "examples" / file for file in files)
+        self.open(first)
+        for file in others:
+            self.add(file)
+        self.see_all()
+        return App.ActiveDocument, *App.ActiveDocument.Objects
+
     def save_as(self, path):
         """File, Save, of a document that has no file yet."""
         self.in_file_dialog(path, lambda: self.keys("ctrl+s"))

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tutorial 4, step by step: a bracket in plane layers; what leans out of it, what is deposited of it; on a tilting table."""
 
-import FreeCAD as App
 import pytest
 
 PAGE = "bracket"
 
 
 @pytest.mark.long
-def test_the_bracket(person, hand, lesson, root):
+def test_the_bracket(person, hand, lesson):
     lesson.step("1. Open the bracket")
-    lesson.open(root / "resources" / "examples" / "bracket.step")
-    document = App.ActiveDocument
-    part = document.Objects[0]
-    lesson.see_all()
+    document, part = lesson.parts("bracket.step")
     lesson.picture("bracket-part")
 
     lesson.step("2. See what leans out")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tutorial 6, step by step: the bent top of a die gets two layers along its normals, on a table that tilts and turns."""
 
-import FreeCAD as App
 import pytest
 
 PAGE = "die"
@@ -9,12 +8,9 @@ TOP = "Face3"
 
 
 @pytest.mark.long
-def test_the_die(person, hand, lesson, root):
+def test_the_die(person, hand, lesson):
     lesson.step("1. Open the die")
-    lesson.open(root / "resources" / "examples" / "die.step")
-    document = App.ActiveDocument
-    part = document.Objects[0]
-    lesson.see_all()
+    document, part = lesson.parts("die.step")
     lesson.picture("die-part")
 
     lesson.step("2. Choose what is covered")

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tutorial 1, step by step: a part of revolution from a STEP file to a program, with the rotation about the tool by hand."""
 
-import FreeCAD as App
 
 from freecad_am import api
-from freecad_am.gui.redundancy_map import dock as docks
+from freecad_am.gui.redundancy_map import tool as docks
 
 PAGE = "hemisphere"
 
 
-def test_the_hemisphere(person, hand, lesson, root, tmp_path):
+def test_the_hemisphere(person, hand, lesson, tmp_path):
     lesson.step("1. Open the part")
-    lesson.open(root / "resources" / "examples" / "hemisphere.step")
-    document = App.ActiveDocument
-    part = document.Objects[0]
-    lesson.see_all()
+    document, part = lesson.parts("hemisphere.step")
     lesson.picture("hemisphere-part")
 
     lesson.step("2. Make the job")

@@ -5,14 +5,13 @@ import json
 import math
 import re
 
-import FreeCAD as App
 import numpy as np
 import PyKDL
 import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics import external
-from freecad_am.gui.redundancy_map import dock as docks
+from freecad_am.gui.redundancy_map import tool as docks
 
 PAGE = "positioner"
 ROBOT, TABLE, AWAY, FACE = "kuka-kr8-r2100-2-arc-hw", "motoman-motopos-d500", 1400.0, 20.0
@@ -20,12 +19,9 @@ TORCH, LEANS = 300.0, 10.0  # mm from the flange to the tip; deg
 
 
 @pytest.mark.long
-def test_the_dome_on_a_positioner(person, hand, lesson, root):
+def test_the_dome_on_a_positioner(person, hand, lesson):
     lesson.step("1. Open the part")
-    lesson.open(root / "resources" / "examples" / "hemisphere.step")
-    document = App.ActiveDocument
-    part = document.Objects[0]
-    lesson.see_all()
+    document, part = lesson.parts("hemisphere.step")
 
     lesson.step("2. Say how far the torch may lean")
     hand.click_face(part, "Face1")

@@ -3,21 +3,15 @@
 
 import re
 
-import FreeCAD as App
 import pytest
 
 PAGE = "rotor"
 
 
 @pytest.mark.long
-def test_the_rotor(person, hand, lesson, root, tmp_path):
-    examples = root / "resources" / "examples" / "rotor"
+def test_the_rotor(person, hand, lesson, tmp_path):
     lesson.step("1. Open the hub and its blades")
-    lesson.open(examples / "hub.step")
-    lesson.add(examples / "blades.brep")
-    document = App.ActiveDocument
-    hub, _ = document.Objects
-    lesson.see_all()
+    document, hub, _ = lesson.parts("rotor/hub.step", "rotor/blades.brep")
     lesson.picture("rotor-parts")
 
     lesson.step("2. Say what stands on what")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tutorial 2, step by step: a bend on a pipe, stage by stage, with layers at an equal distance everywhere."""
 
-import FreeCAD as App
 import pytest
 
 from freecad_am.gui.plots import dock as plots
@@ -10,14 +9,9 @@ PAGE = "tube-on-pipe"
 
 
 @pytest.mark.long
-def test_the_tube(person, hand, lesson, root, tmp_path):
-    examples = root / "resources" / "examples"
+def test_the_tube(person, hand, lesson, tmp_path):
     lesson.step("1. Open the tube and the pipe")
-    lesson.open(examples / "tube-on-pipe.step")
-    lesson.add(examples / "pipe.step")
-    document = App.ActiveDocument
-    tube, _ = document.Objects
-    lesson.see_all()
+    document, tube, _ = lesson.parts("tube-on-pipe.step", "pipe.step")
     lesson.picture("tube-parts")
 
     lesson.step("2. Say what grows on what")

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tutorial 5, step by step: a Y in curved layers that need no support, held by a robot under a nozzle that stands still."""
 
-import FreeCAD as App
 import pytest
 
 PAGE = "wye"
 
 
 @pytest.mark.long
-def test_the_wye(person, hand, lesson, root):
+def test_the_wye(person, hand, lesson):
     lesson.step("1. Open the Y")
-    lesson.open(root / "resources" / "examples" / "wye.step")
-    document = App.ActiveDocument
-    part = document.Objects[0]
-    lesson.see_all()
+    document, part = lesson.parts("wye.step")
     lesson.picture("wye-part")
 
     lesson.step("2. See what would need support")

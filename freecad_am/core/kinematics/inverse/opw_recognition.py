@@ -23,6 +23,8 @@ STRAIGHT, NEAR_MM = 1e-8, 1e-5
 POSITION, ROTATION = 1e-6, 1e-9
 ROBOT = 6  # axes of one
 FLANGE = "flange"  # where what is refused about the flange alone is
+TOOL_FRAME = "take the frame tool0 of a URDF, or move the flange"
+OTHER_GEOMETRY = "correct its geometry, or choose another machine"
 
 
 def rooted(chain: Chain) -> tuple[Chain, Array]:
@@ -57,19 +59,19 @@ def recognise(chain: Chain) -> OpwArm:
     if chain.axes != 6 or chain.sliding.any():
         slides = int(chain.sliding.sum())
         if track_of(chain):
-            raise InputError("NO_CLOSED_FORM", "geometry", "this cannot be planned for: its first axis slides and carries "
-                             "the six that turn, as a track does; let the machine begin with the robot, and name the track "
-                             "in `cell.external` with `carries: robot`")
-        raise refused(Text("it has {} axes, {} of which slide; a robot that can be planned has six that turn", chain.axes,
-                           slides))
+            raise refused("its first axis slides and carries the six that turn, as a track does",
+                          "let the machine begin with the robot, and name the track in `cell.external` with `carries: "
+                          "robot`")
+        raise refused(Text("it has {} axes, {} of which slide", chain.axes, slides),
+                      "choose a robot with six that turn; those beside it are `cell.external`")
     at_rest = chain.frames(np.zeros(6))
     centre = _wrist_centre(at_rest)
     arm = _arm(at_rest, centre)
     q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
     off = np.abs(arm.forward(q) - chain.forward(q))
     if off[:, :3, 3].max() > POSITION or off[:, :3, :3].max() > ROTATION:
-        raise refused(Text("its closed form is {:.3g} mm and {:.2g} (entries of the rotation) off; give the geometry with "
-                           "more digits", off[:, :3, 3].max(), off[:, :3, :3].max()))
+        raise refused(Text("its closed form is {:.3g} mm and {:.2g} (entries of the rotation) off", off[:, :3, 3].max(),
+                           off[:, :3, :3].max()), "give the geometry with more digits")
     return arm
 
 
@@ -135,14 +137,14 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     across = np.cos(turn23) * x - np.sin(turn23) * up
     out = flange[:3, 2]
     if np.linalg.norm(np.cross(out, z[5])) > STRAIGHT:
-        raise refused("the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange",
-                       FLANGE)
+        raise refused("the Z of the flange does not lie along axis 6", "take the frame tool0 of a URDF, or turn the flange",
+                      FLANGE)
     offset = flange[:3, 3] - centre
     if np.linalg.norm(offset - out * float(offset @ out)) > NEAR_MM:
-        raise refused("the flange's origin does not lie on axis 6", FLANGE)
+        raise refused("the flange's origin does not lie on axis 6", TOOL_FRAME, FLANGE)
     if float(offset @ out) < -NEAR_MM and float(out @ forearm) < 0.0:
-        raise refused("the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as "
-                       "tool0 or fanuc_flange, or turn the flange", FLANGE)
+        raise refused("the Z of the flange points back into the wrist, not out of it",
+                      "take another link of a URDF, such as tool0 or fanuc_flange, or turn the flange", FLANGE)
     # axis 5 within the forearm: about its own y, turned about it by turn4 of at most a right angle
     turn4 = math.atan2(-float(z[4] @ across), float(z[4] @ y))
     sign5 = 1
@@ -194,6 +196,6 @@ def clean(value: float) -> float:
     return rounded + 0.0 if abs(rounded - value) < 1e-11 else value
 
 
-def refused(reason: str, where: str = "geometry") -> InputError:
-    return InputError("NO_CLOSED_FORM", where, "this cannot be planned for: {}; correct its geometry, or choose another "
-                      "machine", reason)
+def refused(reason: str, remedy: str = "", where: str = "geometry") -> InputError:
+    """The error of a machine that cannot be planned for, and what to do about it."""
+    return InputError("NO_CLOSED_FORM", where, "this cannot be planned for: {}; {}", reason, remedy or OTHER_GEOMETRY)

@@ -108,7 +108,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     )
     arm = replace(arm, flips=_flips(arm))
     if not _agrees(arm, chain):
-        raise opw_recognition.refused("its solutions do not give back its poses; give the geometry with more digits")
+        raise opw_recognition.refused("its solutions do not give back its poses", "give the geometry with more digits")
     return arm
 
 

@@ -8,6 +8,7 @@ import dataclasses
 import numpy as np
 
 from ...geometry.angles import TURN
+from ...toolpath import Bead
 from ...types import Array
 from ..external import stroke
 from ..joint_path import BeadPath
@@ -37,10 +38,18 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
         near[:, own:] = stroke.waiting(task.cell, path.joints[:, own:], external)
     flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi, near)
     joints = unwrapped_from(task, path.joints[-1], task.inverse(flange, near))
+    return longer(task, path, bead, flange, phi, joints, again(path.threshold))
+
+
+def longer(
+    task: Task, path: BeadPath, bead: Bead, flange: Array, phi: Array, joints: Array, threshold: Array
+) -> BeadPath:
+    """The path of a bead that has got m more points at its end: where the flange is there (m, 4, 4), rotations (m,), joints
+    (m, axes), and how near to a singularity they may come (m,)."""
     return dataclasses.replace(
         path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
         condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
-        threshold=np.concatenate([path.threshold, again(path.threshold)]),
+        threshold=np.concatenate([path.threshold, threshold]),
     )
 
 

@@ -16,7 +16,7 @@ from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath
 from ..task import Task
-from .overlap import unwrapped_from
+from .overlap import longer, unwrapped_from
 
 BACK = -0.999  # cosine between the way to a point and the way on from it
 
@@ -44,7 +44,7 @@ def gone_back(bead: Bead, length: float) -> Bead:
     points = way.of(bead.points)
     points[-1] = point
 
-    def longer(change: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    def extended(change: Callable[[Array], Array]) -> Callable[[Array], Array]:
         return lambda column: np.concatenate([column, change(column)])
 
     def directions(column: Array) -> Array:
@@ -52,7 +52,7 @@ def gone_back(bead: Bead, length: float) -> Bead:
         return np.asarray(found / lengths(found)[:, None])
 
     def both(column: Array | None) -> Array | None:
-        return None if column is None else longer(way.of)(column)
+        return None if column is None else extended(way.of)(column)
 
     # told from here on: a row of points that turns back would be straight next to its end
     tangents = _tangents(bead)
@@ -62,9 +62,9 @@ def gone_back(bead: Bead, length: float) -> Bead:
     return dataclasses.replace(
         bead, points=np.concatenate([bead.points, points]),
         tangents=np.concatenate([tangents[:-1], turning, back[1 : way.past], ends]),
-        build=longer(directions)(bead.build), tool=longer(directions)(bead.tool),
+        build=extended(directions)(bead.build), tool=extended(directions)(bead.tool),
         # it goes on in the same sense: how far along a bead is told by it
-        parameter=longer(lambda column: 2.0 * column[-1] - way.of(column))(bead.parameter),
+        parameter=extended(lambda column: 2.0 * column[-1] - way.of(column))(bead.parameter),
         speed=np.concatenate([bead.speed, bead.speed[::-1][: way.past]]),
         width=both(bead.width), height=both(bead.height), external=both(bead.external),
     )
@@ -78,11 +78,7 @@ def go_back(task: Task, path: BeadPath, length: float) -> BeadPath:
     phi, joints = way.of(path.phi), way.of(path.joints)
     flange = task.cell.flange_poses(bead.points[n:], bead.tool[n:], phi, joints)
     joints[-1:] = unwrapped_from(task, joints[-1], task.inverse(flange[-1:], joints[-1:]))
-    return dataclasses.replace(
-        path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
-        condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
-        threshold=np.concatenate([path.threshold, way.of(path.threshold)]),
-    )
+    return longer(task, path, bead, flange, phi, joints, way.of(path.threshold))
 
 
 def turns_back(bead: Bead) -> Array:

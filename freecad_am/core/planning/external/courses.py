@@ -55,17 +55,10 @@ def chosen(cell: Cell, courses: Sequence[Array], before: Array) -> Array:
     """Of all courses and whole turns the one within the limits that moves least, then the one that starts nearest to the
     values before (k,)."""
     rows, lower, upper = limits_of(cell)
-    speed, start = cell.machine.max_speed[cell.robot.chain.axes + rows], before
-    before = start[rows]
-    ranked = []
-    for course in courses:
-        moved = rotary_courses.in_turns(course, before, lower, upper)
-        over = float(np.maximum(lower - moved, moved - upper).max())
-        motion = float(np.abs(np.diff(moved, axis=0)).sum())
-        ranked.append((max(over, 0.0), round(motion, 6), float((np.abs(moved[0] - before) / speed).max()), moved))
-    best = min(range(len(ranked)), key=lambda k: ranked[k][:3])
-    values = np.tile(start, (len(ranked[best][3]), 1))
-    values[:, rows] = ranked[best][3]
+    speed, every = cell.machine.max_speed[cell.robot.chain.axes + rows], np.ones(len(rows), dtype=bool)
+    best = rotary_courses.chosen(courses, before[rows], lower, upper, speed, every, least_motion=True)
+    values = np.tile(before, (len(best), 1))
+    values[:, rows] = best
     return values
 
 

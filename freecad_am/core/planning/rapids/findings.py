@@ -29,8 +29,8 @@ def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
     return Issue(
         ERROR, "RAPID_COLLISION",
         Text("on its way from the bead before the nozzle would meet {} at every retract distance and direction tried, and "
-            "no way round was found; move the seam or the part, or take a more slender nozzle", ", ".join(names)), layer,
-            bead,
+            "no way round was found; move the seam or the part, or take a more slender nozzle", Text.joined(", ", names)),
+        layer, bead,
     )
 
 

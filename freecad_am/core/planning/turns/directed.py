@@ -7,7 +7,6 @@ Two turning axes bring the tool axis to the torch, one of them where the other s
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,7 +17,6 @@ from ...toolpath import Bead
 from ...types import Array
 from ..reserve import RESERVE
 from . import rotary_courses
-from .rotary_courses import in_turns
 
 
 @dataclasses.dataclass(frozen=True)
@@ -42,18 +40,9 @@ def courses(cell: Cell, lock: Lock | None, bead: Bead) -> list[Array]:
 
 
 def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:
-    """Of all courses (n, 5) and whole turns the one within the limits that starts nearest to where the axes are; without one
-    within the limits, the one that leaves them least."""
+    """Of all courses (n, 5) and whole turns the one within the limits that starts nearest to where the axes are."""
     lower, upper = cell.limits.lower + RESERVE, cell.limits.upper - RESERVE
-    turning, ranked = ~cell.machine.chain.sliding, []
-    for course in ways:
-        moved = course.copy()
-        if np.isfinite(course).all():
-            moved[:, turning] = in_turns(course[:, turning], before[turning], lower[turning], upper[turning])
-        over = float(np.maximum(lower - moved, moved - upper).max())
-        way = float((np.abs(moved[0] - before) / cell.machine.max_speed).max())
-        ranked.append((math.inf, math.inf, moved) if math.isnan(over) else (max(over, 0.0), way, moved))
-    return min(ranked, key=lambda one: one[:2])[2]
+    return rotary_courses.chosen(ways, before, lower, upper, cell.machine.max_speed, ~cell.machine.chain.sliding)
 
 
 def _locked(arm: FiveAxis, lock: Lock, tools: Array, torch: Array) -> Array:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,3 +59,22 @@ def in_turns(course: Array, before: Array, lower: Array, upper: Array) -> Array:
     with np.errstate(invalid="ignore"):
         centred = np.round(np.nan_to_num(0.5 * (lower + upper) - 0.5 * (low + high)) / TURN)
     return np.asarray(course + TURN * np.where(fewest <= most, np.clip(wanted, fewest, most), centred))
+
+
+def chosen(
+    ways: Sequence[Array], before: Array, lower: Array, upper: Array, speed: Array, turning: NDArray[np.bool_],
+    least_motion: bool = False,
+) -> Array:
+    """Of all courses (n, a) and whole turns of the axes that turn (a,) the one within the limits (a,) that starts nearest to
+    the values before (a,) by the largest speeds; of least motion before that. Without one within the limits, the one that
+    leaves them least; without one of numbers, the first."""
+    ranked = []
+    for course in ways:
+        moved = course.copy()
+        if np.isfinite(course).all():
+            moved[:, turning] = in_turns(course[:, turning], before[turning], lower[turning], upper[turning])
+        over = float(np.maximum(lower - moved, moved - upper).max())
+        motion = round(float(np.abs(np.diff(moved, axis=0)).sum()), 6) if least_motion else 0.0
+        start = float((np.abs(moved[0] - before) / speed).max())
+        ranked.append((math.inf, math.inf, math.inf, moved) if math.isnan(over) else (max(over, 0.0), motion, start, moved))
+    return min(ranked, key=lambda one: one[:3])[3]

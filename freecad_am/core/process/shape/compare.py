@@ -136,7 +136,7 @@ def issues(found: PredictedShape, layer_heights: Array, first: Mask, remedy: str
     """That layers come out higher or lower than they are planned, and that the part is not inside the predicted deposit by
     the allowance. layer_heights: (layers,) mm; first: (layers,) of those that nothing of their feature lies below. remedy:
     what to do where the deposit is too small, with {} for by how much."""
-    drifts = _drift(found.drift, layer_heights, first)
+    drifts, low = _drift(found.drift, layer_heights, first)
     if found.short <= 0.0:
         return drifts
     lacks = found.allowance - found.least
@@ -146,7 +146,7 @@ def issues(found: PredictedShape, layer_heights: Array, first: Mask, remedy: str
         text = Text("the part sticks out by {:.3g} mm", -found.least)
     else:
         text = Text("{:.3g} mm are left to machine", found.least)
-    low = any(" mm below where " in issue.message for issue in drifts)  # more of it would be needed everywhere
+    # where layers come out low more would be needed everywhere
     remedy = "Lay layers as high as they come out first" if low else Text(remedy, f"{lacks:.3g}")
     return (*drifts, Issue(
         WARNING, CODE, Text("on {:.3g} % of the faces the predicted deposit does not reach {:g} mm beyond the part, on "
@@ -155,12 +155,13 @@ def issues(found: PredictedShape, layer_heights: Array, first: Mask, remedy: str
     ))
 
 
-def _drift(drift: Array, layer_heights: Array, first: Mask) -> tuple[Issue, ...]:
-    """That layers end farther above or below where the next should begin than MUCH of their height, at the worst one."""
+def _drift(drift: Array, layer_heights: Array, first: Mask) -> tuple[tuple[Issue, ...], bool]:
+    """That layers end farther above or below where the next should begin than MUCH of their height, at the worst one, and
+    whether it is below."""
     off = np.nan_to_num(drift) / layer_heights
     worst = int(np.abs(off).argmax()) if len(off) else 0
     if not len(off) or abs(off[worst]) <= MUCH:
-        return ()
+        return (), False
     lowest = int(np.flatnonzero(first[: worst + 1])[-1]) if first[: worst + 1].any() else 0
     made = layer_heights[worst] + drift[worst] / (worst - lowest + 1)
     way = "below" if drift[worst] < 0.0 else "above"
@@ -168,4 +169,4 @@ def _drift(drift: Array, layer_heights: Array, first: Mask) -> tuple[Issue, ...]
         WARNING, DRIFT, Text("this layer is predicted to end {:.3g} mm {} where the next one should begin: up to here "
             "layers come out {:.3g} mm high in the mean, and {:g} mm are planned; set strategy.layer_height to {:.3g} mm, "
             "or change what the wire feeds", abs(drift[worst]), Word(way), made, layer_heights[worst], made), worst,
-    ),)
+    ),), bool(drift[worst] < 0.0)
