@@ -16,6 +16,7 @@ from ..kinematics.pose_frames import PoseFrames
 from ..toolpath import Bead
 from ..types import Array
 
+PIECE = 4096  # points whose poses and Jacobians are held together
 UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
 
 
@@ -116,10 +117,26 @@ def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None, posed: bo
         first=np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
         bead=np.repeat(np.arange(len(beads)), counts),
         closed=np.array([bead.closed for bead in beads], dtype=bool),
-        frames=cell.pose_frames(position, tool, external) if posed else UNPOSED,
+        frames=_frames_of(cell, position, tool, external) if posed else UNPOSED,
         external=external,
         sliding=cell.machine.chain.sliding if cell.machine.chain.sliding.any() else None,
     )
+
+
+def in_pieces(count: int) -> list[slice]:
+    """So many points in pieces that are worked on one after the other."""
+    return [slice(start, start + PIECE) for start in range(0, count, PIECE)]
+
+
+def _frames_of(cell: Cell, position: Array, tool: Array, external: Array | None) -> PoseFrames:
+    """`cell.pose_frames`, piece by piece: what they are made of is many times as large as they are."""
+    parts = [
+        cell.pose_frames(position[some], tool[some], None if external is None else external[some])
+        for some in in_pieces(len(position))
+    ]
+    if cell.arrangement.carries_part:
+        return PoseFrames(parts[0].left, parts[0].sign, np.concatenate([part.right for part in parts]))
+    return PoseFrames(np.concatenate([part.left for part in parts]), parts[0].sign, parts[0].right)
 
 
 def thinned(bead: Bead, most: int | None) -> NDArray[np.int64]:

@@ -19,12 +19,10 @@ from ..kinematics.pose_frames import PoseFrames
 from ..parameters.joints import JointParameters
 from ..types import Array
 from .arm.kept import ArmKept
-from .points import Points, unwrapped
+from .points import Points, in_pieces, unwrapped
 from .reserve import RESERVE
 from .turns import configurations as following
 from .turns.directed import Lock
-
-PIECE = 4096  # points whose poses and Jacobians are held together
 
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
@@ -258,7 +256,8 @@ class Task:
         wanted = self.parameters.min_condition
         if not isinstance(wanted, str):
             return np.full(len(points), float(wanted))
-        phi, _ = self.cell.phi_of_rz(points.tool, np.zeros(len(points)))
+        tools = [points.tool[some] for some in in_pieces(len(points))]
+        phi = np.concatenate([self.cell.phi_of_rz(tool, np.zeros(len(tool)))[0] for tool in tools])
         at_zero = self.condition(points, phi, self.raw_joints(points, phi))
         return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
 
@@ -276,11 +275,6 @@ class Task:
         if self.cell.external is not None:
             rates = np.pad(rates, ((0, 0), (0, joints.shape[1] - rates.shape[1])))
         return np.asarray(rates, dtype=np.float64), matrix
-
-
-def in_pieces(count: int) -> list[slice]:
-    """So many points in pieces that are worked on one after the other."""
-    return [slice(start, start + PIECE) for start in range(0, count, PIECE)]
 
 
 def with_external(joints: Array, external: Array) -> Array:

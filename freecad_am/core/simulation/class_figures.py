@@ -22,9 +22,9 @@ def figures(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
         rows = mine & motion.moves
         if not rows.any():
             continue
-        places = np.unique(np.stack((motion.layer[mine], motion.bead[mine])), axis=1)
+        beads = motion.layer[mine] * (1 + motion.bead[mine].max()) + motion.bead[mine]
         found.append({
-            "class": name, "beads": places.shape[1], "length_mm": float(way[rows].sum()),
+            "class": name, "beads": len(np.unique(beads)), "length_mm": float(way[rows].sum()),
             "deposit_s": float(np.nan_to_num(motion.duration)[rows].sum()),
             "travel_speed_mm_s": {"min": float(motion.speed[rows].min()), "max": float(motion.speed[rows].max())},
             "schedule": process.for_class(name).schedule,

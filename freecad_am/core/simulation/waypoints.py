@@ -27,10 +27,11 @@ def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()
     axis slides, 'deg' where it turns and where left out. Where the wire follows the travel speed, its own comes
     next. The last column is the class of the bead, empty where it is not known."""
     units = units or ("deg",) * len(axes)
-    last = [WIRE, CLASS] if has_wire(motion) else [CLASS]
+    wire = has_wire(motion)
+    last = [WIRE, CLASS] if wire else [CLASS]
     yield ",".join((HEADER, *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)), *last)) + "\n"
     for start in range(0, len(motion), _ROWS_AT_ONCE):
-        yield _rows(motion, units, slice(start, start + _ROWS_AT_ONCE))
+        yield _rows(motion, units, wire, slice(start, start + _ROWS_AT_ONCE))
 
 
 def has_wire(motion: Motion) -> bool:
@@ -38,8 +39,8 @@ def has_wire(motion: Motion) -> bool:
     return bool(np.isfinite(motion.wire).any())
 
 
-def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
-    """Rows as text."""
+def _rows(motion: Motion, units: tuple[str, ...], wire: bool, rows: slice) -> str:
+    """Rows as text, with the wire's own speed or without."""
     slides = np.array([unit == "mm" for unit in units])
     angles = np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows]))
     numbers = _cells((motion.layer[rows], motion.bead[rows], motion.point[rows]), 0)
@@ -47,7 +48,7 @@ def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
     vectors = _cells((*motion.build[rows].T, *motion.tool[rows].T), _DIRECTIONS)
     texts = [*numbers, _KINDS[motion.deposit[rows].astype(np.intp)].T, x, y, z, *vectors, speed, width]
     texts += _cells((*angles.T,), _ANGLES)
-    if has_wire(motion):
+    if wire:
         texts += _cells((motion.wire[rows],), _LENGTHS)
     texts.append(_CLASSES[motion.bead_class[rows]].T)  # of none the last one
     ends = [*[b","] * (len(texts) - 1), b"\n"]

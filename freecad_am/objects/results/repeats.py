@@ -164,18 +164,27 @@ def _candidates(words: Words) -> tuple[Index, Index]:
     """Places (k,) in order where words stand that stand before, and the first place where they do."""
     places = _landmarks(words)
     marks = _marks([words[places + k] for k in range(len(FACTORS))])
-    order = np.argsort(marks, kind="stable")  # of the same marks the first place first
+    order = _ranked(marks)  # of the same marks the first place first
     ranked = marks[order]
     first = np.flatnonzero(np.append(True, ranked[1:] != ranked[:-1])) if len(ranked) else order
     source = np.empty_like(places)
     source[order] = np.repeat(places[order[first]], np.diff(np.append(first, len(ranked))))
-    # at most EVERY of a stretch come before its candidate: as many, at least, come after
+    # at most EVERY of a stretch come before its candidate: as many, at least, come after, of which a few are looked at
     good = (source + SHORTEST <= places) & (places + EVERY <= len(words))
     places, source = places[good], source[good]
-    for k in range(EVERY):
+    for k in (*range(len(FACTORS)), EVERY // 2, EVERY - 1):
         good = words[places + k] == words[source + k]
         places, source = places[good], source[good]
     return places, source
+
+
+def _ranked(marks: Words) -> Index:
+    """The order (k,) of marks, those of which the upper halves are the same in theirs: by one quarter after the other, which
+    numpy sorts in half the time."""
+    halves = (marks >> np.uint64(32)).astype(np.uint32)
+    order = np.argsort(halves.astype(np.uint16), kind="stable")
+    found: Index = order[np.argsort((halves >> np.uint32(16)).astype(np.uint16)[order], kind="stable")]
+    return found
 
 
 def _landmarks(words: Words) -> Index:

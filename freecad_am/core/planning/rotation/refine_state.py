@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ...kinematics import jacobian as jac
 from ...types import Array
 from .. import criteria
-from ..points import Points
-from ..task import Task, in_pieces
+from ..points import Points, in_pieces
+from ..task import Task
 from . import basis
 
 # share by which the condition stays above its threshold, so that an optimum on it does not fall below between the points
