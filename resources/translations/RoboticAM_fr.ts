@@ -1154,6 +1154,11 @@
         <translation>Là où commencent les cordons fermés.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Where it takes less motion than a polynomial, the rotation about the tool axis is free at every point of a bead: the best course that is found, for the objective displacement. Takes up to seconds per bead.</source>
+        <translation>Là où le mouvement est moindre qu’avec un polynôme, la rotation autour de l’axe de l’outil est libre en chaque point d’un cordon : le meilleur parcours trouvé, pour l’objectif displacement. Prend jusqu’à quelques secondes par cordon.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Where the figures of the material are from; carried to the report.</source>
         <translation>D&apos;où viennent les valeurs du matériau ; repris dans le rapport.</translation>
@@ -1892,6 +1897,11 @@
         <translation>Certificat</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/redundancy_map/readout.py"/>
+        <source>Certificate: {:.4g} as planned, no rotation goes below {:.4g}: a gap of {:.1f} %, {:.1f} % in layer {} bead {}</source>
+        <translation>Certificat : {:.4g} tel que planifié, aucune rotation ne descend sous {:.4g} : un écart de {:.1f} %, de {:.1f} % dans la couche {} cordon {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Change of the objective and of the coefficients at which the optimiser stops.</source>
         <translation>Variation de l&apos;objectif et des coefficients à laquelle l&apos;optimiseur s&apos;arrête.</translation>
@@ -2005,6 +2015,11 @@
         <location filename="../../freecad_am/gui/program/window.py"/>
         <source>Close</source>
         <translation>Fermer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Close gap</source>
+        <translation>Combler l’écart</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -6255,6 +6270,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Where closed beads start.</source>
         <translation>Là où commencent les cordons fermés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Where it takes less motion than a polynomial, the rotation about the tool axis is free at every point of a bead: the best course that is found, for the objective displacement. Takes up to seconds per bead.</source>
+        <translation>Là où le mouvement est moindre qu’avec un polynôme, la rotation autour de l’axe de l’outil est libre en chaque point d’un cordon : le meilleur parcours trouvé, pour l’objectif displacement. Prend jusqu’à quelques secondes par cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences/page.py"/>

@@ -132,6 +132,18 @@ def test_a_plan_that_moves_seams_is_shown_as_it_runs(person, hemisphere, overlap
     assert one.draft.full.points.closed.all()
 
 
+def test_a_certificate_is_told_of_the_plan(person, hemisphere):
+    path = job(hemisphere, joints={"certificate": True, "degree": 0})
+    _, one = opened(person, path)
+    found = one.source.planned.optimality
+    assert found["gap"] > 0.01  # constant rotations are not the best there are
+    told = one.form.verdict.text().splitlines()[-1]
+    assert told == (
+        f"Certificate: {found['objective']:.4g} as planned, no rotation goes below {found['bound']:.4g}: a gap of "
+        f"{100 * found['gap']:.1f} %, {100 * found['worst']['gap']:.1f} % in layer {found['worst']['layer']} bead "
+        f"{found['worst']['bead']}")
+
+
 def test_what_the_mouse_is_over_is_told(person, hemisphere, hand):
     path = job(hemisphere)
     panel, one = opened(person, path)

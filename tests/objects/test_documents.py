@@ -27,7 +27,7 @@ IN_ROWS = {
 # what there was not then: derived, or None where nobody knows
 ADDED = (
     "role", "bead_width", "unsupported", "wire_feed", "depths", "on_part", "volumes", "feature_label", "features", "feature",
-    "uneven", "twice", "external", "max_from_vertical", "world_up", "optimality", "certificate", "of_level",
+    "uneven", "twice", "external", "max_from_vertical", "world_up", "optimality", "certificate", "close_gap", "of_level",
     "arm_clearance", "obstacles", "bead_class", "classes", "schedule", "ends", "phase", "fitted",
     "material", "touched", "touched_tolerance", "shape", "halt", "retreat", "min_layer_time",
     "predicted", "shape_of_deposit", "machining_allowance",

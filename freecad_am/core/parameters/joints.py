@@ -85,6 +85,11 @@ class JointParameters:
         "Compare the joint path with a lower bound over all rotations about the tool axis. Takes up to seconds per bead.",
         advanced=True,
     )
+    close_gap: bool = f.parameter(
+        False, f.FLAG,
+        "Where it takes less motion than a polynomial, the rotation about the tool axis is free at every point of a bead: "
+        "the best course that is found, for the objective displacement. Takes up to seconds per bead.", advanced=True,
+    )
     external_axes: str = f.parameter(
         LEVEL, f.CHOICE,
         "Axes beside the robot. level: they turn no more than the angle from the vertical asks for; optimised: one "

@@ -23,7 +23,7 @@ from .beads.chord_error import refined_to_chord_error
 from .beads.overlap import run_on
 from .beads.retreat import go_back
 from .beads.speeds import corners_slowed, rings_slowed, too_fast
-from .certificate import bound
+from .certificate import bound, closing
 from .external import rule as external_rule
 from .external import track
 from .external.level import ways
@@ -44,7 +44,7 @@ ALL_METHODS = METHODS | {closed_form.METHOD: closed_form.plan}  # and the one wh
 # what there is to choose where a robot is free to turn about the tool
 OF_ROBOTS = (
     "method", "rz", "degree", "parameter", "rotation_range", "objective", "min_condition", "characteristic_length",
-    "tolerance", "max_iterations", "compare", "given", "own_branch", "certificate", "external_axes",
+    "tolerance", "max_iterations", "compare", "given", "own_branch", "certificate", "close_gap", "external_axes",
 )
 BRANCHES = 8
 # with the branch left open: beads looked at in each, and branches planned until one serves
@@ -236,7 +236,7 @@ def _finished(
     task: Task, toolpath: Toolpath, places: Sequence[Place], paths: Sequence[BeadPath]
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with the points that straight motion asks for, turns counted on, and what is wrong with them."""
-    straight = [_as_run(task, path) for path in paths]
+    straight = closing.where_asked(task, [_as_run(task, path) for path in paths])
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])
     paths, missed = as_held(task.cell, paths, task.lock, task.parameters.max_residual)
     phased = [phases.phased(task.cell, path, task.condition_at) for path in paths]

@@ -14,7 +14,7 @@ from ..texts.translation import tr
 from .curves import COLOURS, OWN, PLANNED
 from .draft import Draft
 from .form import Form
-from .readout import joint_ranges
+from .readout import certified, joint_ranges
 
 
 class Consequences:
@@ -85,4 +85,5 @@ class Consequences:
             text, wrong = asked.format(100.0 * sums.ratio), True
         else:
             text, wrong = self.status() if not edited else (tr("All points serve"), False)
-        self.form.tell(text, wrong)
+        certificate = certified(self.draft.source.planned.optimality)
+        self.form.tell("\n".join(filter(None, (text, certificate if not edited else ""))), wrong)

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from freecad_am.core.types import Array
@@ -39,6 +42,20 @@ def readout(cell: Cell, machine: Machine) -> str:
     joints = "   ".join(f"{name} {value:.2f}{unit}" for name, value, unit in zip(
         machine.axes, cell.joints / machine.unit_values, _units(machine), strict=True))
     return f"{where}   {turned}   {margin}   {condition}   {', '.join(notes)}\n{joints}"
+
+
+def certified(optimality: Mapping[str, Any] | None) -> str:
+    """What a certificate says of the plan; '' where none was asked for."""
+    if optimality is None:
+        return ""
+    told = tr(
+        "Certificate: {:.4g} as planned, no rotation goes below {:.4g}: a gap of {:.1f} %, {:.1f} % in layer {} bead {}"
+    )
+    worst = optimality["worst"]
+    return told.format(
+        optimality["objective"], optimality["bound"], 100.0 * optimality["gap"], 100.0 * worst["gap"], worst["layer"],
+        worst["bead"],
+    )
 
 
 def joint_ranges(joints: Array, station: Station) -> list[tuple[str, bool]]:

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What joints do over a cell of rotations about the tool axis at a point: a line and by how much they leave it."""
+"""Whether a rotation about the tool axis within a cell, from one angle to another, may keep limits and condition."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,24 +13,6 @@ from ..points import Points
 from ..task import Task
 
 CELLS, PARTS = 36, 3  # in a turn at first, and of a cell when it is divided
-
-
-@dataclass(frozen=True)
-class Cells:
-    """n cells of rotations phi +- half: joints (n, axes) are middle + slope s for |s| <= half, but for `off` (n, axes).
-
-    feasible (n,): whether a rotation in the cell may keep limits and condition. rad.
-    """
-
-    middle: Array
-    slope: Array
-    off: Array
-    feasible: NDArray[np.bool_]
-    half: float
-
-    def of(self, chosen: Index) -> Cells:
-        """Chosen cells, in that order."""
-        return Cells(self.middle[chosen], self.slope[chosen], self.off[chosen], self.feasible[chosen], self.half)
 
 
 def whole_turn() -> tuple[Array, float]:
@@ -47,12 +27,13 @@ def divided(phi: Array, half: float) -> Array:
     return np.asarray((phi[:, None] + parts).ravel())
 
 
-def cells_of(task: Task, points: Points, index: Index, phi: Array, half: float, threshold: Array) -> Cells:
-    """The cells phi (n,) +- half (rad) at points `index` (n,), with the smallest condition allowed there (n,), from their
-    middle and ends."""
+def possible(task: Task, points: Points, index: Index, phi: Array, half: Array, threshold: Array) -> NDArray[np.bool_]:
+    """(n,) whether a rotation in the cells phi +- half (n,), rad, at points `index` (n,) may keep limits and condition, of
+    which threshold (n,) is the smallest allowed, from their middle and ends. Joints are taken to bend at most twice as much
+    between these as their second differences say."""
     count = len(phi)
     begins = ~_goes_on(index, phi, half)  # where the end of the cell before is not the beginning of this one
-    sampled = np.concatenate([phi[begins] - half, phi, phi + half])
+    sampled = np.concatenate([phi[begins] - half[begins], phi, phi + half])
     looked = points.each(np.concatenate([index[begins], index, index]))
     joints, first = task.raw_joints(looked, sampled), int(begins.sum())
     rows = first + np.arange(2 * count).reshape(2, count)
@@ -61,28 +42,27 @@ def cells_of(task: Task, points: Points, index: Index, phi: Array, half: float, 
     ahead, behind = _short(after - middle), _short(middle - before)
     # a cell at the edge of reach goes on beyond the edge as it does before it
     lost_ahead, lost_behind = (np.isnan(one).any(axis=1) for one in (ahead, behind))
-    feasible = np.isfinite(middle).all(axis=1) & ~(lost_ahead & lost_behind)
+    found = np.isfinite(middle).all(axis=1) & ~(lost_ahead & lost_behind)
     ahead, behind = np.where(lost_ahead[:, None], behind, ahead), np.where(lost_behind[:, None], ahead, behind)
-    slope, bend = (ahead + behind) / (2.0 * half), ahead - behind
+    turned, bend = 0.5 * np.abs(ahead + behind), np.abs(ahead - behind)
     # of a parabola the line through its ends, a quarter of the second difference away, is off by as much: twice that here
-    off = 0.5 * np.abs(bend) + half**3 * np.abs(slope).max(axis=1, keepdims=True)
-    edge = (lost_ahead ^ lost_behind)[:, None]
-    off = np.where(edge, 0.5 * np.abs(ahead), off)
-    reach = np.abs(slope) * half + off + np.abs(bend)
-    feasible &= _within(task, middle, reach)
-    open_ = np.flatnonzero(feasible)
+    off = 0.5 * bend + (half**2)[:, None] * turned.max(axis=1, keepdims=True)
+    off = np.where((lost_ahead ^ lost_behind)[:, None], 0.5 * np.abs(ahead), off)
+    found &= _within(task, middle, turned + off + bend)
+    open_ = np.flatnonzero(found)
     once, which = np.unique(rows[:, open_], return_inverse=True)
     least = np.empty(len(once))
     least[which.ravel()] = np.tile(threshold[open_], 3)
     ratio = _condition(task, looked, sampled, joints, once, least)[which].reshape(3, -1)
-    feasible[open_] = 2.0 * ratio.max(axis=0) - ratio.min(axis=0) >= threshold[open_]
-    return Cells(middle + 0.25 * bend, slope, off, feasible, half)
+    found[open_] = 2.0 * ratio.max(axis=0) - ratio.min(axis=0) >= threshold[open_]
+    return np.asarray(found)
 
 
-def _goes_on(index: Index, phi: Array, half: float) -> NDArray[np.bool_]:
+def _goes_on(index: Index, phi: Array, half: Array) -> NDArray[np.bool_]:
     """(n,) whether a cell phi +- half at a point begins where the one before it ends, at the same point."""
     found = np.zeros(len(phi), dtype=bool)
-    found[1:] = (index[1:] == index[:-1]) & (np.abs(phi[1:] - phi[:-1] - 2.0 * half) < 1e-6 * half)
+    apart = np.abs(phi[1:] - phi[:-1] - half[1:] - half[:-1])
+    found[1:] = (index[1:] == index[:-1]) & (apart < 1e-6 * half[1:])
     return found
 
 

@@ -10,7 +10,7 @@ from ...kinematics import jacobian as jac
 from ...types import Array, Index
 from ..points import Points
 from ..task import Task
-from .cells import CELLS, cells_of, divided, whole_turn
+from .cells import CELLS, divided, possible, whole_turn
 
 LEVELS = 4
 CLOSE = 1e-3  # share of a point's value at which its bound is near enough
@@ -24,7 +24,7 @@ def point_bound(task: Task, points: Points, threshold: Array) -> float:
     index, phi = np.repeat(np.arange(count), CELLS), np.tile(phi, count)
     bound = np.full(count, np.inf)
     for level in range(LEVELS):
-        feasible = cells_of(task, points, index, phi, half, threshold[index]).feasible
+        feasible = possible(task, points, index, phi, np.full(len(phi), half), threshold[index])
         index, phi = index[feasible], phi[feasible]
         three = np.stack([_values(task, points, index, phi + side * half) for side in (-1.0, 0.0, 1.0)])
         bend = np.nan_to_num(np.abs(three[0] - 2.0 * three[1] + three[2]), nan=0.0)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Closes the gap between a joint path and its bound: the best course of the rotation along a bead, each point free."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from ...issues import Issue
+from ...types import Array
+from ..beads.chord_error import refined_to_chord_error
+from ..joint_path import BeadPath
+from ..points import gather, steps
+from ..rotation import given
+from ..task import Task, condition_margin
+from . import course
+
+FOUND = "each point free"
+WORTH = 1e-3  # share of the objective that has to be won, else the polynomial stays
+
+
+def where_asked(task: Task, paths: list[tuple[BeadPath, list[Issue]]]) -> list[tuple[BeadPath, list[Issue]]]:
+    """The paths and what was found about each, with their gaps closed where the task asks for it, and on their new courses
+    the points that straight motion asks for."""
+    if not task.parameters.close_gap or not task.cell.machine.free or task.arm.followed:
+        return paths
+    return [
+        (path, issues) if (best := closed(task, path)) is path else refined_to_chord_error(task, best, task.chord_error)
+        for path, issues in paths
+    ]
+
+
+def closed(task: Task, path: BeadPath) -> BeadPath:
+    """The path with the best course of the rotation that is found, where it is better: limits, condition and range of the
+    rotation kept, a joined bead still joined, links clear where they are to be. Paths that were
+    given, or do not serve as they are, stay."""
+    if task.parameters.objective != "displacement" or path.reason == given.GIVEN or not path.reachable or len(path.phi) < 3:
+        return path
+    points = gather([path.bead], task.cell)
+
+    def broken(phi: Array, joints: Array) -> course.Mask:
+        return course.broken_by(task, points, path.threshold, phi, joints)
+
+    def joints_at(phi: Array) -> Array:
+        return task.raw_joints(points, phi)
+
+    scale = np.broadcast_to(task.weights, (len(path.phi) - 1, len(task.weights)))
+    phi, least = course.best(joints_at, scale, path.phi, task.joined and path.bead.closed, broken)
+    step = steps(path.joints, points)
+    if not least < (1.0 - WORTH) * float(((step * step) @ task.weights).sum()):
+        return path
+    joints, condition = task.joints(points, phi), task.condition(points, phi, joints_at(phi))
+    if task.kept is not None:
+        deposited = np.full(len(phi), task.kept.moment((path.layer, path.index)), dtype=np.int64)
+        if task.kept.contact.touches(joints, deposited).any.any():
+            return path
+    margin = np.minimum(task.rows.margin(joints), condition_margin(condition, path.threshold))
+    return dataclasses.replace(
+        path, phi=phi, joints=joints, condition=condition, objective=least, margin=float(margin.min()), coefficients=None,
+        reason=FOUND,
+    )

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The best course of the rotation near a known one, each point free: Newton's steps along the chain of eq. 17."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.angles import TURN, shortest
+from ...types import Array
+from ..points import Points
+from ..task import FITS, Task
+
+STEPS = 30
+STARTS, EQUAL = 24, 1e-6  # courses about a turn, and the share by which one has to be better than those before it
+APART = 1e-5  # rad, between the rotations of which a slope is taken
+HELD, HOLDS = 6, 1e9  # groups of points that are held, and times the largest curvature of those that are not
+SHORTEST = 0.02  # of a Newton step that is still tried
+DONE = 1e-7  # share of the value by which a step has to lower it
+
+
+Mask = NDArray[np.bool_]
+Joints = Callable[[Array], Array]
+Broken = Callable[[Array, Array], Mask]
+
+
+def none_broken(phi: Array, joints: Array) -> Mask:
+    """(n,) no point."""
+    return np.zeros(len(phi), dtype=bool)
+
+
+def found(joints_at: Joints, scale: Array, phi: Array, joined: bool, broken: Broken = none_broken) -> Array:
+    """Rotations (n,) with the least sum of `scale` (n - 1, axes) times squared steps that is found from phi (n,) on.
+
+    joints_at: the joints (n, axes) of rotations (n,). joined: the last rotation stays as far from the first as it is.
+    broken: points (n,) where rotations and their joints may not be; where those known may not they are returned.
+    """
+    here = joints_at(phi)
+    if broken(phi, here).any():
+        return phi
+    moved = _steps(here)
+    for _ in range(STEPS):
+        slope = shortest(joints_at(phi + APART) - joints_at(phi - APART)) / (2.0 * APART)
+        if not (np.isfinite(slope).all() and np.isfinite(moved).all()):
+            break
+        value = float((moved * moved * scale).sum())
+        lower = _stepped(joints_at, scale, phi, (moved, slope), joined, broken)
+        if lower is None:
+            break
+        phi, moved = lower
+        if float((moved * moved * scale).sum()) > (1.0 - DONE) * value:
+            break
+    return phi
+
+
+def _stepped(
+    joints_at: Joints, scale: Array, phi: Array, known: tuple[Array, Array], joined: bool, broken: Broken
+) -> tuple[Array, Array] | None:
+    """Rotations that take less and may be, and their steps; None where no step of Newton's leads to any. Points that are at
+    what they may not be beyond are held, one group after the other, and the others go on."""
+    value, held = float((known[0] ** 2 * scale).sum()), np.zeros(len(phi), dtype=bool)
+    for _ in range(HELD):
+        change = _newton(*known, scale, joined, held)
+        size, stopped = 1.0, held
+        while size > SHORTEST:
+            tried = phi + size * change
+            joints = joints_at(tried)
+            steps, stopped = _steps(joints), broken(tried, joints)
+            if not stopped.any() and float((steps * steps * scale).sum()) < value:
+                return tried, steps
+            size *= 0.25
+        if not (stopped & ~held).any():
+            return None
+        held |= stopped
+    return None
+
+
+def best(
+    joints_at: Joints, scale: Array, phi: Array, joined: bool,
+    broken: Broken = none_broken,
+) -> tuple[Array, float]:
+    """The best of what is `found` from phi (n,) on and from the same turned by parts of a turn, of those that may be: the
+    rotations and the sum, infinite where none may."""
+    kept, least = phi, np.inf
+    for turned in TURN / STARTS * np.arange(STARTS):
+        course = found(joints_at, scale, phi + turned, joined, broken)
+        joints = joints_at(course)
+        if broken(course, joints).any():
+            continue
+        value = float((_steps(joints) ** 2 * scale).sum())
+        if value < least * (1.0 - EQUAL):
+            kept, least = course, value
+    return kept, least
+
+
+def _newton(moved: Array, slope: Array, scale: Array, joined: bool, held: Mask) -> Array:
+    """The step (n,) of Gauss and Newton for squared steps moved (n - 1, axes) with d q / d phi (n, axes); 0 at points that
+    are `held` (n,)."""
+    from scipy.linalg import solveh_banded  # slow to import, and few jobs ask for a certificate
+
+    bands = np.zeros((2, len(slope)))
+    bands[1, :-1] += (slope[:-1] ** 2 * scale).sum(axis=1)
+    bands[1, 1:] += (slope[1:] ** 2 * scale).sum(axis=1)
+    bands[0, 1:] = -(slope[:-1] * slope[1:] * scale).sum(axis=1)
+    bands[1] += 1e-9 * bands[1].mean() + 1e-300
+    rate = np.zeros(len(slope))
+    rate[:-1] -= (moved * slope[:-1] * scale).sum(axis=1)
+    rate[1:] += (moved * slope[1:] * scale).sum(axis=1)
+    bands[1, held] = HOLDS * bands[1].max()
+    rate[held] = 0.0
+    sides = rate[:, None]
+    if joined:  # what holds both ends together is a multiplier
+        together = np.zeros(len(slope))
+        together[0], together[-1] = 1.0, -1.0
+        sides = np.stack([rate, together], axis=1)
+    try:
+        solved = solveh_banded(bands, sides)
+    except np.linalg.LinAlgError:
+        solved = sides / bands[1][:, None]
+    step = -solved[:, 0]
+    if joined:
+        held = solved[0, 1] - solved[-1, 1]
+        step -= (step[0] - step[-1]) / held * solved[:, 1]
+    return np.asarray(step, dtype=np.float64)
+
+
+def broken_by(task: Task, points: Points, threshold: Array, phi: Array, joints: Array) -> Mask:
+    """(n,) where limits, condition (threshold (n,)) or the range of the rotation are not kept by rotations phi (n,) and
+    their joints (n, axes), as the inverse gives these, at points one after the other."""
+    lost = ~np.isfinite(joints).all(axis=1)
+    if lost.any():
+        return np.asarray(lost)
+    run = joints[0] + np.concatenate([np.zeros((1, joints.shape[1])), np.cumsum(_steps(joints), axis=0)])
+    turns = np.round((task.middle - 0.5 * (run.min(axis=0) + run.max(axis=0))) / TURN)
+    beyond = task.rows.margin(run + np.where(task.unturned, 0.0, TURN * turns)) < FITS
+    low, high = task.parameters.rotation_range
+    if high - low < TURN - 1e-9:
+        beyond |= (phi < low) | (phi > high)
+    return np.asarray(beyond | (task.condition(points, phi, joints) < threshold * (1.0 - 1e-9)))
+
+
+def _steps(joints: Array) -> Array:
+    moved: Array = shortest(np.diff(joints, axis=0))
+    return moved

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Points of a bead, each with so many rotations about the tool axis over a turn: the joints there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.angles import TURN, shortest
+from ...types import Array, Index
+from ..points import Points
+from ..task import Task
+from .cells import possible
+
+NO_FIVE = 9
+RATE_SAMPLES, HARMONICS = 180, 36  # rotations at which the rate of joints is seen, and how finely it is followed
+SMOOTH = 0.06  # rad
+KNOWN = 1000  # rotations between which those of the lattice are looked for
+EVENLY = 0.25  # share of rotations that are not where joints move much
+LARGEST_SHARE = 12.0  # times the mean
+COARSE = 60  # cells of a turn that are looked at first: those beside an impossible one are divided
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """m points with N rotations from -pi on, N a multiple of COARSE. joints: (m, N, axes) rad or mm, NaN out of reach.
+    possible: (m, N) whether a rotation between one and the next may keep limits and condition. weights: (axes,) of eq. 17.
+    turning: (axes,) axes of which whole turns count for nothing."""
+
+    joints: Array
+    possible: Mask
+    weights: Array
+    turning: Mask
+
+    @cached_property
+    def open(self) -> Mask:
+        """(m, N) rotations at the ends of possible cells."""
+        ends: Mask = (self.possible | np.roll(self.possible, 1, axis=1)) & np.isfinite(self.joints).all(axis=2)
+        return ends
+
+    @cached_property
+    def whole(self) -> Mask:
+        """(m, N) possible cells both ends of which are within reach."""
+        return np.asarray(self.possible & self.open & np.roll(self.open, -1, axis=1))
+
+    @cached_property
+    def ragged(self) -> Mask:
+        """(m, N) rotations beside which a possible cell has its other end out of reach."""
+        torn = self.possible & ~self.whole
+        return np.asarray(self.open & (torn | np.roll(torn, 1, axis=1)))
+
+    @cached_property
+    def about(self) -> tuple[Array, Array]:
+        """Where cells about each rotation are whole, (m, N) each, in steps: from -0.5 to 0.5, further where the next
+        rotation has none beyond it."""
+        right, left = self.whole, np.roll(self.whole, 1, axis=1)
+        low = np.where(left, np.where(np.roll(left, 1, axis=1), -0.5, -1.0), 0.0)
+        return low, np.where(right, np.where(np.roll(right, -1, axis=1), 0.5, 1.0), 0.0)
+
+    @cached_property
+    def shift(self) -> Index:
+        """(m, N) by how many rotations the middle of five in a row, about whole cells, is off that rotation; NO_FIVE where
+        there are no five."""
+        right, left = (np.zeros(self.possible.shape, dtype=np.int64) for _ in range(2))
+        to_right, to_left = np.ones_like(self.possible), np.ones_like(self.possible)
+        for by in range(4):
+            to_right = to_right & np.roll(self.whole, -by, axis=1)
+            to_left = to_left & np.roll(self.whole, by + 1, axis=1)
+            right += to_right
+            left += to_left
+        least, most = 2 - left, right - 2
+        return np.where(least <= most, np.clip(0, least, np.maximum(least, most)), NO_FIVE)
+
+    @cached_property
+    def rate(self) -> Array:
+        """(m,) the root of what going from a rotation to the next one takes of eq. 17, the largest of each point."""
+        moved = self.moved(self.joints, np.roll(self.joints, -1, axis=1))
+        return np.asarray(np.nan_to_num(np.sqrt((moved * moved) @ self.weights)).max(axis=1))
+
+    def moved(self, start: Array, end: Array) -> Array:
+        """(..., axes) the short ways between joints."""
+        way = end - start
+        return np.where(self.turning, shortest(way), way)
+
+    @property
+    def first(self) -> Lattice:
+        """The first point alone."""
+        return Lattice(self.joints[:1], self.possible[:1], self.weights, self.turning)
+
+    @property
+    def count(self) -> int:
+        """Rotations of a turn N."""
+        return self.joints.shape[1]
+
+    @cached_property
+    def flat(self) -> Array:
+        """(m, COARSE, 2 axes) coordinates that lie as far apart as the joints at each of COARSE rotations, or less: eq. 17
+        of a step is not below the square of their distance."""
+        some, scale = self.joints[:, :: self.count // COARSE], np.sqrt(self.weights)
+        return np.concatenate([
+            np.where(self.turning, np.cos(some), some) * scale, np.where(self.turning, np.sin(some), 0.0) * scale
+        ], axis=2)
+
+
+def lattice(task: Task, points: Points, at: Index, threshold: Array, count: int) -> Lattice:
+    """The lattice of points `at` (m,) with `count` rotations; threshold (m,) is the smallest condition allowed there."""
+    ends = _rotations(task, points, at, count)
+    joints = task.raw_joints(points.each(np.repeat(at, count)), np.tile(ends[:-1], len(at))).reshape(len(at), count, -1)
+    return Lattice(joints, _possible(task, points, at, threshold, ends), task.weights, ~task.cell.machine.chain.sliding)
+
+
+def _rotations(task: Task, points: Points, at: Index, count: int) -> Array:
+    """(count + 1,) rotations of a turn, the last a turn after the first, the nearer to each other the more joints move there
+    at one of the points."""
+    phi = -np.pi + TURN / RATE_SAMPLES * np.arange(RATE_SAMPLES)
+    joints = task.raw_joints(points.each(np.repeat(at, RATE_SAMPLES)), np.tile(phi, len(at))).reshape(len(at), RATE_SAMPLES, -1)
+    moved = np.nan_to_num(shortest(np.roll(joints, -1, axis=1) - joints))
+    rate = np.sqrt(((moved * moved) @ task.weights).max(axis=0))
+    if not rate.any():
+        return np.linspace(-np.pi, np.pi, count + 1)
+    rate = np.minimum(rate / rate.mean(), LARGEST_SHARE)
+    order = np.arange(1, HARMONICS + 1)
+    # of a smooth density its harmonics; what is counted up is exact, and no joint bends more than it does by itself
+    smooth = np.exp(-0.5 * (np.arange(HARMONICS + 1) * SMOOTH) ** 2)
+    waves = np.fft.rfft(EVENLY + (1.0 - EVENLY) * rate)[: HARMONICS + 1] * smooth
+    factor = 2.0 * waves[1:] / waves[0].real * np.exp(1j * order * np.pi - 0.5j * order * TURN / RATE_SAMPLES)
+
+    def cumulative(phi: Array) -> tuple[Array, Array]:
+        wave = np.exp(1j * phi[:, None] * order) * factor
+        return phi + (wave / (1j * order)).real.sum(axis=1), 1.0 + wave.real.sum(axis=1)
+
+    known = np.linspace(-np.pi, np.pi, KNOWN + 1)
+    up_to = cumulative(known)[0]
+    wanted = up_to[0] + TURN * np.arange(count + 1) / count
+    found = np.interp(wanted, up_to, known)
+    for _ in range(3):
+        value, slope = cumulative(found)
+        found -= (value - wanted) / slope
+    return found
+
+
+def _possible(task: Task, points: Points, at: Index, threshold: Array, ends: Array) -> Mask:
+    def looked(point: Index, cell: Index, ends: Array) -> Mask:
+        middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
+        return possible(task, points, at[point], middle[cell], half[cell], threshold[point])
+
+    parts = (len(ends) - 1) // COARSE
+    point, cell = np.divmod(np.arange(len(at) * COARSE), COARSE)
+    coarse = looked(point, cell, ends[::parts]).reshape(len(at), COARSE)
+    fine = np.repeat(coarse, parts, axis=1)
+    inside = coarse & np.roll(coarse, 1, axis=1) & np.roll(coarse, -1, axis=1)
+    edge = np.nonzero(np.repeat(coarse & ~inside, parts, axis=1))
+    if len(edge[0]):
+        fine[edge] = looked(edge[0], edge[1], ends)
+    return fine

@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Of every rotation at a point: what is ahead of it takes at least.
+
+Bellman's recursion, from the last point of a bead to the first. A step may end between the rotations of the lattice: there
+joints and what is ahead are taken from polynomials of the fourth degree through five neighbours, and to be off by twice what
+their fourth differences make of them, which bounds the step from below.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geometry.angles import TURN
+from ...types import Array, Index
+from .lattice import COARSE, NO_FIVE, Lattice, Mask
+
+# of a fourth difference, which makes a 96th of itself within a step of the middle of five, a 24th further out: twice that
+OFF, FURTHER_OFF = 2.0 / 96.0, 2.0 / 24.0
+MOST_STEPS = 9.0  # steps of the lattice, more than there are about one
+NEWTON = 3  # steps to the least of polynomials, and as often again about the rotation that is the nearest then
+APART = 3  # rotations, from which two least sums are looked at both
+# the powers of 1, x, .. x^4 (rows) in the polynomial that is 1 at one of -2 .. 2 (columns) and 0 at the others
+POWERS = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), 5, increasing=True))
+FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
+TORN = 1e-4  # of a sum: where what is ahead may be off by more, it is looked at by lines too
+
+
+def ahead(lattice: Lattice, last: Array, counts: Array, far: float) -> Array:
+    """(N,) the least sum from every rotation at the first point on, infinite where none can be; last (N,): from the last
+    point on. counts (m - 1,): of how many steps each of the lattice's stands; steps that take more than `far` are not
+    looked at one by one."""
+    value = np.where(lattice.open[-1], last, np.inf)
+    for j in range(len(lattice.joints) - 2, -1, -1):
+        value = before(lattice, j, lattice, j + 1, value, float(counts[j]), far)
+    return value
+
+
+def before(one: Lattice, i: int, other: Lattice, j: int, value: Array, count: float, far: float) -> Array:
+    """(N,) the least sum from every rotation at point i of a lattice on, of a step, which stands for `count` of them, to
+    point j of another with `value` (N,) there."""
+    offsets = _neighbours(one, i, other, j, count * far)
+    columns: Index = (np.arange(one.count)[:, None] + offsets) % one.count
+    total, weights = value[columns], one.weights / count
+    for axis, weight in enumerate(weights):
+        way = other.joints[j, :, axis][columns] - one.joints[i, :, axis][:, None]
+        if one.turning[axis] and np.nanmax(np.abs(way), initial=0.0) > 0.5 * TURN:
+            way -= TURN * np.round(way / TURN)
+        total += weight * way * way
+    total[np.isnan(total)] = np.inf
+    least = _least(total, columns, one.joints[i], other, j, value, weights)
+    if len(offsets) < one.count:  # whatever step is not looked at takes `far` at least
+        least = np.minimum(least, far + value[other.open[j]].min(initial=np.inf))
+    return np.where(one.open[i], np.maximum(least, 0.0), np.inf)
+
+
+def least_of(value: Array, first: Lattice) -> float:
+    """The least of sums (N,) at the rotations of the first point of a lattice, between them too."""
+    columns = np.arange(-1, first.count + 1)[None] % first.count
+    return float(_least(value[columns], columns, first.joints[0, :1], first, 0, value, np.zeros_like(first.weights))[0])
+
+
+def _least(
+    total: Array, columns: Index, start: Array, other: Lattice, j: int, value: Array, weights: Array
+) -> Array:
+    """(n,) what sums (n, k) at rotations `columns` (n, k) of a point of a lattice, the outer two only beside others, are at
+    least, between them too; of steps from joints start (n, axes)."""
+    inner = columns[:, 1:-1]
+    low, high = (side[j][inner] for side in other.about)
+    guess, to = _parabolas(total, low, high, other.open[j][inner])
+    least = _at_best(guess, to, inner, start, other, j, value, weights)
+    ragged = other.ragged[j]
+    if ragged.any():  # sums go on beyond the edge of reach as they come to it
+        here = total[:, 1:-1]
+        jumps = [np.where(np.isfinite(one), np.abs(here - one), 0.0) for one in (total[:, 2:], total[:, :-2])]
+        with np.errstate(invalid="ignore"):
+            beyond = np.where(ragged[inner] & np.isfinite(here), here - np.maximum(*jumps), np.inf)
+        least = np.minimum(least, beyond.min(axis=1))
+    return least
+
+
+def _neighbours(one: Lattice, i: int, other: Lattice, j: int, far: float) -> Index:
+    """By how many rotations a step may go on that takes less than `far`, and one more at both ends."""
+    cell = one.count // COARSE
+    near = np.sqrt(far) + 0.5 * cell * (one.rate[i] + other.rate[j])
+    from_, to = one.flat[i], other.flat[j]
+    apart = np.nan_to_num((from_ * from_).sum(axis=1)[:, None] + (to * to).sum(axis=1) - 2.0 * from_ @ to.T)
+    there = (apart < near * near) & _any(one.possible[i], cell)[:, None] & _any(other.possible[j], cell)
+    start, end = np.nonzero(there)
+    met = np.unique((end - start) % COARSE) if len(start) else np.zeros(1, dtype=np.int64)
+    # what is left out is the widest part of the turn in which no step ends
+    gaps = np.diff(np.append(met, met[0] + COARSE))
+    widest = int(gaps.argmax())
+    first, last = met[(widest + 1) % len(met)] - 1, met[widest] + 1
+    last += COARSE if last < first else 0
+    if gaps[widest] <= 3:  # one more at both ends leaves none out
+        return np.arange(-1, one.count + 1)
+    return np.arange(first * cell - 1, last * cell + 2)
+
+
+def _any(possible: Mask, cell: int) -> Mask:
+    """(COARSE,) whether one of the cells on both sides of each coarse rotation is possible."""
+    after = possible.reshape(COARSE, cell).any(axis=1)
+    return np.asarray(after | np.roll(after, 1))
+
+
+def _parabolas(total: Array, low: Array, high: Array, there: Mask) -> tuple[Array, Array]:
+    """(n, k) about what sums (n, k + 2) take at least from `low` to `high` steps of the lattice (n, k) beside each rotation
+    but the outer two, infinite where it is not `there` (n, k); and how far beside it."""
+    here, after, first = total[:, 1:-1], total[:, 2:], total[:, :-2]
+    with np.errstate(invalid="ignore", over="ignore"):
+        slope, bend = 0.5 * (after - first), after - 2.0 * here + first
+        to = np.where(bend > 0.0, -slope / np.where(bend > 0.0, bend, 1.0), np.where(slope > 0.0, -1.0, 1.0))
+        to = np.clip(to, low, high)
+        guess = here + to * (slope + 0.5 * to * bend)
+    known = np.isfinite(guess)
+    return np.where(there, np.where(known, guess, here), np.inf), np.where(known, to, 0.0)
+
+
+def _at_best(
+    guess: Array, to: Array, columns: Index, start: Array, other: Lattice, j: int, value: Array, weights: Array
+) -> Array:
+    """(n,) the least near the best of guesses (n, k), which are about rotations `columns` (n, k) and lie `to` from them, and
+    near the best of those that are not beside it."""
+    rows, number = np.arange(len(guess)), np.arange(guess.shape[1])
+    first = guess.argmin(axis=1)
+    apart = np.where(np.abs(number - first[:, None]) < APART, np.inf, guess)
+    second = apart.argmin(axis=1)
+    # a second one that is far above the first, by more than guesses are off, cannot be the least
+    worth = np.flatnonzero(apart[rows, second] < 2.0 * np.maximum(guess[rows, first], 0.0))
+    row, best = np.concatenate([rows, worth]), np.concatenate([first, second[worth]])
+    column, step = columns[row, best], to[row, best]
+    near = _near(column, start[row], other, j, value)
+    finer, step, doubt = near.least(step, weights)
+    nearest = np.nan_to_num(np.round(step)).astype(np.int64)
+    near = _near((column + nearest) % len(value), start[row], other, j, value)
+    finer, step, doubt = near.least(step - nearest, weights)  # about the rotation that is the nearest then
+    torn = np.flatnonzero(doubt > TORN * np.abs(finer))
+    if len(torn):
+        finer[torn] = np.maximum(finer[torn], near.of(torn).least_by_lines(weights))
+    sure = np.where(np.isfinite(finer), finer, guess[row, best])
+    least = sure[: len(rows)]
+    np.minimum.at(least, worth, sure[len(rows) :])
+    return np.where(np.isfinite(guess[rows, first]), least, np.inf)
+
+
+@dataclass(frozen=True)
+class _Near:
+    """Steps to rotations near n of a lattice, in steps x of it from the middle of five, which is `shift` (n,) beside each:
+    moved (5, n, axes) and later (5, n) the coefficients of what joints move by and of the sum ahead, off (n, axes) and
+    doubt (n,) their fourth differences; low and high (n,) how far whole cells go, and around (n, 5) the sums from two
+    before to two after."""
+
+    moved: Array
+    later: Array
+    off: Array
+    doubt: Array
+    shift: Index
+    low: Array
+    high: Array
+    around: Array
+
+    def of(self, rows: Index) -> _Near:
+        """Some of them."""
+        return _Near(
+            self.moved[:, rows], self.later[:, rows], self.off[rows], self.doubt[rows], self.shift[rows], self.low[rows],
+            self.high[rows], self.around[rows],
+        )
+
+    def least(self, to: Array, weights: Array) -> tuple[Array, Array, Array]:
+        """(n,) the least sum from `to` beside each rotation on, NaN where not known, where it is and by how much what is
+        ahead may be off in it."""
+        x = self._minimised(to - self.shift, self.later, self.low, self.high, weights)
+        doubt = np.where(np.abs(x) <= 1.0, OFF, FURTHER_OFF) * self.doubt
+        with np.errstate(invalid="ignore", over="ignore"):
+            return self._step(x, weights) + _polynomial(self.later, x, 0) - doubt, x + self.shift, doubt
+
+    def least_by_lines(self, weights: Array) -> Array:
+        """(n,) the least sum where polynomials say little of what is ahead, as beside rotations from which nothing leads
+        on: in a cell it is not below its ends, but for a dip, which is not below the lines that lead down into it."""
+        least = np.full(len(self.low), np.inf)
+        for first, (before_, here, after, last) in ((-1.0, self.around.T[:4]), (0.0, self.around.T[1:])):
+            begin = first - self.shift
+            low, high = np.maximum(self.low, begin), np.minimum(self.high, begin + 1.0)
+            with np.errstate(invalid="ignore"):
+                down = [np.nan_to_num(one - other, posinf=0.0, neginf=0.0) for one, other in (
+                    (here, before_), (last, after))]
+            dip = (down[0] < 0.0) & ((down[1] > 0.0) | ~np.isfinite(last)) | (down[1] > 0.0) & ~np.isfinite(before_)
+            found = np.full(len(least), -np.inf)
+            for value, slope, at in ((here, down[0], begin), (after, down[1], begin + 1.0)):
+                slope = np.where(dip, slope, 0.0)
+                line = np.zeros_like(self.later)
+                line[1], line[0] = slope, np.where(dip, value, np.minimum(here, after)) - slope * at
+                sums = self._step(x := self._minimised(0.5 * (low + high), line, low, high, weights), weights)
+                found = np.fmax(found, np.where(dip & (slope == 0.0), -np.inf, sums + line[0] + line[1] * x))
+            least = np.minimum(least, np.where(low < high, found, np.inf))
+        return np.where(np.isfinite(least), least, -np.inf)
+
+    def _step(self, x: Array, weights: Array) -> Array:
+        off = np.where(np.abs(x) <= 1.0, OFF, FURTHER_OFF)[:, None] * self.off
+        apart = np.maximum(np.abs(_polynomial(self.moved, x[:, None], 0)) - off, 0.0)
+        return np.asarray((apart * apart) @ weights)
+
+    def _minimised(self, x: Array, later: Array, low: Array, high: Array, weights: Array) -> Array:
+        with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+            for _ in range(NEWTON):
+                here, slope, bend = (_polynomial(self.moved, x[:, None], order) for order in range(3))
+                rate = 2.0 * (here * slope) @ weights + _polynomial(later, x, 1)
+                curve = 2.0 * (slope * slope + here * bend) @ weights + _polynomial(later, x, 2)
+                down = np.where(curve > 0.0, rate / np.where(curve > 0.0, curve, 1.0), MOST_STEPS * np.sign(rate))
+                x = np.clip(x - down, low, high)
+        return x
+
+
+def _near(column: Index, start: Array, other: Lattice, j: int, value: Array) -> _Near:
+    """Of steps from joints start (n, axes) to rotations near `column` (n,) at a point of a lattice, with sums value (N,)."""
+    joints, shift, count = other.joints[j], other.shift[j][column], len(value)
+    five = (column + np.where(shift == NO_FIVE, 0, shift))[:, None] + np.arange(-2, 3)
+    five %= count
+    middle = joints[column]
+    to_five = other.moved(middle[:, None], joints[five]) + other.moved(start, middle)[:, None]
+    ahead_ = np.where((shift == NO_FIVE)[:, None], np.nan, value[five])
+    whole = other.whole[j]
+    with np.errstate(invalid="ignore"):
+        return _Near(
+            np.einsum("pk,nka->pna", POWERS, to_five), POWERS @ ahead_.T, np.abs(np.einsum("k,nka->na", FOURTH, to_five)),
+            np.abs(ahead_ @ FOURTH), shift, np.where(whole[column - 1], -1.0, 0.0) - shift,
+            np.where(whole[column], 1.0, 0.0) - shift, value[(column[:, None] + np.arange(-2, 3)) % count],
+        )
+
+
+def _polynomial(powers: Array, x: Array, order: int) -> Array:
+    """The polynomial with coefficients (5, ...) at x, or its first or second derivative."""
+    a, b, c, d, e = powers
+    if order == 0:
+        return np.asarray(a + x * (b + x * (c + x * (d + x * e))))
+    if order == 1:
+        return np.asarray(b + x * (2.0 * c + x * (3.0 * d + 4.0 * x * e)))
+    return np.asarray(2.0 * c + x * (6.0 * d + 12.0 * x * e))
