@@ -133,10 +133,10 @@ def test_a_plan_that_moves_seams_is_shown_as_it_runs(person, hemisphere, overlap
 
 
 def test_a_certificate_is_told_of_the_plan(person, hemisphere):
-    path = job(hemisphere, joints={"certificate": True, "degree": 0})
+    path = job(hemisphere, joints={"certificate": True})
     _, one = opened(person, path)
     found = one.source.planned.optimality
-    assert found["gap"] > 0.01  # constant rotations are not the best there are
+    assert 0.0 <= found["gap"] < 0.01
     told = one.form.verdict.text().splitlines()[-1]
     assert told == (
         f"Certificate: {found['objective']:.4g} as planned, no rotation goes below {found['bound']:.4g}: a gap of "

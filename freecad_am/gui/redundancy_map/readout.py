@@ -48,11 +48,11 @@ def certified(optimality: Mapping[str, Any] | None) -> str:
     """What a certificate says of the plan; '' where none was asked for."""
     if optimality is None:
         return ""
-    told = tr(
+    text = tr(
         "Certificate: {:.4g} as planned, no rotation goes below {:.4g}: a gap of {:.1f} %, {:.1f} % in layer {} bead {}"
     )
     worst = optimality["worst"]
-    return told.format(
+    return text.format(
         optimality["objective"], optimality["bound"], 100.0 * optimality["gap"], 100.0 * worst["gap"], worst["layer"],
         worst["bead"],
     )

@@ -118,7 +118,7 @@ def _rotations(task: Task, points: Points, at: Index, count: int) -> Array:
     """(count + 1,) rotations of a turn, the last a turn after the first, the nearer to each other the more joints move there
     at one of the points."""
     phi = -np.pi + TURN / RATE_SAMPLES * np.arange(RATE_SAMPLES)
-    joints = task.raw_joints(points.each(np.repeat(at, RATE_SAMPLES)), np.tile(phi, len(at))).reshape(len(at), RATE_SAMPLES, -1)
+    joints = task.raw_joints(points.each(np.repeat(at, len(phi))), np.tile(phi, len(at))).reshape(len(at), len(phi), -1)
     moved = np.nan_to_num(shortest(np.roll(joints, -1, axis=1) - joints))
     rate = np.sqrt(((moved * moved) @ task.weights).max(axis=0))
     if not rate.any():
