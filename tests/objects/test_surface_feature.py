@@ -41,6 +41,27 @@ def test_feature_and_toolpath(doc, tube):
     assert max(bead.points[:, 2].max() for _, _, bead in value) == pytest.approx(60.0, abs=1e-6)
 
 
+def test_a_tube_is_planned_by_fronts_where_that_is_chosen(doc, tube):
+    """Of a cylinder on a pipe of another size: points of a layer of fronts against the axes of both, by hand."""
+    feature = made(doc, tube, method="fronts", layer_height=6)
+    toolpath = api.make_toolpath(doc, feature)
+    assert feature.WallKind == "patches" and feature.Method == "fronts"
+    layers = api.result(toolpath).layers
+    rings = [bead.points for layer in layers for bead in layer.beads if bead.closed]
+    points = np.vstack(rings)
+    assert np.abs(np.hypot(points[:, 0], points[:, 1]) - 12.0).max() < 1e-6
+    assert np.abs(np.hypot(rings[0][:, 0], rings[0][:, 2]) - 32.0).max() < 2e-5
+    for below, above in zip(rings, rings[1:]):
+        start, way = below[:-1], np.diff(below, axis=0)
+        share = np.clip(((above[:, None] - start) * way).sum(axis=2) / (way * way).sum(axis=1), 0.0, 1.0)
+        apart = np.linalg.norm(above[:, None] - start - share[..., None] * way, axis=2).min(axis=1)
+        assert np.abs(apart - 6.0).max() < 0.011  # chords of both are up to 0.01 mm off
+    api.change(feature, method="auto")
+    assert feature.WallKind == "cone"
+    with pytest.raises(InputError, match=r"leave strategy\.method out"):
+        made(doc, tube, method="fronts", spacing="iso-parameter")
+
+
 def test_renewed_when_the_substrate_changes(doc, tube):
     feature = made(doc, tube)
     toolpath = api.make_toolpath(doc, feature)

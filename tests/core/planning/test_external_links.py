@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 
+from freecad_am.core.issues import ERROR, Issue, Text
 from freecad_am.core.kinematics.external import MECHANISMS
 from freecad_am.core.kinematics.links import cylinders as link_rods
 from freecad_am.core.kinematics.links.contact import ArmContact
@@ -119,6 +120,12 @@ def test_what_is_not_known_of_the_shapes_is_said_on_the_preflight(hemisphere):
     motion, _ = assemble(path, far, ProcessParameters(), hemisphere.surroundings, None, 10.0)
     touches = arm_touches(motion, ArmContact(far, link_rods.of_robot(far.robot.chain)))
     assert [one.ok for one in clearance.external_links(motion, far, touches, True, ())] == [True]
+    # whether issues are about them is known by values, not by words: a name within a sentence, or another name, is none
+    name = far.external_links[-1].name
+    for message, ok in ((Text("the nozzle would meet {}", Text.joined(", ", ("post", name))), False),
+                        (f"the nozzle touches the cover of {name}", True), (Text("it meets {}", f"{name} cover"), True)):
+        issue = Issue(ERROR, "RAPID_COLLISION", message)
+        assert [one.ok for one in clearance.external_links(motion, far, touches, True, (issue,))] == [ok]
     (drawn,) = clearance.external_links(motion, far, touches, False, ())
     assert drawn.ok is None and drawn.how.startswith("not checked in full, for links of the robot are drawn")
     blank = dataclasses.replace(far, external_links=())
