@@ -8,7 +8,7 @@ import pytest
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from tests.core.planning.test_external_axes import levelled_to
-from tests.core.planning.test_positioner_stroke import MOST, ROBOT, cell_with, codes, in_the_world, of_text, off_beads
+from tests.core.planning.test_positioner_stroke import MOST, cell_with, codes, in_the_world, of_text, off_beads
 
 __all__ = ["cell_with"]  # a fixture
 

@@ -25,7 +25,7 @@ for those of the pose too.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -38,6 +38,8 @@ from .offset_wrist_search import Zeros
 
 NEWTON, NEWTON_RAD = 12, 5e-10  # turns of the flange that follow are off by as much
 SAME_RAD = 1e-6  # nearer zeros that the search finds are those found here
+TWICE_RAD = 4e-6  # as near to others are zeros at which the polynomial only touches zero
+MEETS = 2e-10  # of the cosine between axes 4 and 5, which is off where such a touch is none of this side or elbow
 NEAR_AXIS = 3e-4  # of the length of the stretched arm: nearer to axis 1 the search has more digits
 SQUARE = 1e-13  # sine of the angles that must be square or straight
 
@@ -76,12 +78,15 @@ def zeros(curves: Curves) -> Zeros:
     arm = _Lengths(curves.upper * length, curves.fore * length, curves.ahead * length, *curves.lean, curves.square)
     parts = np.stack([curves.point * length, curves.five])
     even = is_even(curves)
-    number, low, high, near, close = trigonometric.parted(_coefficients(arm, parts, even))
+    number, low, high, near, close, touching = trigonometric.parted(_coefficients(arm, parts, even))
     of_zero = np.take(parts, number, axis=3)
     side = np.ones(len(number)) if even else _side(arm, of_zero, low, high)
     angle, sure, away = _roots(arm, of_zero, side, low, high, near)
     close[number[~sure | (away < NEAR_AXIS)]] = True
     if not sure.all():
+        # where three meet, rounding moves a zero by more than is asked for
+        moved = np.flatnonzero(~sure)
+        touching = np.concatenate([touching[0], number[moved]]), np.concatenate([touching[1], angle[moved]])
         kept = np.flatnonzero(sure)
         number, angle, side, of_zero = number[kept], angle[kept], side[kept], of_zero[..., kept]
     found = _solutions(arm, of_zero, number, angle, side)
@@ -92,7 +97,32 @@ def zeros(curves: Curves) -> Zeros:
         return found
     others = search.zeros(Curves(curves.point[:, :, left], curves.five[:, :, left], curves.upper, curves.fore, curves.lean,
                                  curves.square, curves.ahead))
-    return _together(found, others._replace(pose=left[others.pose]), close)
+    found = _together(found, others._replace(pose=left[others.pose]), close)
+    return _with(found, _touching(arm, curves, parts, *touching))
+
+
+def _touching(arm: _Lengths, curves: Curves, parts: Array, number: Index, angle: Array) -> Zeros:
+    """Solutions where the polynomial touches zero and no sign changes, those of them that give back their pose."""
+    even = is_even(curves)
+    # on either side of axis 1
+    side = np.repeat([1.0] if even else [1.0, -1.0], len(number))
+    number, angle = np.tile(number, 1 if even else 2), np.tile(angle, 1 if even else 2)
+    found = _solutions(arm, np.take(parts, number, axis=3), number, angle, side)
+    if even:
+        found = _both_sides(found)
+    off = np.abs(search.values(curves, found.pose, found.angle, found.side, found.elbow))
+    kept, columns = np.flatnonzero(off < MEETS), tuple[Any, ...](found)
+    return Zeros(*(column[..., kept] for column in columns))
+
+
+def _with(found: Zeros, more: Zeros) -> Zeros:
+    """Zeros, and those of some more that are none of them, each once."""
+    for k in range(len(more.pose)):
+        same = (found.pose == more.pose[k]) & (found.side == more.side[k]) & (found.elbow == more.elbow[k])
+        apart = found.angle[same] - more.angle[k]
+        if not (np.abs(apart - TURN * np.rint(apart * (1.0 / TURN))) < TWICE_RAD).any():
+            found = Zeros(*(np.concatenate([own, other[..., k : k + 1]], axis=-1) for own, other in zip(found, more)))
+    return found
 
 
 def _together(found: Zeros, others: Zeros, close: Mask) -> Zeros:

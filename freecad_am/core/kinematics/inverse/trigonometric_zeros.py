@@ -25,18 +25,22 @@ VALUE_SHARE, SLOPE_SHARE = 1.0 / 384.0, math.sqrt(3.0) / 216.0
 # of the sum of all coefficients, by degree: how far off a value is, and how far an extreme that is a double zero may be
 # from zero by the rounding of the pose; the higher one is a difference of products of two
 ROUNDING, TOUCHING = {4: 5e-17, 8: 4e-15}, {4: 1e-13, 8: 1e-13}
+TO_EXTREME, WITHIN = 8, 1e-4  # steps to an extreme that is next to zero, and rad of one at most
+UNTOLD = 2.0  # times that an extreme is which may as well be zero
 DROWNED = 8.0  # times that a step's values and slopes are, at most, that rounding leaves nothing of
 
 
 class Parted(NamedTuple):
     """Steps (k,) with one zero: the polynomial's number, its ends and about where between them the zero is; and which
-    polynomials (n,) have zeros too near to each other to tell."""
+    polynomials (n,) have zeros too near to each other to tell. touching: number and angle (m,) of such zeros, from how the
+    polynomial bends where it touches zero to the last digits."""
 
     number: Index
     low: Array
     high: Array
     near: Array
     close: Mask
+    touching: tuple[Index, Array]
 
 
 class _Steps(NamedTuple):
@@ -80,21 +84,55 @@ def parted(coefficients: Array) -> Parted:
     fourth = np.arange(1.0, degree + 1.0) ** 4 @ amplitudes
     waves: Array | None = None
     width, found, close = TURN / STEPS[degree], [], np.zeros(coefficients.shape[1], dtype=bool)
+    touches: list[tuple[Index, Array]] = []
     steps = _first(coefficients, width, fourth, touching)
     for level in range(LEVELS[degree]):
         single, open_ = _single_or_open(steps, fourth, rounding, width)
         found.append((single, width))
         lost = _drowned(open_, rounding)
         close[open_.number if level >= SURE - 1 else open_.number[lost]] = True
+        is_last = level == LEVELS[degree] - 1
+        ended = np.flatnonzero(lost | is_last)
+        touches.append((open_.number[ended], open_.begin[ended] + 0.5 * width))
         open_ = _some(open_, np.flatnonzero(~lost))
-        if level == LEVELS[degree] - 1 or not len(open_.number):
+        if is_last or not len(open_.number):
             break
         if waves is None:
             waves = np.concatenate([coefficients[:1], coefficients[1 : degree + 1] - 1j * coefficients[degree + 1 :]])
         width /= PIECES
         steps = _without_empty(_cut(waves, open_, width), fourth, touching, width)
     number, low, high, near = (np.concatenate(columns) for columns in zip(*(_places(*one) for one in found)))
-    return Parted(number, low, high, near, close)
+    numbers, middles = (np.concatenate(columns) for columns in zip(*touches))
+    return Parted(number, low, high, near, close, _touching(coefficients, numbers, middles, touching, rounding))
+
+
+def _touching(
+    coefficients: Array, number: Index, at: Array, most: Array, rounding: Array
+) -> tuple[Index, Array]:
+    """Number and angle (m,) of the zeros next to angles (k,) at which a polynomial has an extreme no farther from zero than
+    `most`: where a parabola there is zero, or the extreme where it is zero but for rounding."""
+    of, degree = coefficients[:, number], len(coefficients) // 2
+
+    def derivative(order: int) -> Array:
+        result: Array = (harmonics(degree, at, order) * of).sum(axis=0)
+        return result
+
+    for _ in range(TO_EXTREME):
+        bend = derivative(2)
+        at = at - np.clip(derivative(1) / np.where(bend == 0.0, 1.0, bend), -WITHIN, WITHIN)
+    value, bend, noise = derivative(0), derivative(2), UNTOLD * rounding[number]
+    kept = np.flatnonzero((np.abs(value) <= most[number]) & (bend != 0.0))
+    number, at, value, bend, noise = number[kept], at[kept], value[kept], bend[kept], noise[kept]
+    unsure = np.sqrt(2.0 * noise / np.abs(bend))
+    # the same one found from several steps
+    order = np.lexsort((at, number))
+    number, at, value, bend, noise, unsure = (column[order] for column in (number, at, value, bend, noise, unsure))
+    once = np.ones(len(number), dtype=bool)
+    once[1:] = (number[1:] != number[:-1]) | (np.diff(at) > unsure[1:])
+    apart = np.sqrt(np.maximum(-2.0 * value / bend, 0.0))
+    apart[np.abs(value) <= noise] = 0.0
+    two = once & (apart > 0.0)
+    return np.concatenate([number[once], number[two]]), np.concatenate([(at - apart)[once], (at + apart)[two]])
 
 
 def _first(coefficients: Array, width: float, fourth: Array, touching: Array) -> _Steps:
