@@ -93,10 +93,20 @@ HEADLESS_OF_VERSION = (
         "phases", "matrix", "plain_reading", "plain_texts", "fanuc_refusals", "lines", "resume", "ramps", "catalogue",
     )),
 )
-# beads and figures of each kind of feature, which are core's: with the long tests, or by name
-LONG_IN_VERSION = tuple(f"--ignore=tests/objects/test_{name}.py" for name in (
-    "developable_feature", "inspection_documents", "scan", "solid_feature",
-))
+# beads and figures of each kind of feature, which are core's; how far a deposit is off its part, and walls and meshes that
+# others of their kind stand for: with the long tests, or by name
+LONG_IN_VERSION = (
+    *(f"--ignore=tests/objects/test_{name}.py" for name in (
+        "developable_feature", "inspection_documents", "scan", "solid_feature",
+    )),
+    *(f"--ignore=tests/brep/test_{name}.py" for name in ("off_part", "whole_mesh")),
+    "--deselect=tests/brep/test_any_wall.py::test_splines_loft_and_pipe",
+    *(f"--deselect=tests/objects/test_surface_feature.py::test_{name}" for name in (
+        "feature_and_toolpath", "renewed_when_the_substrate_changes", "needs_a_solid_substrate",
+        "a_wall_that_reaches_below_the_platform_is_refused_with_its_depth",
+        "tilts_that_take_long_are_told_before_they_are_searched_for", "fixtures_of_a_part_of_revolution_are_looked_at",
+    )),
+)
 WINDOW_OF_VERSION = (
     *(f"tests/gui/test_{name}.py" for name in ("fields", "long_work", "picking", "reopen", "robust_events", "samples")),
     "tests/gui/test_clicks.py::test_from_a_selected_shape_to_a_program_by_clicks",

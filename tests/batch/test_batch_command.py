@@ -18,7 +18,7 @@ def summary(done):
     return list(csv.DictReader(io.StringIO(done.out)))
 
 
-@pytest.mark.parametrize("processes", [1, 3])
+@pytest.mark.parametrize("processes", [pytest.param(1, marks=pytest.mark.long), 3])
 def test_one_plan_per_row(workshop, processes):
     (workshop.folder / "rows.csv").write_text(
         "strategy.layer_height,cell.branch,process.travel_speed\n"
@@ -53,6 +53,7 @@ def test_a_row_is_what_plan_makes_of_it(workshop):
         (["1 kg,0", "10 mm,9000", "8 mm,0"], ["2", "3", "0"], 2),
     ],
 )
+@pytest.mark.always("ends1-statuses1-2")
 def test_ends_with_the_worst_row(workshop, ends, statuses, worst):
     workshop.change("limits: paper", "limits: paper\n  deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0]")
     table = ["strategy.layer_height,cell.deposition_point"]

@@ -28,7 +28,7 @@ from freecad_am.core.issues import InputError
 
 dask = pytest.mark.skipif(importlib.util.find_spec("distributed") is None,
                           reason="needs Dask: apt install python3-distributed")
-HEIGHTS = (13, 14, 15, 16, 18, 20)
+HEIGHTS = (13, 15, 18, 20)
 WRITTEN = ("CreationDate", "LastModifiedDate", "Uid")  # of a document, another one each time it is saved
 
 
@@ -324,6 +324,7 @@ def test_what_has_changed_is_planned_again(workshop):
         told = [int(row["layers"]) for row in csv.DictReader(io.StringIO(done.out))]
         return kept, told
 
+    workshop.write_job(workshop.text.split("cell:")[0])  # rows without a robot are planned in half of the time
     kept, layers = batch(20, 25)
     assert kept == 0 and layers[0] > layers[1]
     assert batch(20, 25) == (2, layers)

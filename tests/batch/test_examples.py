@@ -24,7 +24,8 @@ ON_SUBSTRATES = [
 
 
 @pytest.fixture(params=[
-    ("hemisphere", 71), pytest.param(("laval-nozzle", 137), marks=pytest.mark.long), ("intake-funnel", 71),
+    ("hemisphere", 71),
+    *(pytest.param(one, marks=pytest.mark.long) for one in (("laval-nozzle", 137), ("intake-funnel", 71))),
 ], ids=lambda p: p[0])
 def example(request, workshop, root):
     """Report, rows and number of layers of an example, run in a folder of its own."""

@@ -118,6 +118,7 @@ def test_a_mesh_on_a_base_given_by_numbers(workshop):
 
 
 @pytest.mark.parametrize(("ending", "scale", "factor"), [("stl", "1 in", 25.4), ("obj", "10", 10.0), ("stl", "1 m", 1000.0)])
+@pytest.mark.always("obj-10-10.0")
 def test_a_mesh_in_another_unit_is_scaled(workshop, ending, scale, factor):
     bar = Part.makeBox(60.0, 14.0, 30.0, FreeCAD.Vector(0, -7, 60))
     points, facets = bar.tessellate(0.1)

@@ -57,7 +57,7 @@ def planned_at(workshop, low, mount):
     side.rotate(0.0, -np.pi / 2.0, 0.0)
     side.translate(0.0, 0.0, low - side.BoundBox.ZMin)
     side.write(str(workshop.folder / "vase.stl"))
-    job = JOB.replace("height: 5 mm", "height: 15 mm") + CELL % mount
+    job = JOB.replace("height: 5 mm", "height: 30 mm") + CELL % mount
     (workshop.folder / "vase.yaml").write_text(job, encoding="utf-8")
     done = workshop.run("plan", "vase.yaml", "-o", "out", "--no-page")
     if done.status:

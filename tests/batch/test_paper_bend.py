@@ -89,7 +89,7 @@ def test_layers_of_equation_2(sliced, height, count, chord_error):
         assert max(found.max() for found in distances(beads)) <= 5.0 + 1e-4
 
 
-@pytest.mark.parametrize("tube, turn", [(TUBE, 97.0), (WIDE, 105.0)])
+@pytest.mark.parametrize("tube, turn", [(TUBE, 97.0), pytest.param(WIDE, 105.0, marks=pytest.mark.long)])
 def test_the_corner_on_the_outside_of_the_bend(sliced, tube, turn):
     """It is one point of the last layer, in the plane of the bend, and as sharp as the errata say."""
     points = sliced(tube, 5.0, "constant-distance", 2e-5)[-1].points[:-1]

@@ -68,6 +68,7 @@ def test_several_features_are_held_against_all_their_faces_but_where_one_stands_
 
 
 @pytest.mark.parametrize("layers", [1, 2])
+@pytest.mark.always("2")
 def test_a_clad_face_is_covered_as_high_as_it_was_fed(workshop, layers):
     Part.makeBox(60.0, 40.0, 10.0).exportStep(str(workshop.folder / "plate.step"))
     high = 2.0 * layers

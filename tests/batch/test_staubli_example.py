@@ -20,7 +20,7 @@ TARGET, ORIGIN, PLATFORM = [550.0, 0.0, 800.0], [0.0, 0.0, 32.0], 60.0
 BEND, TUBE = 60.0, 15.0
 
 
-@pytest.fixture(scope="module", params=["cartesian", "joint"])
+@pytest.fixture(scope="module", params=["cartesian", pytest.param("joint", marks=pytest.mark.long)])
 def made(tmp_path_factory, root, request):
     """The motion, the rows of waypoints.csv and the texts of the example."""
     workshop = Workshop(tmp_path_factory.mktemp("staubli"), root / "freecad-am")
@@ -44,7 +44,6 @@ def columns(rows, *names):
     return np.array([[float(row[name]) for name in names] for row in rows])
 
 
-@pytest.mark.always("cartesian")
 def test_the_texts_bring_the_points_of_the_part_to_the_nozzle(made):
     motion, rows, texts = made
     read = staubli.read(texts)

@@ -196,6 +196,7 @@ def test_the_half_shell_is_deposited_to_and_fro(plans):
     assert (np.sign(towards) == np.sign(towards[0]) * (-1.0) ** np.arange(6)).all()
 
 
+@pytest.mark.long
 def test_the_front_of_the_branched_tube_splits_in_two(plans):
     layers = plans.plan("walls/branched-tube-on-plate").layers
     closed = [sum(bead.closed for bead in layer) for layer in layers]

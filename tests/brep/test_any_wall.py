@@ -311,6 +311,7 @@ def test_refusals_by_real_shapes(make, substrate, height, code, words):
 
 
 @pytest.mark.parametrize(("radius", "tall", "lean", "edge"), [(10.0, 120.0, 0.9, 3.0), (15.0, 150.0, 0.5, 5.0)])
+@pytest.mark.always("10.0-120.0-0.9-3.0")
 def test_the_mesh_of_a_slanted_tube_has_no_edges_across(radius, tall, lean, edge):
     """Long needles, of which edges that are turned reached from side to side: halving them never ended."""
     skin = Part.makeCircle(radius).extrude(Vector(lean * tall, 0, tall)).toNurbs()

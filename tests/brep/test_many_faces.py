@@ -57,6 +57,7 @@ def peak_of(work):
 
 
 @pytest.mark.parametrize("make", [gear, perforated])
+@pytest.mark.always("perforated")
 def test_a_thousand_faces_that_are_not_of_revolution_are_soon_refused(make, looks):
     part = make()
 

@@ -195,6 +195,7 @@ def test_a_panel_stays_with_its_document(person, hemisphere):
 
 
 @pytest.mark.parametrize("tool", ["NewJob", "Cell", "Feature", "Toolpath", "Inspect"])
+@pytest.mark.always("NewJob", "Toolpath", "Inspect")
 def test_a_panel_goes_with_its_document_alone(person, hemisphere, tool):
     api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
     other = App.newDocument("Other")

@@ -160,6 +160,7 @@ def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(p
     ("JointPath", (("MinCondition", "2"), ("MinCondition", "0.1"))),
     ("Program", (("ProgramName", "1CUP"), ("ProgramName", "MUG"), ("Post", "none"))),
 ])
+@pytest.mark.always("JointPath-entries1")
 def test_a_closed_panel_that_has_previewed_leaves_nothing_behind(person, joint_path, command, entries):
     """Neither widgets, which would be taken for later ones, nor threads, nor steps of undo."""
     document, steps = joint_path.Document, joint_path.Document.UndoCount
@@ -271,6 +272,7 @@ def test_what_changes_the_deposit_is_read_as_a_panel_opens(person, hemisphere):
 
 
 @pytest.mark.parametrize("command", ["Cell", "Feature", "Solid", "WallOnPart", "Toolpath", "JointPath", "Program"])
+@pytest.mark.always("JointPath", "Feature", "WallOnPart")
 def test_what_an_empty_field_wants_is_read_whole_in_a_narrow_panel(person, hemisphere, coarse, command):
     if command in ("JointPath", "Program"):
         api.make_all(hemisphere.Document, hemisphere)

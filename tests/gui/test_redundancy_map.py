@@ -108,6 +108,7 @@ def test_the_picture_is_what_core_computes(person, hemisphere):
 
 
 @pytest.mark.parametrize("overlap", [0, 5])
+@pytest.mark.always("5")
 def test_a_plan_that_moves_seams_is_shown_as_it_runs(person, hemisphere, overlap):
     """Axes with limits have room for a whole turn from some seams only: what is feasible must not look lost."""
     path = job(hemisphere, limits="maker")

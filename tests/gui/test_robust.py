@@ -87,6 +87,7 @@ def test_a_deleted_part_is_missing_everywhere_and_comes_back(person, job):
 
 
 @pytest.mark.parametrize("name", ["Cell", "Feature", "Toolpath", "JointPath"])
+@pytest.mark.always("Feature", "JointPath")
 def test_a_deleted_stage_is_missing_and_comes_back(person, job, name):
     job.openTransaction("Delete")
     job.removeObject(name)
@@ -178,6 +179,7 @@ def test_files_and_folders_that_cannot_be_written(person, job, tmp_path, monkeyp
 
 
 @pytest.mark.parametrize("command", TOOLS)
+@pytest.mark.always("Cell", "JointPath", "NewJob", "WallOnPart", "Program")
 def test_a_document_closed_while_a_panel_is_open(person, job, command):
     person.select(job.Sphere)
     person.click(f"RoboticAM_{command}")
@@ -415,6 +417,7 @@ def test_a_document_of_an_earlier_version(person, tmp_path):
 
 
 @pytest.mark.parametrize("text", ["2,5 mm", "2,5", "0,25 cm"])
+@pytest.mark.always("0,25 cm", "2,5")
 def test_decimals_with_a_comma(person, hemisphere, text):
     before = person.core.QLocale()
     french = person.core.QLocale(person.core.QLocale.French, person.core.QLocale.France)

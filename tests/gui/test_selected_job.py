@@ -53,6 +53,7 @@ def inputs_of(person, command, panel, *links):
 
 
 @pytest.mark.parametrize("which", [0, 1])
+@pytest.mark.always("0")
 def test_tools_take_the_stages_of_the_job_that_is_selected(person, jobs, which):
     name = jobs[which].Label
     person.select(jobs[which])
@@ -79,7 +80,7 @@ def test_tools_take_the_stages_of_the_job_that_is_selected(person, jobs, which):
     person.idle()
 
 
-@pytest.mark.parametrize("in_groups", [True, False])
+@pytest.mark.parametrize("in_groups", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_stage_stands_for_its_job(person, stages, opened, request, in_groups):
     if in_groups:
         request.getfixturevalue("jobs")

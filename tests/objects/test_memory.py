@@ -10,7 +10,7 @@ import pytest
 from freecad_am import api
 
 MOST = 1500.0  # bytes a point at the peak, of all that is kept by then too
-CHORDS = (0.001, 0.00025)  # mm; about 5,000 and 10,000 points
+CHORDS = (0.004, 0.001)  # mm; about 2,500 and 5,000 points
 
 
 def peaks(chord):
@@ -43,7 +43,7 @@ def grown():
     """Points, and bytes at the peak of each stage, that the larger job has more."""
     peaks(0.1)  # imports
     (few, small), (many, large) = (peaks(chord) for chord in CHORDS)
-    assert 4000 < few < 6000 and 8000 < many < 12000
+    assert 2000 < few < 3000 and 4000 < many < 6000
     return many - few, {stage: large[stage] - small[stage] for stage in small}
 
 

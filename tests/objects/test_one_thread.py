@@ -64,7 +64,7 @@ print(json.dumps({{"texts": texts, "told": told, "after": after, "seconds": seco
 sys.stdout.flush()
 os._exit(0)
 """
-THREADS = ("1", "2", "4")
+THREADS = ("1", "4")
 
 
 def in_process(code, threads, seed):
@@ -97,7 +97,7 @@ def test_other_users_of_numpy_get_their_threads_back(runs):
 
 def test_more_threads_take_no_more_processor_time(runs):
     """They took 1.4 times as much, and 3 times for whole jobs."""
-    assert runs["2"]["seconds"] < 1.3 * runs["1"]["seconds"]
+    assert runs["4"]["seconds"] < 1.3 * runs["1"]["seconds"]
 
 
 def test_a_job_makes_the_same_bytes_with_any_number_of_threads(tmp_path):

@@ -116,7 +116,7 @@ def post(doc, as_mesh):
     return found
 
 
-@pytest.mark.parametrize("as_mesh", [False, True], ids=["solid", "mesh"])
+@pytest.mark.parametrize("as_mesh", [False, pytest.param(True, marks=pytest.mark.long)], ids=["solid", "mesh"])
 def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
     fixture = post(doc, as_mesh)
     feature = made(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[fixture])

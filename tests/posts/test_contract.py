@@ -94,6 +94,7 @@ def test_the_text_drives_the_way_that_was_looked_at(way):
     assert 0.0 < furthest < APART
 
 
+@pytest.mark.always(*SPANNING)
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 def test_travels_have_something_to_pass(way):
     """The straight way of the tip would lead through the hub on most sides: what is driven is not free by chance."""

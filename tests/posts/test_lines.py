@@ -9,7 +9,7 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.posts import catalogue
 from freecad_am.posts.lines import lines_of
-from tests.posts.planned_jobs import WAYS, written
+from tests.posts.planned_jobs import SPANNING, WAYS, written
 
 NUMBER = re.compile(rb"-?\d+\.\d+")
 INDEX = re.compile(rb"(?<=P\[)\d+|(?<=MOV[JL] C)\d+")
@@ -38,6 +38,7 @@ def another_end(post, files, name, number, k):
     return {**files, name: b"\n".join([*lines[:number], changed, *lines[number + 1:]])}
 
 
+@pytest.mark.always(*SPANNING)
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 def test_the_line_of_a_move_tells_that_move_and_no_other(way):
     _, motion, _, files = written(way)

@@ -257,6 +257,7 @@ def test_three_mf_made_to_mislead(tmp_path, text, says):
 
 
 @pytest.mark.parametrize("where", ["between elements", "in an element"])
+@pytest.mark.always("in an element")
 def test_three_mf_of_blanks(tmp_path, where):
     blanks = " " * 1_000_000
     before, after = model(MESH).split("<build>") if where == "between elements" else model(MESH).split(' objectid="1"/>')
@@ -303,6 +304,7 @@ def test_a_document_of_entities_in_each_command(workshop, sound):
     ("Toolpath", "FeatureProcess"), ("JointPath", "Given"), ("Cell", "Obstacles"), ("Cell", "External"),
     ("Toolpath", "Classes"),
 ])  # fmt: skip
+@pytest.mark.always("Toolpath-FeatureProcess", "JointPath-Given", "Cell-External")
 def test_texts_of_a_document(workshop, stage, name):
     """What stages keep as text, nested or long beyond reason."""
     document = FreeCAD.newDocument("Texts")

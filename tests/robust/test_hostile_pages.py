@@ -111,7 +111,7 @@ def pages(folder, root, job, command, file, name, text):
     (revolution, "plan", "report.html", ["job {name}", "title {text}", "1 {text}", "wire {text}", "set {text}"]),
     (solids, "plan", "report.html", ["job {name}", "scan {name}.csv"]),
     (several, "plan", "report.html", ["job {name}", "feature 60 {name}"]),
-    (revolution, "place", "place.html", ["job {name}"]),
+    pytest.param(revolution, "place", "place.html", ["job {name}"], marks=pytest.mark.long),
 ], ids=["revolution", "scan", "features", "place"])  # fmt: skip
 def test_a_page_has_the_elements_of_the_same_job_in_plain_words(tmp_path, root, job, command, file, shown):
     plain = Elements(pages(tmp_path / "plain", root, job, command, file, "plain", "words"))

@@ -68,6 +68,7 @@ def test_contours_run_on_over_the_cut(name):
 
 @pytest.mark.parametrize("name", HUBS)
 @pytest.mark.parametrize("options", [{}, {"pattern": "lines"}], ids=["contours", "round"])
+@pytest.mark.always("contours-cone", "round-cylinder", "contours-cylinder")
 def test_cutting_elsewhere_gives_the_same_beads(name, options):
     hub = HUBS[name]
     one, other = collar(hub), collar(hub, 1.3)

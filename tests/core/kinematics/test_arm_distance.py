@@ -17,6 +17,7 @@ REACH = 400.0
 @pytest.mark.parametrize(("setup", "low"), [
     (PART_ON_ROBOT, np.array([300.0, -90.0, 150.0])), (TOOL_ON_ROBOT, np.array([-500.0, 100.0, 300.0])),
 ], ids=["part on robot", "tool on robot"])  # fmt: skip
+@pytest.mark.always("part on robot")
 def test_the_least_distance_is_that_of_points_on_links(setup, low):
     cell = cell_of(setup)
     rods = link_rods.of_robot(cell.robot.chain)

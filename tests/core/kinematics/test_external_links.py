@@ -154,8 +154,9 @@ def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is
         best = -np.inf
         for rod in rods[link]:
             axis = (rod.end - rod.start) / rod.length
-            along = (points - rod.start) @ axis
-            out = np.linalg.norm(points - rod.start - along[:, None] * axis, axis=1)
+            away = points - rod.start
+            along = away @ axis
+            out = np.sqrt(np.maximum(np.einsum("ij,ij->i", away, away) - along * along, 0.0))
             best = max(best, float(np.minimum(np.minimum(along, rod.length - along), rod.radius - out).max()))
         return best
 

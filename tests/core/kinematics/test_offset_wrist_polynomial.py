@@ -71,6 +71,7 @@ def test_zeros_are_those_of_the_search(arm, most, monkeypatch):
     assert sum(asked) < most
 
 
+@pytest.mark.always("CRX-10iA", "crooked")
 def test_zeros_that_meet_are_found(arm):
     """Where two solutions meet, the determinant of PyKDL's Jacobian being zero, and about there: all that the search has."""
     of, _ = arm

@@ -78,6 +78,7 @@ def whole(toolpath, settings):
 
 
 @pytest.mark.parametrize("case", MOVED)
+@pytest.mark.always("tool on the robot", "point", "table")
 def test_what_is_said_of_a_pose_is_what_its_whole_plan_says(dome, case):
     settings, box = MOVED[case]
     parameters = PlaceParameters(points=200, **box)

@@ -128,6 +128,7 @@ def test_links_that_met_a_post_keep_clear_of_it(dome, radius, azimuth, branch):
 
 
 @pytest.mark.parametrize(("method", "branch"), [("constant", DOWN), ("constant", UP), ("point-by-point", UP)])
+@pytest.mark.always("constant-branch0", "point-by-point-branch2")
 def test_other_methods_keep_clear_too(dome, method, branch):
     low = np.array([80.0, 80.0 * np.sqrt(3.0), 195.0]) - 0.5 * SIZE
     job = dataclasses.replace(dome, surroundings=(*dome.surroundings, box(low, SIZE, "post")))
@@ -233,6 +234,7 @@ def apart(motion, cell):
 
 
 @pytest.mark.parametrize(("robot", "place"), OWN)
+@pytest.mark.always("ur-ur5e-place0")
 def test_links_that_met_each_other_keep_apart(dome, robot, place):
     cell = {**ACROSS, "machine": robot, "deposition_point": (*place, 0.0, 0.0, 0.0)}
     without = cells.resolve(CellParameters(**cell), dome.frame)

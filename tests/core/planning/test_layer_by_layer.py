@@ -44,6 +44,7 @@ def test_the_papers_parts(sliced, cell_of, part, layers):
 
 
 @pytest.mark.parametrize("part", ["sphere", "laval nozzle", "intake funnel"])
+@pytest.mark.always("intake funnel")
 def test_no_constant_rz_is_feasible(sliced, cell_of, part):
     toolpath = sliced(part, 5.0)
     task = Task(cell_of(toolpath), FLIP, JointParameters(method="constant"))

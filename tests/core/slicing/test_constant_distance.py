@@ -51,6 +51,7 @@ def assert_spacing(layers, height):
 
 
 @pytest.mark.parametrize("height, before, after", [(5.0, 19, 16), (1.0, 87, 72)])
+@pytest.mark.always("5.0-19-16")
 def test_layer_counts_of_the_errata(height, before, after):
     torus, first = paper()
     iso = iso_parameter.layers(torus, first, height, END)
@@ -125,7 +126,10 @@ GROUND = HalfSpace(np.zeros(3), np.array([0.0, 0.0, 1.0]))
         (Cone(20.0, 0.3), GROUND, (-40.0, 30.0), 30.0, 2.0, 0),
     ],
 )
-@pytest.mark.always
+@pytest.mark.always(
+    "wall0-substrate0-reach0-1.5707963267948966-2.0-1", "wall1-substrate1-reach1-40.0-1.5-2",
+    "wall3-substrate3-reach3-40.0-3.0-0", "wall5-substrate5-reach5-40.0-1.0-7", "wall7-substrate7-reach7-30.0-2.0-0",
+)
 def test_walls_on_substrates(wall, substrate, reach, end, height, corners):
     first = on_implicit(wall, substrate, reach, even_grid(wall, 360))
     layers = constant_distance.layers(wall, first, height, end)

@@ -358,6 +358,7 @@ def test_what_is_refused():
 
 
 @pytest.mark.parametrize("direction", ["counter-clockwise", "clockwise"])
+@pytest.mark.always("clockwise")
 def test_collars_have_margins_and_the_torch_leans_away_from_them(direction):
     made = solids(CONE, collar(30.0, 80.0, 10.0, 40.0))
     path = planned(

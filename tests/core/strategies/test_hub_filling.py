@@ -175,6 +175,7 @@ def lengths(path):
 
 
 @pytest.mark.parametrize("hub", HUBS)
+@pytest.mark.always("cylinder")
 def test_less_than_the_whole_between_solid_layers(hub):
     """First and last layers as at 100 %, those between at the density, all of them round hubs too."""
     given = {"layer_height": 6.0, "bead_spacing": 1.5, "walls": 2, "chord_error": 0.05, "contour": True}

@@ -109,14 +109,16 @@ def _near(
         some = some[:, :, None] + (ways[1][:, axis, None] * way[1])[:, None]
         some = some[:, :, :, None] + (ways[2][:, axis, None] * way[2])[:, None, None]
         cube = np.floor(some.reshape(len(rows), -1) * (1.0 / grid.edge)).astype(np.int64)
-        corner.append(int(cube.min()))
-        cube -= corner[-1]
+        corner.append(cube.min(axis=1))
+        cube -= corner[-1][:, None]
         spans.append(int(cube.max()) + 1)
         cubes.append(cube)
-    number = (cubes[0] * spans[1] + cubes[1]) * spans[2] + cubes[2]
-    pair = np.unique(number * len(rows) + np.arange(len(rows))[:, None])
-    number, own = np.divmod(pair, len(rows))
-    place = grid.places(np.stack(np.unravel_index(number, tuple(spans)), axis=1) + np.array(corner))
+    # each cube once for each piece: ticked off in a box around the piece, which is quicker than sorting them
+    box = spans[0] * spans[1] * spans[2]
+    ticked = np.zeros(len(rows) * box, dtype=np.bool_)
+    ticked[(cubes[0] * spans[1] + cubes[1]) * spans[2] + cubes[2] + box * np.arange(len(rows))[:, None]] = True
+    own, number = np.divmod(np.flatnonzero(ticked), box)
+    place = grid.places(np.stack(np.unravel_index(number, tuple(spans)), axis=1) + np.stack(corner, axis=1)[own])
     free = grid.filled[place] < FULL
     place, piece = place[free], rows[own[free]]
     away = grid.centres(place) - pieces.middle[piece]
