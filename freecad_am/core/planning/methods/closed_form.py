@@ -3,6 +3,10 @@
 
 Within a bead the branch changes only where a direction lies along an axis and the way straight on leads there; elsewhere a
 change would be a jump. Where a turning axis has no room for a bead, its seam is moved or, as the last resort, it is split.
+
+Its rule for that is not the robots' (`turns.fit`): theirs looks for the rotation about the tool as if one axis, the last,
+had no end, and moves or cuts what was found, all else the same. Here there is no such rotation, either of two axes may lack
+room, and a bead begun elsewhere may cross a pole in the other branch: each way to lay it is run anew.
 """
 
 from __future__ import annotations
