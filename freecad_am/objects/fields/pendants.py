@@ -33,7 +33,7 @@ def pendants() -> dict[str, Pendant]:
 def named(words: Sequence[str]) -> str:
     """The controller that one of the words of a pose names, '' where none does."""
     found = next((word.lower() for word in words if word.lower() in catalogue.NAMES), "")
-    return found if found in pendants() else ""
+    return found if found and catalogue.load(found).PENDANT else ""  # all of them take long to import
 
 
 def six(words: Sequence[str], where: str) -> Pose:
@@ -42,7 +42,8 @@ def six(words: Sequence[str], where: str) -> Pose:
     Raises InputError BAD_VALUE, at `where`.
     """
     controller = named(words)
-    pendant = pendants()[controller]
+    pendant = catalogue.load(controller).PENDANT
+    assert pendant is not None
     form = Text("write such as: {} X Y Z {}", controller, " ".join(pendant.letters))
     try:
         numbers = [float(word) for word in words if word.lower() != controller]
