@@ -13,6 +13,7 @@ from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.motion import UNKNOWN
 from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters, ScheduleParameters
+from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
@@ -121,12 +122,22 @@ def test_another_output_is_refused(way):
     assert renamed != files and codes(way, "output", renamed)
 
 
-@pytest.mark.parametrize(("post", "by"), [
-    ("staubli", "output"), ("staubli", "arc"), ("abb", "arc"), ("kuka", "arc"), ("ur", "arc"), ("siemens", "arc"),
-    ("linuxcnc", "arc"),
+@pytest.mark.parametrize(("post", "by", "motion", "setup", "why"), [
+    ("staubli", "output", "joint", "staubli tool-on-robot", "VAL 3"),
+    ("ur", "arc", "joint", "ur tool-on-robot", "URScript"),
+    ("abb", "arc", "cartesian", "abb tool-on-robot", "ArcL"), ("kuka", "arc", "cartesian", "kuka tool-on-robot", "ArcTech"),
+    ("siemens", "arc", "joint", "table", ""), ("linuxcnc", "arc", "joint", "table", ""),
+    ("staubli", "arc", "joint", "staubli tool-on-robot", ""),
 ])
-def test_what_a_controller_cannot_be_told_has_its_reason(post, by):
-    assert len(catalogue.load(post).NO_SCHEDULE[by]) > 20
+def test_what_a_controller_cannot_be_told_is_refused_and_its_page_says_so(post, by, motion, setup, why, root):
+    """Before anything is planned; whatever else is switched on, no word of it comes into a text."""
+    cell, reason = planned(setup)[0], catalogue.load(post).NO_SCHEDULE[by]
+    asked = ProgramParameters(post=post, motion=motion, schedule=ScheduleParameters(by=by, output=20))
+    with pytest.raises(InputError) as error:
+        refuse(cell, process_of(), asked)
+    assert error.value.code == "SCHEDULE" and reason in error.value.message and why in reason
+    page = (root / "docs" / "posts" / f"{post}.md").read_text(encoding="utf-8")
+    assert ("(`SCHEDULE`)" in page or "rc instructions there are none" in page) and why in page
 
 
 @pytest.mark.parametrize(("process", "program", "code", "words"), [
