@@ -3,6 +3,7 @@
 every post, and a text that changes the speed at once, or where a step is a little faster, is refused."""
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -75,3 +76,43 @@ def test_the_speed_changes_steadily_and_a_text_that_changes_it_at_once_is_refuse
     row = int(np.flatnonzero(ramped & moves)[2])
     assert refused(way, np.where(np.arange(len(moves)) == row, 1.05 * motion.speed, motion.speed)) & {
         "VERIFY_SPEED", "VERIFY_TIME"}
+
+
+FOLLOWING = {
+    "siemens": re.compile(rb"(DO \$A_OUTA\[3\]=)([0-9.]+)"), "linuxcnc": re.compile(rb"(M67 E\d+ Q)([0-9.]+)"),
+}
+
+
+@pytest.mark.parametrize("post, kind, feed, compress", [
+    ("siemens", "joint", "time", False), ("siemens", "joint", "path", True), ("siemens", "cartesian", "time", True),
+    pytest.param("linuxcnc", "joint", "time", False, marks=pytest.mark.long),
+])
+def test_a_wire_that_follows_the_speed_is_read_back_through_a_ramp(post, kind, feed, compress):
+    """Every value that the text sets in a ramp counts: another one, or one that is missing, is refused."""
+    cell, motion, _, _ = written((post, kind, feed, "table"), ramps=RAMPS)
+    moves = motion.deposit & (motion.point > 0)
+    motion = dataclasses.replace(motion, wire=np.where(motion.deposit, 12.5 * motion.speed, np.nan))
+    nc = NcParameters(feed=feed, wire_output=3, wire_gain=0.01, compress=compress)
+    program = build(motion, cell, PROCESS, ProgramParameters(post=post, motion=kind, nc=nc), "job")
+    files = catalogue.load(post).write(program)
+
+    def codes(of):
+        found = verify(cell, motion, program, of, catalogue.load(post), CHORD_ERROR)
+        return {issue.code for issue in found.issues if issue.level == ERROR}
+
+    assert codes(files) == set()
+    name = max(files, key=lambda one: len(FOLLOWING[post].findall(files[one])))
+    places = list(FOLLOWING[post].finditer(files[name]))
+    ramped = len(set(np.round(motion.speed[moves], 6)))
+    assert len(places) >= ramped > 8  # each step of a ramp has a value of its own
+    every = re.compile(rb"A_OUTA\[3\]=([0-9.]+)" if post == "siemens" else rb"M6[78] E\d+ Q([0-9.]+)")
+    told = np.array([float(one) for text in files.values() for one in every.findall(text)])
+    for wanted in 0.06 * 0.01 * 12.5 * np.unique(motion.speed[moves]):
+        assert np.abs(told - wanted).min() <= 1e-4
+    for number in range(1, len(places), max(1, len(places) // 5)):
+        one = places[number]
+        text = files[name]
+        other = text[: one.start(2)] + f"{1.02 * float(one[2]):.6f}".encode() + text[one.end(2) :]
+        assert "VERIFY_WIRE" in codes(files | {name: other})
+        line = text.rfind(b"\n", 0, one.start()), text.find(b"\n", one.end())
+        assert "VERIFY_WIRE" in codes(files | {name: text[: line[0]] + text[line[1] :]})
