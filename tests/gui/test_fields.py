@@ -7,6 +7,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.parameters import field as parameters
 from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.gui.widgets import fields
 from freecad_am.gui.widgets.quantity import PlainQuantity, QuantityField
 from freecad_am.objects.cell import Cell
@@ -169,6 +170,31 @@ def test_an_error_is_told_with_the_name_in_the_panel_and_its_group_opens(person,
     assert not note.isVisible()
     person.press("Cancel")
     person.panel_closed()
+
+
+def test_ramps_at_starts_and_ends_of_beads_are_typed(person, hemisphere):
+    """What is typed into their fields is what beads are planned with."""
+    api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
+    person.click("RoboticAM_Toolpath")
+    panel = person.panel("RoboticAM_Toolpath")
+    for name, text in (
+        ("TravelSpeed", "8 mm/s"), ("StartLength", "5 mm"), ("StartTravelSpeed", "3 mm/s"), ("StartRamp", "-1 mm"),
+    ):
+        person.type(panel, name, text)
+    person.press("Ok")
+    assert person.field(panel, "StartRampNote").text().startswith("-1 mm is out of range")
+    for name, text in (("StartRamp", "4 mm"), ("EndLength", "3 mm"), ("EndTravelSpeed", "10 mm/s"), ("EndRamp", "2 mm")):
+        person.type(panel, name, text)
+    person.press("Ok")
+    person.until(lambda: "take 14 mm with their ramps" in person.panel_error(panel), "what is too long", 10)
+    for name, text in (("StartLength", "1 mm"), ("StartRamp", "1 mm"), ("EndLength", "0.5 mm"), ("EndRamp", "0.8 mm")):
+        person.type(panel, name, text)
+    person.press("Ok")
+    person.panel_closed()
+    made = hemisphere.Document.Toolpath
+    assert (made.StartRamp.Value, made.EndRamp.Value) == (1.0, 0.8)
+    process = made.Proxy.parameters(made, ProcessParameters)
+    assert (process.start.ramp, process.start.travel_speed, process.end.ramp) == (1.0, 3.0, 0.8) and process.ramped
 
 
 def test_a_panel_stays_with_its_document(person, hemisphere):
