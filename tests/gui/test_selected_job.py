@@ -38,7 +38,7 @@ def opened(monkeypatch):
     """The labels of what tools without a panel open."""
     labels = []
     monkeypatch.setattr(simulation, "show", lambda obj: labels.append(obj.Label))
-    monkeypatch.setattr(spin_map.dock, "show", lambda obj: labels.append(obj.Label))
+    monkeypatch.setattr(spin_map, "show", lambda obj: labels.append(obj.Label))
     return labels
 
 
