@@ -11,6 +11,7 @@ from freecad_am.gui.path import dock as paths
 from freecad_am.gui.plots import dock as plots
 from freecad_am.gui.redundancy_map import dock as maps
 from freecad_am.gui.redundancy_map import draft
+from freecad_am.gui.redundancy_map import tool as map_tool
 from freecad_am.gui.simulation import dock as simulations
 from freecad_am.gui.simulation import fields
 from freecad_am.gui.tools.commands import GROUPS
@@ -182,7 +183,7 @@ def test_a_height_that_the_user_has_given_stays(person, path):
 def test_a_click_on_the_map_leaves_it_in_front(person, hand, path):
     opened(person, path, "RoboticAM_Path")
     dock = opened(person, path, "RoboticAM_SpinMap")
-    one = maps._open[0]
+    one = map_tool._open[0]
     person.until(lambda: one.canvas.painted is not None, "the cells", 60)
     hand.click(one.canvas)
     person.until(lambda: path.ViewObject.Proxy.shown is not None, "the path to follow", 5)
@@ -227,7 +228,7 @@ def settled(person):
 
 def test_docks_that_are_open_follow_the_language(person, path, speak):
     docks = [opened(person, path, command) for command in (*BELOW, "RoboticAM_Simulate")]
-    one, simulation, plot = maps._open[0], simulations._open[0], plots._dock
+    one, simulation, plot = map_tool._open[0], simulations._open[0], plots._dock
     person.until(lambda: one.canvas.painted is not None, "the cells", 60)
     path_dock, plots_dock, map_dock, simulation_dock = docks
     path.ViewObject.Visibility = True
