@@ -156,7 +156,7 @@ def test_errors_of_parameters_are_told_in_french(french):
     entered = [(cls, row, odd) for cls in sorted(sections, key=lambda cls: cls.__name__) for row in rows.rows(cls)
                for odd in mutations.ODD if isinstance(odd, str)]
     told = set()
-    for cls, row, odd in random.Random(16).sample(entered, 1500):
+    for cls, row, odd in random.Random(16).sample(entered, 4000):
         message = raised(lambda: rows.build(cls, {row.key: row.inner(odd, row.label)}))  # noqa: B023
         if message is not None:
             check_told(message, french)

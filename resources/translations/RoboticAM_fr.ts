@@ -4423,8 +4423,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
-        <source>Programs for this machine&apos;s controller need the tool on the robot and cartesian motion. A new job is planned, checked and simulated, but no program is written with it.</source>
-        <translation>Les programmes pour la commande de cette machine demandent l&apos;outil sur le robot et un mouvement cartésien. Un nouveau travail est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit avec lui.</translation>
+        <source>Programs for this machine&apos;s controller are of positions, and what it calls the configurations of this wrist is not known: all is planned, checked and simulated, but no program is written.</source>
+        <translation>Les programmes de la commande de cette machine sont faits de positions, et on ne sait pas comment elle nomme les configurations de ce poignet : tout est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
+        <source>Programs for this machine&apos;s controller need the tool on the robot. With the part on it all is planned, checked and simulated, but no program is written.</source>
+        <translation>Les programmes de la commande de cette machine demandent l&apos;outil sur le robot. Avec la pièce sur le robot, tout est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>

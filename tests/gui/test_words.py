@@ -168,12 +168,16 @@ def test_what_may_be_chosen_is_read_whole_in_a_narrow_panel(person, cells):
 def test_a_machine_without_a_post_gets_none_proposed(person, hemisphere):
     document = hemisphere.Document
     feature = api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5)
-    for machine, post in (("kuka-kr16-2", "none"), ("staubli-tx2-60l", "staubli"), ("fanuc-arcmate120ic", "fanuc")):
-        cell = api.make_cell(document, parameters=cell_of(machine))
+    for machine, setup, post, motion in (
+        ("kuka-kr16-2", "part-on-robot", "none", "joint"), ("kuka-kr16-2", "tool-on-robot", "kuka", "cartesian"),
+        ("staubli-tx2-60l", "part-on-robot", "staubli", "joint"), ("fanuc-arcmate120ic", "part-on-robot", "fanuc", "joint"),
+    ):
+        cell = api.make_cell(document, parameters=cell_of(machine, (), setup))
         toolpath = api.make_toolpath(document, feature, cell)
         person.select(api.make_joint_path(document, toolpath, cell))
         person.click("RoboticAM_Program")
         panel = person.panel("RoboticAM_Program")
         assert person.field(panel, "Post").currentText() == post
+        assert person.field(panel, "Motion").currentData() == motion
         person.press("Cancel")
         person.panel_closed()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The macro interface: parameters as keywords, nothing left behind by what fails, files in and out."""
 
+import dataclasses
 import math
 import os
 
@@ -16,6 +17,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.strategies import size
+from freecad_am.objects.checks import controllers
 from freecad_am.objects.program import files_of
 from freecad_am.objects.work import progress
 
@@ -327,3 +329,24 @@ def test_remedies_that_take_long_are_told_before_they_are_looked_for(doc, part, 
         path = api.make_joint_path(doc, toolpath, cell)
     assert any(issue.level == "error" for issue in api.issues(path))
     assert looked == [["LARGE"] if long else []]
+
+
+@pytest.mark.parametrize(("machine", "setup", "written"), [
+    ("kuka-kr16-2", "tool-on-robot", ("kuka", "cartesian")),  # joint moves of KRL cannot keep a speed
+    ("kuka-kr16-2", "part-on-robot", ("", "")),
+    ("kuka-lbr-iisy11-r1300", "tool-on-robot", ("", "")),  # its wrist has no names for positions
+    ("abb-irb2400-12-155", "tool-on-robot", ("abb", "joint")),
+    ("fanuc-crx10ia", "part-on-robot", ("fanuc", "joint")),
+])
+def test_a_new_job_is_written_in_the_motion_that_the_controller_has(machine, setup, written):
+    settings = dataclasses.replace(CellParameters(), machine=machine, setup=setup)
+    assert controllers.post_of(settings, "", ()) == written
+
+
+def test_a_new_job_of_a_kuka_robot_with_the_torch_ends_with_a_program(doc, part, monkeypatch):
+    make = api.make_feature_of
+    monkeypatch.setattr(api, "make_feature_of", lambda *given, values, **named: make(
+        *given, values={"layer_height": 15.0, "chord_error": 0.5, **values}, **named))
+    *_, program = api.make_all(doc, part, machine="kuka-kr16-2", setup="tool-on-robot")
+    assert (program.Status, program.Post, program.Motion) == ("up to date", "kuka", "cartesian")
+    assert any(b"LIN " in content for content in files_of(program).values())

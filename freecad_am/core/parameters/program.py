@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from . import field as f
 from .cell import Pose
 
+MOTIONS = ("joint", "cartesian")
+
 
 @dataclass(frozen=True)
 class StartParameters:
@@ -93,7 +95,7 @@ class ProgramParameters:
 
     post: str = f.parameter("fanuc", f.TEXT, "The controller the program is written for, or none.")
     motion: str = f.parameter(
-        "joint", f.CHOICE, "Points as joint values, or as positions of the tool.", choices=("joint", "cartesian")
+        "joint", f.CHOICE, "Points as joint values, or as positions of the tool.", choices=MOTIONS
     )
     max_points: int = f.parameter(2000, f.COUNT, "Most points of one program file; longer ones are chained.", low=10)
     origin: str | Pose = f.parameter(

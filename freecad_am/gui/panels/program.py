@@ -34,7 +34,7 @@ from .preview import PreviewPanel, stale_lines
 FIRST = 40  # lines that are shown: controllers want a head of twenty
 HIGH = 14  # lines that are seen at once, about
 SMALLER, LEAST = 0.85, 6.0  # than the text of the panel, which is narrow, and points at least
-POST, START, START_LAYER = "program_post", "program.start_at", "program_start_at_layer"
+POST, MOTION, START, START_LAYER = "program_post", "program_motion", "program.start_at", "program_start_at_layer"
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,10 @@ class ProgramPanel(PreviewPanel):
         super().__init__(
             tr("Program") if obj is None else obj.Label, [*inputs.of(Program, obj), self.name], obj, None
         )
-        post = suggestions.post_for(self._links()["JointPath"]) if obj is None else ""
-        if post:
-            self.places[POST][0].show(post)
+        if obj is None:
+            for name, text in zip((POST, MOTION), suggestions.post_for(self._links()["JointPath"]), strict=True):
+                if text:
+                    self.places[name][0].show(text)
         self._add_text()
 
     def _add_text(self) -> None:

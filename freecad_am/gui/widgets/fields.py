@@ -206,7 +206,7 @@ def _choice(row: Row, shown: str) -> Field:
         combo.addItem(choices.worded(choice), choice)
     choices.shrink(combo)
     combo.setCurrentIndex(row.spec.choices.index(shown))
-    return Field(row, combo, combo.currentData)
+    return Field(row, combo, combo.currentData, lambda value: combo.setCurrentIndex(row.spec.choices.index(value)))
 
 
 def _suggested(row: Row, shown: str, texts: list[tuple[str, str]]) -> Field:

@@ -11,7 +11,7 @@ from ...core.kinematics.machines import machine
 from ...core.parameters.program import ProgramParameters
 from ...core.process.model import bead_table
 from ...objects import user_machines
-from ...objects.checks.controllers import written_by
+from ...objects.checks.controllers import writers, written_by
 from ...objects.fields import preferences
 from ...posts import catalogue
 from ..texts.translation import tr
@@ -58,11 +58,14 @@ def no_post(name: str, setup: str = "") -> str:
     except InputError:
         return ""
     posts, setup = written_by(loaded), setup or loaded.arrangements[0].setup
-    if posts is None or catalogue.fitting(posts, ProgramParameters().motion, setup):
+    if posts is None or writers(loaded, posts, setup):
         return ""
+    if posts and any(writers(loaded, posts, each.setup) for each in loaded.arrangements):
+        return tr("Programs for this machine's controller need the tool on the robot. With the part on it all is planned, "
+                  "checked and simulated, but no program is written.")
     if posts:
-        return tr("Programs for this machine's controller need the tool on the robot and cartesian motion. A new job is "
-                  "planned, checked and simulated, but no program is written with it.")
+        return tr("Programs for this machine's controller are of positions, and what it calls the configurations of this "
+                  "wrist is not known: all is planned, checked and simulated, but no program is written.")
     if loaded.posts:
         return tr("Programs for this machine need what only its controller tells, its pulses per degree, in a machine file "
                   "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.")
@@ -70,17 +73,16 @@ def no_post(name: str, setup: str = "") -> str:
               "written. Export Path… writes its points as a table.")
 
 
-def post_for(path: Any) -> str:
-    """The post for the machine of a joint path, `none` where nothing writes for its controller; '' where the one by default
-    will do, or the machine says nothing."""
+def post_for(path: Any) -> tuple[str, str]:
+    """Post and motion for the machine of a joint path, ('none', '') where nothing writes for its controller; ('', '') where
+    those by default will do, or the machine says nothing."""
     if path is None or path.Cell is None:
-        return ""
+        return "", ""
     try:
-        posts = written_by(machine.load(path.Cell.Machine, user_machines.folders()))
+        loaded = machine.load(path.Cell.Machine, user_machines.folders())
     except InputError:
-        return ""
-    wanted = preferences.post() or ProgramParameters().post
+        return "", ""
+    wanted, posts = preferences.post() or ProgramParameters().post, written_by(loaded)
     if posts is None or wanted in posts:
-        return ""
-    fit = catalogue.fitting(posts, ProgramParameters().motion, path.Cell.Setup)
-    return next(iter(fit), NO_POST)
+        return "", ""
+    return next(iter(writers(loaded, posts, path.Cell.Setup)), (NO_POST, ""))

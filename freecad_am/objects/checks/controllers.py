@@ -11,7 +11,7 @@ from ...core.kinematics.machines import machine as machines
 from ...core.kinematics.machines.machine import UNKNOWN_REMARK, Machine
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.external import externals
-from ...core.parameters.program import ProgramParameters
+from ...core.parameters.program import MOTIONS, ProgramParameters
 from ...core.toolpath import Toolpath
 from ...posts.catalogue import NAMES, controller, fitting
 
@@ -97,14 +97,37 @@ def written_by(machine: Machine) -> tuple[str, ...] | None:
     return tuple(post for post in machine.posts if not controller(post).pulses)
 
 
-def post_of(settings: CellParameters, wanted: str, folders: Sequence[str]) -> str:
-    """The post of a new program in a cell: the one that is wanted, '' for the usual one, where the controller reads it, else
-    one that writes the usual motion for it; '' where none does."""
-    posts, usual = written_by(machines.load(settings.machine, tuple(folders))), ProgramParameters()
+def writers(machine: Machine, posts: Sequence[str], setup: str) -> list[tuple[str, str]]:
+    """Posts, of these, with the motion that programs of a machine in a set-up are written in: those that write the usual one
+    first, then those that write the other."""
+    usual = ProgramParameters().motion
+    found = [(post, usual) for post in fitting(posts, usual, setup)]
+    return found + [
+        (post, motion) for motion in MOTIONS if motion != usual for post in fitting(posts, motion, setup)
+        if (post, usual) not in found and _is_written(machine, motion, post)
+    ]
+
+
+def _is_written(machine: Machine, motion: str, post: str) -> bool:
+    try:
+        check_wrist(machine, motion, post)
+        check_pulses(machine, motion, post)
+    except InputError:
+        return False
+    return True
+
+
+def post_of(settings: CellParameters, wanted: str, folders: Sequence[str]) -> tuple[str, str]:
+    """Post and motion of a new program in a cell: the post that is wanted, '' for the usual one, where the controller reads
+    it, else one that writes for it; ('', '') where none does."""
+    machine, usual = machines.load(settings.machine, tuple(folders)), ProgramParameters()
+    posts = written_by(machine)
     if externals(settings.external):
         posts = tuple(post for post in sorted(NAMES if posts is None else posts) if controller(post).external)
     wanted = wanted or usual.post
-    return wanted if posts is None or wanted in posts else next(iter(fitting(posts, usual.motion, settings.setup)), "")
+    if posts is None or wanted in posts:
+        return next(iter(writers(machine, (wanted,), settings.setup)), (wanted, usual.motion))
+    return next(iter(writers(machine, posts, settings.setup)), ("", ""))
 
 
 def readers(cell: Cell) -> tuple[str, ...] | None:
