@@ -4,6 +4,11 @@
 <context>
     <name>App::Property</name>
     <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>A further part that the nozzle is kept clear of.</source>
+        <translation>Une pièce supplémentaire que la buse évite.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>A machine of the list, or the path of a machine file.</source>
         <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
@@ -159,6 +164,11 @@
         <translation>Direction des lignes et des zigzags ; 0 court autour du moyeu, 90 deg le long de celui-ci.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Direction x y z from the deposit towards the tool, in the part&apos;s coordinates, where neither the curves nor faces say one.</source>
+        <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Distance between neighbouring beads of a layer.</source>
         <translation>Distance entre cordons voisins d&apos;une couche.</translation>
@@ -262,6 +272,11 @@
         <location filename="../../freecad_am/objects/developable_feature.py"/>
         <source>Further solids or closed meshes to deposit on the same hub.</source>
         <translation>Autres solides ou maillages fermés à déposer sur le même moyeu.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>Further solids or closed meshes to deposit.</source>
+        <translation>Autres solides ou maillages fermés à déposer.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -369,6 +384,16 @@
         <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>How many layers lie on the faces, one layer height over the other along their normals.</source>
+        <translation>Nombre de couches sur les faces, l&apos;une à une hauteur de couche au-dessus de l&apos;autre, le long de leurs normales.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How many times the curves are laid, one layer height over the other.</source>
+        <translation>Combien de fois les courbes sont déposées, l&apos;une à une hauteur de couche au-dessus de l&apos;autre.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>How much corners within a bead are rounded, percent: CNT of FANUC, and of the most that others may.</source>
         <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
@@ -404,6 +429,11 @@
         <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest angle between the stacking direction and a wall that leans out, before there is a warning; 90 deg: none.</source>
+        <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Largest angle between the tool axis and the vertical of the part.</source>
         <translation>Plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la pièce.</translation>
@@ -427,6 +457,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Largest error of the local distance of constant-distance layers.</source>
         <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest share by which beads may lie nearer together or farther apart than the bead spacing on faces that are bent both ways; these are covered in pieces that keep to it. (%)</source>
+        <translation>Plus grande part dont les cordons peuvent être plus serrés ou plus espacés que l&apos;espacement des cordons sur des faces courbées dans les deux sens ; elles sont couvertes par morceaux qui s&apos;y tiennent. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -784,6 +819,11 @@
         <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement. (%)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Share of the layer height by which layers along a guide may be higher or lower beside it. (%)</source>
+        <translation>Part de la hauteur de couche dont les couches le long d&apos;un guide peuvent être plus hautes ou plus basses à côté de lui. (%)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter layers, before there is a warning. (%)</source>
         <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut différer ; pour les couches iso-parameter, avant un avertissement. (%)</translation>
@@ -859,6 +899,11 @@
         <translation>Nombre de couches remplies à 100 % sous les faces supérieures et au-dessus des faces inférieures.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Solids that touch or overlap are deposited as one (auto), or each by itself (none).</source>
+        <translation>Les solides qui se touchent ou se recouvrent sont déposés comme un seul (auto), ou chacun pour soi (none).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Speed between beads.</source>
         <translation>Vitesse entre les cordons.</translation>
@@ -882,6 +927,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Speed of the wire; auto: what makes beads of their width and the layer height at the travel speed, or what the beads of the bead model were made with. 0: no wire. (mm/s)</source>
         <translation>Vitesse du fil ; auto : celle qui fait des cordons de leur largeur et de la hauteur de couche à la vitesse d&apos;avance, ou celle des cordons du modèle de cordon. 0 : pas de fil. (mm/s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Stacking direction x y z in the part&apos;s coordinates, from the first layer to the last; auto: the one with the least area over nothing, of these the one with the least height.</source>
+        <translation>Direction d&apos;empilement x y z dans les coordonnées de la pièce, de la première couche à la dernière ; auto : celle qui a le moins d&apos;aire au-dessus du vide, et parmi celles-ci la moins haute.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -934,6 +984,26 @@
         <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the solid.</source>
+        <translation>Les arêtes, le fil ou l&apos;esquisse auxquels les couches le long d&apos;un guide sont normales ; aucun : la ligne médiane du solide.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/curves_feature.py"/>
+        <source>The edges, wire, sketch or table of points to lay as beads; faces beside edges give the directions.</source>
+        <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons ; des faces à côté des arêtes donnent les directions.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>The faces on which the first of geodesic and offset layers lies; none: where they stand.</source>
+        <translation>Les faces sur lesquelles repose la première des couches géodésiques ou décalées ; aucune : là où elles sont posées.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>The faces to cover.</source>
+        <translation>Les faces à recouvrir.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>The feature to deposit.</source>
         <translation>L&apos;élément à déposer.</translation>
@@ -969,6 +1039,16 @@
         <translation>Le numéro d&apos;un programme de soudage est mis sur une sortie de groupe ; nommé par les instructions d&apos;arc, qui commutent alors le dépôt ; ou est celui d&apos;un programme appelé.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/curves_feature.py"/>
+        <source>The part that they are laid on; none is needed on a platform.</source>
+        <translation>La pièce sur laquelle ils sont déposés ; inutile sur un plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>The part that they stand on; none is needed on a platform.</source>
+        <translation>La pièce sur laquelle ils reposent ; aucune n&apos;est nécessaire sur un plateau.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
         <source>The points as they were read.</source>
         <translation>Les points tels qu&apos;ils ont été lus.</translation>
@@ -994,9 +1074,19 @@
         <translation>La forme à déposer, ou certaines de ses faces.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>The side of the faces that is covered: where their normals point, outwards of a solid (front), or the other side of faces that are of no solid (back).</source>
+        <translation>Le côté des faces qui est recouvert : celui vers lequel pointent leurs normales, l&apos;extérieur d&apos;un solide (front), ou l&apos;autre côté de faces qui ne sont d&apos;aucun solide (back).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.</source>
         <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes sont choisies.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>The solids or closed meshes to deposit.</source>
+        <translation>Les solides ou maillages fermés à déposer.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
@@ -1124,6 +1214,11 @@
         <translation>Ce qu&apos;est le fichier.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>What the layers are: parallel planes; at equal distances by the way through the part from where it stands, so that nothing needs support (geodesic); at equal distances straight from there (offset); or planes normal to a guide curve (along).</source>
+        <translation>Ce que sont les couches : des plans parallèles ; à distances égales par le chemin à travers la pièce depuis là où elle repose, de sorte que rien n&apos;a besoin de support (geodesic) ; à distances égales en ligne droite depuis là (offset) ; ou des plans normaux à une courbe guide (along).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>What the object is, should its proxy be lost.</source>
         <translation>Ce qu&apos;est l&apos;objet, si son proxy était perdu.</translation>
@@ -1152,6 +1247,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Where closed beads start.</source>
         <translation>Là où commencent les cordons fermés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Where in its height a layer takes its outline from the part.</source>
+        <translation>À quelle hauteur une couche prend son contour de la pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -2157,6 +2257,11 @@
         <translation>Courbes…</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Cut at</source>
+        <translation>Couper à</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Cut into layers…</source>
         <translation>Découper en couches…</translation>
@@ -2317,7 +2422,7 @@
         <translation>Sortie logique qui commande le dépôt.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Direction</source>
         <translation>Sens</translation>
     </message>
@@ -2330,6 +2435,11 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Direction of lines and zigzags; 0 runs around the hub, 90 deg along it.</source>
         <translation>Direction des lignes et des zigzags ; 0 court autour du moyeu, 90 deg le long de celui-ci.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Direction x y z from the deposit towards the tool, in the part&apos;s coordinates, where neither the curves nor faces say one.</source>
+        <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -2350,6 +2460,11 @@
         <location filename="../../freecad_am/plots/process.py"/>
         <source>Distance to the layer before (asked: {0} mm)</source>
         <translation>Distance à la couche précédente (demandée : {0} mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Distortion</source>
+        <translation>Distorsion</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -2787,9 +2902,19 @@
         <translation>Autres solides ou maillages fermés à déposer sur le même moyeu.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>Further solids or closed meshes to deposit.</source>
+        <translation>Autres solides ou maillages fermés à déposer.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Further spacings whose joint paths are planned for the comparison of the report.</source>
         <translation>Autres espacements dont les trajectoires articulaires sont planifiées pour la comparaison du rapport.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Fuse</source>
+        <translation>Fusionner</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2987,6 +3112,11 @@
         <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>How many layers lie on the faces, one layer height over the other along their normals.</source>
+        <translation>Nombre de couches sur les faces, l&apos;une à une hauteur de couche au-dessus de l&apos;autre, le long de leurs normales.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>How many points have what deviation; dashed: the tolerance</source>
         <translation>Combien de points ont quel écart ; tirets : la tolérance</translation>
@@ -2995,6 +3125,11 @@
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>How many seconds of the job pass in one</source>
         <translation>Combien de secondes du travail passent en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How many times the curves are laid, one layer height over the other.</source>
+        <translation>Combien de fois les courbes sont déposées, l&apos;une à une hauteur de couche au-dessus de l&apos;autre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -3187,6 +3322,11 @@
         <translation>Type</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest angle between the stacking direction and a wall that leans out, before there is a warning; 90 deg: none.</source>
+        <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Largest angle between the tool axis and the vertical of the part.</source>
         <translation>Plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la pièce.</translation>
@@ -3230,6 +3370,11 @@
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Largest joint speed: {:.0f} % of what {} can do, in layer {}</source>
         <translation>Vitesse articulaire la plus grande : {:.0f} % de ce que peut {}, couche {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest share by which beads may lie nearer together or farther apart than the bead spacing on faces that are bent both ways; these are covered in pieces that keep to it.</source>
+        <translation>Plus grande part dont les cordons peuvent être plus serrés ou plus espacés que l&apos;espacement des cordons sur des faces courbées dans les deux sens ; elles sont couvertes par morceaux qui s&apos;y tiennent.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -3625,6 +3770,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Max iterations</source>
         <translation>Itérations max</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Max overhang</source>
+        <translation>Surplomb max.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -4557,6 +4707,11 @@
         <translation>Renouveler</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Repeat</source>
+        <translation>Répéter</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Result</source>
         <translation>Résultat</translation>
@@ -4787,6 +4942,11 @@
         <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Share of the layer height by which layers along a guide may be higher or lower beside it.</source>
+        <translation>Part de la hauteur de couche dont les couches le long d&apos;un guide peuvent être plus hautes ou plus basses à côté de lui.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter layers, before there is a warning.</source>
         <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut différer ; pour les couches iso-parameter, avant un avertissement.</translation>
@@ -4882,7 +5042,7 @@
         <translation>Montre la trajectoire en fonction de la rotation autour de l&apos;outil ; la courbe peut être tracée à la main</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Side</source>
         <translation>Côté</translation>
     </message>
@@ -4980,6 +5140,11 @@
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Solids on hub</source>
         <translation>Solides sur moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Solids that touch or overlap are deposited as one (auto), or each by itself (none).</source>
+        <translation>Les solides qui se touchent ou se recouvrent sont déposés comme un seul (auto), ou chacun pour soi (none).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
@@ -5082,6 +5247,11 @@
         <translation>Sphéricité</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Stacking direction x y z in the part&apos;s coordinates, from the first layer to the last; auto: the one with the least area over nothing, of these the one with the least height.</source>
+        <translation>Direction d&apos;empilement x y z dans les coordonnées de la pièce, de la première couche à la dernière ; auto : celle qui a le moins d&apos;aire au-dessus du vide, et parmi celles-ci la moins haute.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Stand off</source>
         <translation>Distance de buse</translation>
@@ -5135,6 +5305,11 @@
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>Start edges</source>
         <translation>Arêtes de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>Start faces</source>
+        <translation>Faces de départ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -5352,9 +5527,19 @@
         <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/curves_feature.py"/>
+        <source>The edges, wire, sketch or table of points to lay as beads; faces beside edges give the directions.</source>
+        <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons ; des faces à côté des arêtes donnent les directions.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>The faces on which the first of geodesic and offset layers lies; none: where they stand.</source>
         <translation>Les faces sur lesquelles repose la première des couches géodésiques ou décalées ; aucune : là où elles sont posées.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>The faces to cover.</source>
+        <translation>Les faces à recouvrir.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cladding.py"/>
@@ -5637,6 +5822,11 @@
         <translation>La forme à déposer, ou certaines de ses faces.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>The side of the faces that is covered: where their normals point, outwards of a solid (front), or the other side of faces that are of no solid (back).</source>
+        <translation>Le côté des faces qui est recouvert : celui vers lequel pointent leurs normales, l&apos;extérieur d&apos;un solide (front), ou l&apos;autre côté de faces qui ne sont d&apos;aucun solide (back).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>The simulation has ended: {why}.</source>
         <translation>La simulation est terminée : {why}.</translation>
@@ -5650,6 +5840,11 @@
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>The solids or closed meshes to deposit, one after the other; a click on one again leaves it out.</source>
         <translation>Les solides ou maillages fermés à déposer, l&apos;un après l&apos;autre ; un nouveau clic sur l&apos;un le retire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>The solids or closed meshes to deposit.</source>
+        <translation>Les solides ou maillages fermés à déposer.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
@@ -6252,6 +6447,11 @@
         <translation>Ce que le fichier a côte à côte ; chacun reçoit son propre fichier de machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>What the layers are: parallel planes; at equal distances by the way through the part from where it stands, so that nothing needs support (geodesic); at equal distances straight from there (offset); or planes normal to a guide curve (along).</source>
+        <translation>Ce que sont les couches : des plans parallèles ; à distances égales par le chemin à travers la pièce depuis là où elle repose, de sorte que rien n&apos;a besoin de support (geodesic) ; à distances égales en ligne droite depuis là (offset) ; ou des plans normaux à une courbe guide (along).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.</source>
         <translation>Ce que donne le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou le RZ de l&apos;article.</translation>
@@ -6275,6 +6475,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Where closed beads start.</source>
         <translation>Là où commencent les cordons fermés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Where in its height a layer takes its outline from the part.</source>
+        <translation>À quelle hauteur une couche prend son contour de la pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -6972,6 +7177,11 @@
         <translation>tous les triangles du maillage s&apos;annulent ; exportez-le à nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>along</source>
+        <translation>le long d&apos;un guide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>along the axis</source>
         <translation>le long de l&apos;axe</translation>
@@ -7475,6 +7685,11 @@
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>both sides of a wall have a thickness between; give it</source>
         <translation>entre les deux côtés d&apos;une paroi il y a une épaisseur ; donnez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>bottom</source>
+        <translation>bas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
@@ -8080,6 +8295,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>fronts follow no lines of a surface, as iso-parameter layers do; leave strategy.method out, or use constant-distance or smooth</source>
         <translation>les fronts ne suivent pas les lignes d&apos;une surface comme le font les couches iso-parameter ; retirez strategy.method, ou utilisez constant-distance ou smooth</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>geodesic</source>
+        <translation>géodésique</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/cell.py"/>
@@ -10137,6 +10357,11 @@
         <translation>écart</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>offset</source>
+        <translation>décalées</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/rapids/findings.py"/>
         <source>on its way from the bead before the nozzle would meet {0} at every retract distance and direction tried, and no way round was found; move the seam or the part, or take a more slender nozzle</source>
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée, et aucun contournement n’a été trouvé ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
@@ -10325,6 +10550,11 @@
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>plane of symmetry</source>
         <translation>plan de symétrie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>planes</source>
+        <translation>plans</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
@@ -11072,6 +11302,11 @@
         <translation>l&apos;arête est à {0} mm de la paroi en {1} ; choisissez des arêtes des faces mêmes de la paroi</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/curves_feature.py"/>
+        <source>the edges, wire, sketch or table of points to lay as beads; faces beside edges give the directions</source>
+        <translation>les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons ; des faces à côté des arêtes donnent les directions</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>the ends of the arc are {0} and {1} mm from its middle; give I and J from its start to its middle</source>
         <translation>les extrémités de l&apos;arc sont à {0} et {1} mm de son centre ; donnez I et J de son début à son centre</translation>
@@ -11095,6 +11330,11 @@
         <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>the faces of the wall do not close around; walls that are open (half shells) cannot be deposited yet: choose a full tube</source>
         <translation>les faces de la paroi ne se ferment pas sur le tour ; les parois ouvertes (demi-coques) ne peuvent pas encore être déposées : choisissez un tube entier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>the faces to cover</source>
+        <translation>les faces à recouvrir</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -11822,6 +12062,11 @@
         <translation>le solide se touche lui-même le long d’une arête, si bien que son intérieur est inconnu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>the solids or closed meshes to deposit</source>
+        <translation>les solides ou maillages fermés à déposer</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
         <source>the solids or closed meshes to deposit; or a part and the faces of its hub, where both are one solid</source>
         <translation>les solides ou maillages fermés à déposer ; ou une pièce et les faces de son moyeu, si les deux sont un seul solide</translation>
@@ -12515,6 +12760,11 @@
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>toolpath</source>
         <translation>trajectoire d&apos;outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>top</source>
+        <translation>haut</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
