@@ -23,6 +23,7 @@ from tests.core.kinematics.arms import (
 pytest.importorskip("PyKDL")
 
 
+TWINS = 1e-4  # rad
 ARMS = {
     "CRX-10iA": CRX_10IA, "HC10": HC10, "GoFa 5": GOFA_5, "GoFa 10": GOFA_10, "M-710iC/50E": M710IC_50E,
     "crooked": CROOKED_CRX,
@@ -97,7 +98,10 @@ def test_zeros_that_meet_are_found(arm):
         assert away.min(axis=0).max() < 1e-6
         # what the search has not is a solution too, and rare
         assert np.abs(search.values(curves, zeros.pose, zeros.angle, zeros.side, zeros.elbow)).max() < 1e-7
-        assert (away.min(axis=1) > 1e-6).sum() <= 8
+        extra = away.min(axis=1)
+        assert (extra > TWINS).sum() <= 8
+        # where two meet they are known to the root of the last digit: a zero may be told as two, next to each other
+        assert (extra > 1e-6).sum() <= (24 if off < TWINS else 0)
         if off:  # where they meet exactly the condition is flat: test_offset_wrist says how near to it is found
             assert np.nanmin(apart(arm[1].inverse(of.forward(q)), q), axis=0).max() < 1e-5
 
