@@ -112,9 +112,7 @@ WINDOW_OF_VERSION = (
     "tests/gui/test_clicks.py::test_from_a_selected_shape_to_a_program_by_clicks",
     "tests/gui/test_robust.py::test_closed_panels_leave_nothing_behind",
     "tests/gui/test_robust.py::test_a_job_copied_into_another_document[True]",
-    *(f"tests/gui/test_robust.py::test_a_document_closed_while_a_panel_is_open[{name}]" for name in (
-        "NewJob", "WallOnPart", "Program",
-    )),
+    "tests/gui/test_robust.py::test_a_document_closed_while_a_panel_is_open",
     "--deselect=tests/gui/test_robust_events.py::test_a_parameter_follows_a_spreadsheet_until_that_goes",
     "--deselect=tests/gui/test_long_work.py::test_cancel_ends_the_work_and_leaves_the_document_as_it_was[joints]",
 )

@@ -62,9 +62,10 @@ def leaning(path, positioner):
 
 
 def test_a_positioner_is_proposed_before_the_job_is_planned_without(doc, dome, looked):
-    cell, feature, _, path = api.make_all(doc, dome, machine=ROBOT, setup=TOOL, max_from_vertical=f"{MOST:g} deg")
+    cell, feature, _, path, program = api.make_all(
+        doc, dome, machine=ROBOT, setup=TOOL, max_from_vertical=f"{MOST:g} deg")
     assert math.isclose(feature.MaxFromVertical.Value, MOST)
-    assert path.Status == "up to date", api.issues(path)
+    assert path.Status == program.Status == "up to date", (api.issues(path), api.issues(program))
     made = api.result(cell)
     (positioner,) = externals(made.external)
     assert positioner.carries == "part" and made.setup == TOOL

@@ -38,7 +38,7 @@ class Lattice:
     turning: Mask
 
     @cached_property
-    def open(self) -> Mask:
+    def passable(self) -> Mask:
         """(m, N) rotations at the ends of possible cells."""
         ends: Mask = (self.possible | np.roll(self.possible, 1, axis=1)) & np.isfinite(self.joints).all(axis=2)
         return ends
@@ -46,13 +46,13 @@ class Lattice:
     @cached_property
     def whole(self) -> Mask:
         """(m, N) possible cells both ends of which are within reach."""
-        return np.asarray(self.possible & self.open & np.roll(self.open, -1, axis=1))
+        return np.asarray(self.possible & self.passable & np.roll(self.passable, -1, axis=1))
 
     @cached_property
     def ragged(self) -> Mask:
         """(m, N) rotations beside which a possible cell has its other end out of reach."""
         torn = self.possible & ~self.whole
-        return np.asarray(self.open & (torn | np.roll(torn, 1, axis=1)))
+        return np.asarray(self.passable & (torn | np.roll(torn, 1, axis=1)))
 
     @cached_property
     def about(self) -> tuple[Array, Array]:

@@ -31,7 +31,7 @@ def ahead(lattice: Lattice, last: Array, counts: Array, far: float) -> Array:
     """(N,) the least sum from every rotation at the first point on, infinite where none can be; last (N,): from the last
     point on. counts (m - 1,): of how many steps each of the lattice's stands; steps that take more than `far` are not
     looked at one by one."""
-    value = np.where(lattice.open[-1], last, np.inf)
+    value = np.where(lattice.passable[-1], last, np.inf)
     for j in range(len(lattice.joints) - 2, -1, -1):
         value = before(lattice, j, lattice, j + 1, value, float(counts[j]), far)
     return value
@@ -51,8 +51,8 @@ def before(one: Lattice, i: int, other: Lattice, j: int, value: Array, count: fl
     total[np.isnan(total)] = np.inf
     least = _least(total, columns, one.joints[i], other, j, value, weights)
     if len(offsets) < one.count:  # whatever step is not looked at takes `far` at least
-        least = np.minimum(least, far + value[other.open[j]].min(initial=np.inf))
-    return np.where(one.open[i], np.maximum(least, 0.0), np.inf)
+        least = np.minimum(least, far + value[other.passable[j]].min(initial=np.inf))
+    return np.where(one.passable[i], np.maximum(least, 0.0), np.inf)
 
 
 def least_of(value: Array, first: Lattice) -> float:
@@ -68,7 +68,7 @@ def _least(
     least, between them too; of steps from joints start (n, axes)."""
     inner = columns[:, 1:-1]
     low, high = (side[j][inner] for side in other.about)
-    guess, to = _parabolas(total, low, high, other.open[j][inner])
+    guess, to = _parabolas(total, low, high, other.passable[j][inner])
     least = _at_best(guess, to, inner, start, other, j, value, weights)
     ragged = other.ragged[j]
     if ragged.any():  # sums go on beyond the edge of reach as they come to it
