@@ -123,7 +123,7 @@ def post_of(settings: CellParameters, wanted: str, folders: Sequence[str]) -> tu
     machine, usual = machines.load(settings.machine, tuple(folders)), ProgramParameters()
     posts = written_by(machine)
     if externals(settings.external):
-        posts = tuple(post for post in sorted(NAMES if posts is None else posts) if controller(post).external)
+        posts = _with_external(posts)
     wanted = wanted or usual.post
     if posts is None or wanted in posts:
         return next(iter(writers(machine, (wanted,), settings.setup)), (wanted, usual.motion))
@@ -135,4 +135,9 @@ def readers(cell: Cell) -> tuple[str, ...] | None:
     posts = cell.machine.posts
     if cell.external is None:
         return posts
+    return _with_external(posts)
+
+
+def _with_external(posts: Sequence[str] | None) -> tuple[str, ...]:
+    """Those of the posts, of all for None, that write axes beside the robot."""
     return tuple(post for post in sorted(NAMES if posts is None else posts) if controller(post).external)

@@ -95,7 +95,8 @@ def wait(seconds: float) -> list[str]:
     hundredths = max(round(seconds * 100.0), int(seconds > 0.0))
     while hundredths > 0:
         step = min(hundredths, round(_LONGEST_WAIT * 100.0))
-        lines.append("  WAIT" + _shortened(f"{step / 100.0:7.2f}") + "(sec) ;")
+        shown = digits.joined([digits.right_aligned(np.array([step / 100.0]), 2, 7)], 1)
+        lines.append(f"  WAIT{shown}(sec) ;")
         hundredths -= step
     return lines
 
@@ -140,8 +141,3 @@ def _records(template: str, user_frame: int, tool_frame: int, words: Sequence[Se
     texts = [digits.plain(np.arange(1, n + 1), 0), *columns, *shown.transpose(1, 0, 2)]
     fixed = [text.encode("ascii") for text in _FIELD.split(one)]
     return digits.joined([part for pair in zip(fixed, texts, strict=False) for part in pair] + fixed[-1:], n)
-
-
-def _shortened(text: str) -> str:
-    """A number as controllers list it, in the same width."""
-    return text.replace(" 0.", "  .").replace("-0.", " -.").replace("  .000 ", " 0.000 ")
