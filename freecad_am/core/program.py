@@ -82,19 +82,23 @@ class Moves:
 @dataclass(frozen=True)
 class DepositOn:
     """Switch the deposit on and wait `lead` seconds before moving. wire: mm/s of the wire it begins with, where the program
-    has to tell it. schedule: that the arc instruction names, None where an output switches the deposit."""
+    has to tell it. schedule: that the arc instruction names, None where an output switches the deposit. ahead: s before the
+    start is reached at which it is switched, on the move before; None where the machine stands there."""
 
     lead: float = 0.0
     wire: float | None = None
     schedule: int | None = None
+    ahead: float | None = None
 
 
 @dataclass(frozen=True)
 class DepositOff:
-    """Wait `lead` seconds at the end of the bead, then switch the deposit off. schedule: as in `DepositOn`."""
+    """Wait `lead` seconds at the end of the bead, then switch the deposit off. schedule: as in `DepositOn`; ahead: the same
+    of the end, on the last move of the bead."""
 
     lead: float = 0.0
     schedule: int | None = None
+    ahead: float | None = None
 
 
 @dataclass(frozen=True)

@@ -126,8 +126,18 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     if process.weaves and parameters.motion != "cartesian":
         raise refusals.weave_refused(refusals.JOINT_WEAVE, "program.motion")
     by = parameters.schedule.by
+    if parameters.trigger.lead is not None and not parameters.dry_run:
+        _refuse_trigger(by, post.NO_TRIGGER)
     if by in post.NO_SCHEDULE and (process.scheduled or by == program_beads.ARC):
         raise refusals.schedule_refused(by, post.NO_SCHEDULE[by])
+
+
+def _refuse_trigger(by: str, no_trigger: str) -> None:
+    """InputError TRIGGER for the reason `no_trigger`, or where arc instructions switch the deposit, at their own times."""
+    if no_trigger:
+        raise refusals.trigger_refused(no_trigger)
+    if by == program_beads.ARC:
+        raise refusals.trigger_refused("arc instructions switch the deposit at times of their own")
 
 
 def posted(job: Job) -> Posted:

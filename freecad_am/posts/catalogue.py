@@ -22,14 +22,15 @@ class Post(Protocol):
     """What a post module offers. CONTROLLER: what planning must know of the controller. PENDANT: how its pendant shows
     frames, None where it shows axes alone. NO_WIRE: why programs cannot tell the speed of the wire along a bead, '' where
     they can. NO_SCHEDULE: why it cannot be told schedules, by the ways ('output', 'arc') in which it cannot. NO_WEAVE: why
-    beads cannot be woven, '' where they can. MOVE_LINE: how a line begins that tells a move, or, in a loop, several.
-    ON_CONTROLLER: what only the controller can show."""
+    beads cannot be woven, NO_TRIGGER: why the deposit cannot be switched ahead of a place; '' where they can. MOVE_LINE:
+    how a line begins that tells a move, or, in a loop, several. ON_CONTROLLER: what only the controller can show."""
 
     CONTROLLER: Controller
     PENDANT: Pendant | None
     NO_WIRE: str
     NO_SCHEDULE: Mapping[str, str]
     NO_WEAVE: str
+    NO_TRIGGER: str
     MOVE_LINE: re.Pattern[bytes]
     ON_CONTROLLER: tuple[str, ...]
 

@@ -11,7 +11,7 @@ import numpy as np
 from freecad_am.core.types import Array
 
 from ..core.issues import InputError, Text
-from ..core.program import LINEAR_MOVE, Call, DepositOn, Moves, Program, Schedule, WaitBelow, Weave
+from ..core.program import LINEAR_MOVE, Call, DepositOff, DepositOn, Moves, Program, Schedule, WaitBelow, Weave
 from .parts import place
 
 CALL = "process.between_layers.call"
@@ -92,6 +92,30 @@ def weave_refused(why: str, where: str = "process.weave") -> InputError:
 def schedule_refused(by: str, why: str) -> InputError:
     """The error for a controller that cannot be told schedules in this way."""
     return InputError("SCHEDULE", "program.schedule.by", "{}: {}; use another way, or another controller", by, why)
+
+
+def trigger_refused(why: str) -> InputError:
+    """The error for a controller, or a program, in which the deposit cannot be switched ahead of a place."""
+    return InputError("TRIGGER", "program.trigger.lead", "{}; leave it out, or use another controller", why)
+
+
+def refuse_triggers(program: Program, no_trigger: str) -> None:
+    """Raises InputError TRIGGER, for the reason `no_trigger` where there is one, where the deposit is switched ahead of a
+    place; TRIGGER_LEAD where that is earlier than the move that leads there begins."""
+    before: Moves | None = None
+    for block in () if program.dry_run else program.blocks:
+        if isinstance(block, Moves):
+            before = block if len(block) else before
+        elif isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
+            if no_trigger:
+                raise trigger_refused(no_trigger)
+            if before is not None and block.ahead > before.duration[-1]:
+                raise InputError(
+                    "TRIGGER_LEAD", place(before),
+                    "the move that the deposit is switched on takes {:.3g} s, and it would be switched {:.3g} s before its "
+                    "end; use a shorter program.trigger.lead, or larger retract distance",
+                    before.duration[-1], block.ahead,
+                )
 
 
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:

@@ -72,7 +72,7 @@ def _compared(
 
 def _alike(program: Program, found: Event, due: Event) -> bool:
     """Whether an event of a text is the one that is due."""
-    if (found.row, found.kind) != (due.row, due.kind):
+    if (found.row, found.kind) != (due.row, due.kind) or not _as_early(found, due):
         return False
     if ARC in (*found.value, *due.value):
         return found.value == due.value
@@ -87,6 +87,13 @@ def _alike(program: Program, found: Event, due: Event) -> bool:
     # a wait that is shorter than the last digit is written as one of that
     wanted = max(wanted, 2.0 * found.digits) if due.kind == "wait" else wanted
     return names == others and abs(value - wanted) <= found.digits + 1e-9
+
+
+def _as_early(found: Event, due: Event) -> bool:
+    """Whether it happens as long ahead of its place, or where the machine stands."""
+    if found.ahead is None or due.ahead is None:
+        return found.ahead is due.ahead
+    return abs(found.ahead - due.ahead) <= found.digits + 1e-9
 
 
 def _of(events: Sequence[Event], kinds: Sequence[str]) -> list[Event]:
@@ -115,7 +122,8 @@ def _due(program: Program) -> Iterator[Event]:
             row += len(block)
             continue
         for kind, *value in _happening(program, block):
-            yield Event(row, str(kind), tuple(value))
+            ahead = block.ahead if isinstance(block, (DepositOn, DepositOff)) and kind != "wait" else None
+            yield Event(row, str(kind), tuple(value), ahead=ahead)
 
 
 def _happening(program: Program, block: Block) -> list[tuple[float | str, ...]]:

@@ -984,6 +984,11 @@
         <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The deposit is switched on the move itself, this long before a bead&apos;s start or end is reached: the time that its equipment takes. None: where the robot stands. (s)</source>
+        <translation>Le dépôt est commuté pendant le mouvement même, ce temps avant que le début ou la fin d&apos;un cordon soit atteint : celui que met son équipement. Sans indication : là où le robot est à l&apos;arrêt. (s)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
         <source>The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the solid.</source>
         <translation>Les arêtes, le fil ou l&apos;esquisse auxquels les couches le long d&apos;un guide sont normales ; aucun : la ligne médiane du solide.</translation>
@@ -5482,6 +5487,11 @@
         <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The deposit is switched on the move itself, this long before a bead&apos;s start or end is reached: the time that its equipment takes. None: where the robot stands.</source>
+        <translation>Le dépôt est commuté pendant le mouvement même, ce temps avant que le début ou la fin d&apos;un cordon soit atteint : celui que met son équipement. Sans indication : là où le robot est à l&apos;arrêt.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>The deposit output switches the process</source>
         <translation>La sortie de dépôt commute le procédé</translation>
@@ -6162,6 +6172,11 @@
         <translation>Essaie où la pièce, son positionneur ou le point de dépôt peut se trouver, et montre la portée du robot</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Trigger</source>
+        <translation>Commutation</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Trim</source>
         <translation>Écrêtage</translation>
@@ -6205,6 +6220,11 @@
         <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>URScript has no arc instructions</source>
         <translation>URScript n&apos;a pas d&apos;instructions d&apos;arc</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur/post.py"/>
+        <source>URScript has no output at a time before a place, so far as is documented</source>
+        <translation>URScript n&apos;a pas de sortie commutée un temps avant un lieu, d&apos;après ce qui est documenté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
@@ -6275,6 +6295,11 @@
         <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>VAL 3 has no arc instructions</source>
         <translation>VAL 3 n&apos;a pas d&apos;instructions d&apos;arc</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
+        <source>VAL 3 has no output at a time before a place, so far as is documented</source>
+        <translation>VAL 3 n&apos;a pas de sortie commutée un temps avant un lieu, d&apos;après ce qui est documenté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
@@ -7310,6 +7335,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>arc</source>
         <translation>arc</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>arc instructions switch the deposit at times of their own</source>
+        <translation>les instructions d&apos;arc commutent le dépôt à leurs propres instants</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -8402,9 +8432,19 @@
         <translation>nid d&apos;abeilles</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
+        <source>how a TP program switches an output ahead of a place (TB) was not tried</source>
+        <translation>la façon dont un programme TP commute une sortie avant un lieu (TB) n&apos;a pas été essayée</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>how a job waits for an analogue input differs with the controller&apos;s options, and the post yaskawa knows none</source>
         <translation>la façon dont un job attend une entrée analogique dépend des options de la commande, et le post-processeur yaskawa n&apos;en connaît aucune</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
+        <source>how an INFORM job switches an output ahead of a place was not confirmed</source>
+        <translation>la façon dont un programme INFORM commute une sortie avant un lieu n&apos;a pas été confirmée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
@@ -9155,6 +9195,11 @@
         <location filename="../../freecad_am/posts/staubli/files.py"/>
         <source>it is not well-formed XML ({0})</source>
         <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
+        <source>it is not written yet</source>
+        <translation>cela n&apos;est pas encore écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/torch.py"/>
@@ -10662,6 +10707,11 @@
         <translation>les programmes des machines à cinq axes n&apos;ont pas de balayage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
+        <source>programs of five-axis machines switch the deposit between blocks, not at times before</source>
+        <translation>les programmes des machines à cinq axes commutent le dépôt entre les blocs, non un temps avant</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>programs of {0} are not written with a positioner; plan without a program; waypoints.csv has all axes</source>
         <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; planifier sans programme ; waypoints.csv a tous les axes</translation>
@@ -11690,6 +11740,11 @@
         <location filename="../../freecad_am/posts/nc/read.py"/>
         <source>the move is not told in the axes of the first one</source>
         <translation>le mouvement n&apos;est pas dit dans les axes du premier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the move that the deposit is switched on takes {0} s, and it would be switched {1} s before its end; use a shorter program.trigger.lead, or larger retract distance</source>
+        <translation>le mouvement pendant lequel le dépôt est commuté dure {0} s, et il le serait {1} s avant sa fin ; utilisez un program.trigger.lead plus court, ou une plus grande distance de retrait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -14985,6 +15040,11 @@
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>{0}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot; elsewhere use 0 in process.weave and process.classes</source>
         <translation>{0} ; fanuc et yaskawa balaient avec motion: cartesian et l&apos;outil sur le robot ; ailleurs, utilisez 0 dans process.weave et process.classes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0}; leave it out, or use another controller</source>
+        <translation>{0} ; omettez-le, ou utilisez une autre commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>

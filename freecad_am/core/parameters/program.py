@@ -90,6 +90,19 @@ class ScheduleParameters:
 
 
 @dataclass(frozen=True)
+class TriggerParameters:
+    """Switching on the move itself, ahead of a place."""
+
+    lead: float | None = f.parameter(
+        None, f.TIME, "The deposit is switched on the move itself, this long before a bead's start or end is reached: the "
+        "time that its equipment takes. None: where the robot stands.", low=0.0, high=0.5, optional=True, advanced=True,
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, "program.trigger")
+
+
+@dataclass(frozen=True)
 class ProgramParameters:
     """What is written for the controller."""
 
@@ -114,6 +127,7 @@ class ProgramParameters:
     deposit_output: int = f.parameter(1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096)
     axes: AxesParameters = f.group(AxesParameters, "What the controller calls the axes beside the robot.")
     schedule: ScheduleParameters = f.group(ScheduleParameters, "How the welder or extruder is told its schedule.")
+    trigger: TriggerParameters = f.group(TriggerParameters, "Switching on the move itself, ahead of a place.")
 
     def __post_init__(self) -> None:
         if self.origin is None:  # an empty property of a document

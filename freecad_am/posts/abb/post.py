@@ -40,6 +40,7 @@ from ..refusals import (
     refuse_external,
     refuse_incomplete,
     refuse_schedules,
+    refuse_triggers,
     refuse_wire,
     refuse_without_positions,
 )
@@ -54,6 +55,7 @@ CONTROLLER = Controller(external=True, positioner="STN1", whole_beads=True, stra
 PENDANT = Pendant("ABB", ("q1", "q2", "q3", "q4"), QUATERNION, 7)
 NO_WIRE = "an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried"
 NO_WEAVE = "a weave is an argument of ArcL, which runs at the speed of its welddata while the arc burns, so far as is known"
+NO_TRIGGER = "it is not written yet"
 NO_SCHEDULE = {
     "arc": "ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one",
 }
@@ -136,6 +138,7 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "abb", AXES + len(program.external_kinds))
     refuse_external(program, text.MOST_AXES, r"[A-Za-z]\w{0,31}", "the name of its mechanical unit, such as STN1")
     refuse_wire(program, NO_WIRE)
+    refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_ANALOGUE)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
     refuse_continuous(program)

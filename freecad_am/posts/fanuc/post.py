@@ -44,6 +44,7 @@ from ..refusals import (
     refuse_incomplete,
     refuse_named_track,
     refuse_schedules,
+    refuse_triggers,
     refuse_weave,
     refuse_wire,
 )
@@ -60,6 +61,7 @@ CONTROLLER = Controller(external=True, positioner="2")
 PENDANT = Pendant("FANUC", ("W", "P", "R"), FIXED_XYZ)
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 NO_WEAVE = ""  # linear moves can be woven
+NO_TRIGGER = "how a TP program switches an output ahead of a place (TB) was not tried"
 LAST_WEAVE = 255  # of numbers of weave schedules
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
@@ -156,6 +158,7 @@ def _refuse(program: Program) -> None:
     refuse_named_track(program, "E1 of the robot's own motion group")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
+    refuse_triggers(program, NO_TRIGGER)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
     refuse_weave(program, LAST_WEAVE)
     for block in program.blocks:

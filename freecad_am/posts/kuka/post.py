@@ -27,6 +27,7 @@ from ..refusals import (
     refuse_incomplete,
     refuse_named_track,
     refuse_schedules,
+    refuse_triggers,
     refuse_wire,
     refuse_without_positions,
     refuse_without_speeds,
@@ -42,6 +43,7 @@ CONTROLLER = Controller(external=True, positioner="2")
 PENDANT = Pendant("KUKA", ("A", "B", "C"), MOVING_ZYX)
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
 NO_WEAVE = "ArcTech weaves by data that only the pendant makes"
+NO_TRIGGER = "it is not written yet"
 NO_SCHEDULE = {"arc": "instructions of ArcTech name weld data that only the pendant makes"}
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
 MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")
@@ -128,6 +130,7 @@ def _refuse(program: Program) -> None:
     refuse_external(program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16")
     refuse_named_track(program, "what the robot's own base is on, which is not told by a MACHINE_DEF")
     refuse_wire(program, NO_WIRE)
+    refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, 0, NO_ANALOGUE)
     _refuse_schedules(program)
     for what, number, last in (("tool_frame", program.tool_frame, LAST_TOOL), ("user_frame", program.user_frame, LAST_BASE)):

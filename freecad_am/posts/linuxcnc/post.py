@@ -36,7 +36,7 @@ from ..nc import numbers
 from ..nc import parts as common
 from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, lines_of, packed, whole
-from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_schedules
+from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_schedules, refuse_triggers
 from .read import read
 
 __all__ = ["read", "write"]
@@ -48,6 +48,7 @@ CONTROLLER = Controller()
 PENDANT = None  # no robot's
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
 NO_WEAVE = "programs of five-axis machines have no weave"
+NO_TRIGGER = "programs of five-axis machines switch the deposit between blocks, not at times before"
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"G[01] ")
@@ -121,6 +122,7 @@ def _refuse(program: Program) -> None:
     common.refuse_table(program, "linuxcnc")
     common.refuse_words(program, _TAKEN)
     common.refuse_wire_output(program, LAST_PIN)
+    refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_PIN)
     refuse_schedules(program, LAST_PIN, LAST_SCHEDULE, inside=True)
     scheduled, fed = (any(isinstance(block, Schedule) for block in program.blocks),

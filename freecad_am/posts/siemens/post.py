@@ -38,7 +38,7 @@ from ..nc import numbers
 from ..nc import parts as common
 from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, lines_of, packed, place, whole
-from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_schedules
+from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_schedules, refuse_triggers
 from .read import read
 
 __all__ = ["read", "write"]
@@ -49,6 +49,7 @@ CONTROLLER = Controller()
 PENDANT = None  # no robot's
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
 NO_WEAVE = "programs of five-axis machines have no weave"
+NO_TRIGGER = "programs of five-axis machines switch the deposit between blocks, not at times before"
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"N\d+ (?:G9 )?G[01] ")
@@ -119,6 +120,7 @@ def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     common.refuse_table(program, "siemens")
     common.refuse_wire_output(program, LAST_ANALOGUE)
+    refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_ANALOGUE)
     _refuse_schedules(program)
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_OUTPUT:

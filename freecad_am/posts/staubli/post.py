@@ -24,6 +24,7 @@ from ..refusals import (
     refuse_continuous,
     refuse_cooling,
     refuse_incomplete,
+    refuse_triggers,
     refuse_wire,
     refuse_without_positions,
     refuse_without_speeds,
@@ -40,6 +41,7 @@ CONTROLLER = Controller(whole_beads=True)
 PENDANT = Pendant("Stäubli", ("Rx", "Ry", "Rz"), MOVING_XYZ)
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
 NO_WEAVE = "VAL 3 has no weave, so far as is documented"
+NO_TRIGGER = "VAL 3 has no output at a time before a place, so far as is documented"
 NO_SCHEDULE = {
     "output": "that VAL 3 sets several outputs to one number was not found documented",
     "arc": "VAL 3 has no arc instructions",
@@ -120,6 +122,7 @@ def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     refuse_incomplete(program, "staubli", AXES)
     refuse_wire(program, NO_WIRE)
+    refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, 0, NO_ANALOGUE)
     refuse_continuous(program)
     refuse_without_speeds(program, AXES)

@@ -42,6 +42,7 @@ from ..refusals import (
     refuse_cooling,
     refuse_incomplete,
     refuse_schedules,
+    refuse_triggers,
     refuse_wire,
     refuse_without_positions,
 )
@@ -57,6 +58,7 @@ CONTROLLER = Controller(configurations=False, flange=True, least_step=2.0001e-3,
 PENDANT = Pendant("Universal Robots", ("RX", "RY", "RZ"), ROTATION_VECTOR, 6)
 NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
 NO_WEAVE = "URScript has no weave of its own, so far as is documented"
+NO_TRIGGER = "URScript has no output at a time before a place, so far as is documented"
 NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
 LAST_REGISTER, LAST_SCHEDULE = 47, 65535
 MOVE_LINE = re.compile(rb" *move[jlp]\(")
@@ -136,6 +138,7 @@ def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     refuse_incomplete(program, "ur", AXES)
     refuse_wire(program, NO_WIRE)
+    refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_ANALOGUE)
     refuse_schedules(program, LAST_REGISTER, LAST_SCHEDULE)
     refuse_continuous(program)

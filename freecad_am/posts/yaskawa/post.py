@@ -48,6 +48,7 @@ from ..refusals import (
     refuse_incomplete,
     refuse_named_track,
     refuse_schedules,
+    refuse_triggers,
     refuse_weave,
     refuse_wire,
     refuse_without_speeds,
@@ -63,6 +64,7 @@ CONTROLLER = Controller(external=True, positioner="ST1", pulses=True)
 PENDANT = Pendant("Yaskawa", ("Rx", "Ry", "Rz"), FIXED_XYZ)
 NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
 NO_WEAVE = ""  # linear moves can be woven
+NO_TRIGGER = "how an INFORM job switches an output ahead of a place was not confirmed"
 LAST_WEAVE = 255  # files of weaving conditions
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE, LAST_FILE = 512, 255, 1000  # groups of eight outputs; files of arc conditions
@@ -165,6 +167,7 @@ def _refuse(program: Program) -> None:
             raise InputError("UNSUPPORTED_AXES", "program.axes.first", "a position of a station or of base axes has a value "
                              "for each of them from the first one on; use 1, not {}", program.first_external)
     refuse_wire(program, NO_WIRE)
+    refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, 0, NO_ANALOGUE)
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE, LAST_FILE)
     refuse_weave(program, LAST_WEAVE)

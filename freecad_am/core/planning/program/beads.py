@@ -35,12 +35,17 @@ def deposited(
             "end out",
         )
     schedule = numbers[0] if by == ARC and not parameters.dry_run else None
-    on = DepositOn(own.lead_on, None if moves[0].wire is None else float(moves[0].wire[0]), schedule)
+    before, lead = _ahead(numbers[0], parameters), parameters.trigger.lead
+    # what waits, or is told where the machine stands before, is not ahead of anything
+    on = DepositOn(
+        own.lead_on, None if moves[0].wire is None else float(moves[0].wire[0]), schedule,
+        None if own.lead_on or before else lead,
+    )
     weave = [Weave(own.weave)] if own.weave else []  # a dry run has it too: it is motion
-    blocks: list[Block] = [*_ahead(numbers[0], parameters), on, *weave, moves[0]]
+    blocks: list[Block] = [*before, on, *weave, moves[0]]
     for run, number in runs[1:]:  # posts may stop between runs, so that there are no more of them than schedules
         blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
-    return [*blocks, *([Weave(0)] if weave else []), DepositOff(own.lead_off, schedule)]
+    return [*blocks, *([Weave(0)] if weave else []), DepositOff(own.lead_off, schedule, None if own.lead_off else lead)]
 
 
 def parted(phase: Roles, own: ProcessParameters) -> list[tuple[slice, int | None]]:

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The deposit switched on the move itself, ahead of its place: on which beads, as the text of each controller that can tells
+it; another time, place or output, or none, is refused; so is what a controller cannot do."""
+
+import dataclasses
+
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.motion import UNKNOWN
+from freecad_am.core.parameters.bead_classes import CLASSES
+from freecad_am.core.parameters.program import ProgramParameters, ScheduleParameters, TriggerParameters
+from freecad_am.core.program import DepositOff, DepositOn, Moves
+from freecad_am.core.read_moves import Event
+from freecad_am.objects.program import refuse
+from freecad_am.posts import catalogue
+from freecad_am.posts.refusals import refuse_triggers
+from freecad_am.read_back.events import _alike
+from tests.posts.planned_jobs import PROCESS, planned
+from tests.programs import build
+
+CELL = {
+    "fanuc": "fanuc tool-on-robot", "staubli": "staubli tool-on-robot", "ur": "ur tool-on-robot", "siemens": "table",
+    "linuxcnc": "table", "yaskawa": "yaskawa tool-on-robot", "abb": "abb tool-on-robot", "kuka": "kuka tool-on-robot",
+}
+CANNOT = [post for post in catalogue.NAMES if catalogue.load(post).NO_TRIGGER]
+
+
+def switched(process, **program):
+    """DepositOn and DepositOff of a job with beads of three classes in turn, by class."""
+    cell, _, motion = planned("fanuc tool-on-robot")
+    names = ("wall", "contour", "fill")
+    number = (motion.layer + motion.bead) % 3
+    assert (motion.bead_class == UNKNOWN).all()
+    motion = dataclasses.replace(motion, bead_class=number * 0 + [CLASSES.index(names[k]) for k in number])
+    parameters = ProgramParameters(trigger=TriggerParameters(lead=0.05), **program)
+    blocks = build(motion, cell, dataclasses.replace(PROCESS, **process), parameters, "job").blocks
+    found = {}
+    for before, block, after in zip(blocks, blocks[1:], blocks[2:]):
+        if isinstance(block, (DepositOn, DepositOff)):
+            moves = after if isinstance(block, DepositOn) else before
+            assert isinstance(moves, Moves) and moves.kind == "deposit"
+            found.setdefault(names[(moves.layer + moves.bead) % 3], set()).add((type(block).__name__, block.ahead))
+    return found
+
+
+def test_what_waits_is_switched_where_the_robot_stands():
+    own = "contour: lead_on 0, lead_off 0; fill: lead_on 0"
+    assert switched({"classes": own, "lead_on": 0.5, "lead_off": 0.25}) == {
+        "wall": {("DepositOn", None), ("DepositOff", None)}, "contour": {("DepositOn", 0.05), ("DepositOff", 0.05)},
+        "fill": {("DepositOn", 0.05), ("DepositOff", None)},
+    }
+    bare = {"lead_on": 0.0, "lead_off": 0.0, "schedule": 3}
+    told = {("DepositOn", None), ("DepositOff", 0.05)}  # the schedule is told where it stands, before the deposit is on
+    assert switched(bare) == dict.fromkeys(("wall", "contour", "fill"), told)
+    assert switched(bare, schedule=ScheduleParameters(by="call")) == dict.fromkeys(("wall", "contour", "fill"), told)
+
+
+@pytest.mark.parametrize("post", CANNOT)
+def test_controllers_that_cannot_refuse_it_before_planning_and_by_themselves(post):
+    cell, _, motion = planned(CELL[post])
+    for kind in ("joint", "cartesian"):
+        asked = ProgramParameters(post=post, motion=kind, trigger=TriggerParameters(lead=0.0))
+        try:
+            refuse(cell, PROCESS, dataclasses.replace(asked, trigger=TriggerParameters()))
+        except InputError:
+            continue
+        with pytest.raises(InputError) as error:
+            refuse(cell, PROCESS, asked)
+        assert (error.value.code, error.value.where) == ("TRIGGER", "program.trigger.lead")
+        assert catalogue.load(post).NO_TRIGGER in error.value.message
+        refuse(cell, PROCESS, dataclasses.replace(asked, dry_run=True))  # nothing is switched
+        if kind == "joint" or post in ("abb", "kuka"):
+            with pytest.raises(InputError) as error:
+                catalogue.load(post).write(build(motion, cell, dataclasses.replace(PROCESS, lead_off=0.0), asked, "job"))
+            assert error.value.code == "TRIGGER"
+
+
+def test_a_lead_longer_than_the_move_it_stands_on_is_refused_with_its_bead():
+    cell, _, motion = planned("fanuc tool-on-robot")
+    process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
+    for lead, refused in ((0.05, False), (0.5, True)):
+        program = build(motion, cell, process, ProgramParameters(trigger=TriggerParameters(lead=lead)), "job")
+        assert {block.ahead for block in program.blocks if isinstance(block, (DepositOn, DepositOff))} == {lead}
+        shortest = min(run.duration[-1] for run in program.moves[:-1])
+        assert bool(shortest < lead) == refused
+        if refused:
+            with pytest.raises(InputError) as error:
+                refuse_triggers(program, "")
+            assert error.value.code == "TRIGGER_LEAD" and error.value.where.startswith("layer ")
+            refuse_triggers(dataclasses.replace(program, dry_run=True), "")
+        else:
+            refuse_triggers(program, "")
+
+
+@pytest.mark.parametrize(("found", "due", "alike"), [
+    (None, None, True), (None, 0.0, False), (0.0, None, False), (0.05, 0.0504, True), (0.05, 0.051, False),
+])
+def test_how_long_ahead_is_told_to_its_last_digit(found, due, alike):
+    one, other = (Event(3, "on", (1.0,), 0.0005, value) for value in (found, due))
+    assert _alike(_Robot, one, other) is alike
+
+
+class _Robot:
+    """What is asked of a program whose deposit a digital output switches."""
+
+    class nc:
+        deposit_on = ""
+
+
+@pytest.mark.parametrize("lead", [-0.1, 0.6, float("nan")])
+def test_leads_out_of_range_are_refused(lead):
+    with pytest.raises(InputError) as error:
+        TriggerParameters(lead=lead)
+    assert (error.value.code, error.value.where) == ("BAD_VALUE", "program.trigger.lead")
