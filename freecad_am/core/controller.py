@@ -17,7 +17,8 @@ class Controller:
     unit of the controller. whole_beads: whether a program of several files is loaded file by file, each with whole beads.
     straight_in_part: whether linear moves with the part on the robot run straight as the part sees them, so that beads need
     no points in between. least_step: s, shorter moves of a bead are not taken, 0 where there is no limit. least_blend: mm
-    next to a point, by controllers that blend by a share of it at 100 % and stop where that is too little.
+    next to a point, by controllers that blend by a share of it at 100 % and stop where that is too little. arc_moves:
+    whether arc instructions are linear moves themselves, the one onto the start of a bead and its last one.
     """
 
     external: bool = False
@@ -29,3 +30,4 @@ class Controller:
     straight_in_part: bool = False
     least_step: float = 0.0
     least_blend: float = 0.0
+    arc_moves: bool = False

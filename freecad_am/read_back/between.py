@@ -18,6 +18,8 @@ from .text_path import Joints, Path, tip_bounds
 BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 # mm: near a singularity digits may explain more than the clearance of rapids has to spare; then the text is none
 MOST_MM = 0.2
+# rad: how much a tool may turn otherwise on a rapid that was planned as a linear move, as it may leave the way by MOST_MM
+MOST_RAD = 1e-3
 
 
 def rapids_between(cell: Cell, planned: Planned, text: Joints, path: Path, linear: Mask) -> tuple[float, Mask]:
@@ -34,7 +36,9 @@ def rapids_between(cell: Cell, planned: Planned, text: Joints, path: Path, linea
     apart = np.linalg.norm(np.where(along, straight_tip, driven_tip) - tip, axis=1)
     tilted = np.linalg.norm(np.where(along, straight_tool, driven_tool) - tool, axis=1)
     bound, tool_bound = tip_bounds(cell, looked_at, _between(text.reach, ends))
-    wrong = ~((apart <= np.minimum(bound, MOST_MM)) & (tilted <= tool_bound))
+    # what runs straight where joints were looked at is refused elsewhere, unless it was planned so
+    most = np.where(along[:, 0], MOST_MM, np.minimum(bound, MOST_MM))
+    wrong = ~((apart <= most) & (tilted <= np.maximum(tool_bound, MOST_RAD * along[:, 0])))
     off[ends] = wrong.reshape(len(ends), -1).any(axis=1)
     return float(apart.max()), off
 

@@ -1682,9 +1682,9 @@
         <translation>ArcL va à la vitesse de ses welddata tant que l&apos;arc brûle, autant qu&apos;on sache, et non à celle qui est planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>ArcTech weaves by data that only the pendant makes</source>
-        <translation>ArcTech balaie selon des données que seul le pupitre crée</translation>
+        <location filename="../../freecad_am/posts/kuka/arc.py"/>
+        <source>ArcTech ends the arc with the last move of a bead and stays there for the crater time of its weld data; use lead_off 0 and set the crater time of {0}, or another program.schedule.by</source>
+        <translation>ArcTech termine l&apos;arc avec le dernier mouvement d&apos;un cordon et y reste le temps de cratère de ses données de soudage ; employez lead_off 0 et réglez le temps de cratère de {0}, ou un autre program.schedule.by</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
@@ -6847,6 +6847,11 @@
         <translation>un mouvement avant que G1, G90 et G710 soient dits</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>a move of ArcTech is a linear one that stops, behind all the lines that belong to it</source>
+        <translation>un mouvement d&apos;ArcTech est linéaire et s&apos;arrête, derrière toutes les lignes qui en font partie</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc/numbers.py"/>
         <source>a move of {0} s cannot be written; moves take {1} to {2} s: use another speed or a larger chord error</source>
         <translation>un mouvement de {0} s ne peut pas être écrit ; les mouvements prennent de {1} à {2} s : utilisez une autre vitesse ou une plus grande erreur de corde</translation>
@@ -7275,6 +7280,11 @@
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>an output is switched too, or the arc burns already, or not yet</source>
         <translation>une sortie est commutée aussi, ou l&apos;arc brûle déjà, ou pas encore</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>an output switches the deposit too, or the arc is lit or ended twice</source>
+        <translation>une sortie commute aussi le dépôt, ou l&apos;arc est allumé ou terminé deux fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
@@ -8507,11 +8517,6 @@
         <translation>contrôle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>instructions of ArcTech name weld data that only the pendant makes</source>
-        <translation>les instructions d&apos;ArcTech nomment des données de soudage que seul le pupitre crée</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>inverse condition number of the Jacobian at the points of the deposit, against the least one allowed</source>
         <translation>inverse du conditionnement de la jacobienne aux points du dépôt, comparé au minimum permis</translation>
@@ -9080,6 +9085,11 @@
         <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
         <source>it is none of signs and a coupling of axes 2 and 3; copy the file itself</source>
         <translation>elle n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>it is none of the lines that ArcTech has here, or names other data than the ones before it</source>
+        <translation>ce n&apos;est aucune des lignes qu&apos;ArcTech a ici, ou elle nomme d&apos;autres données que celles d&apos;avant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/hub.py"/>
@@ -11167,6 +11177,16 @@
         <translation>la sortie analogique arrête la machine au sein d&apos;un cordon, ou son compresseur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
+        <source>the arc is lit at the end of a linear move, and the program begins at the bead itself; give a retract distance, or another program.schedule.by</source>
+        <translation>l&apos;arc s&apos;allume à la fin d&apos;un mouvement linéaire, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre program.schedule.by</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
+        <source>the arc is lit at the end of a linear move, which would leave the way that was looked at by {0} mm; give a shorter retract distance, or another program.schedule.by</source>
+        <translation>l&apos;arc s&apos;allume à la fin d&apos;un mouvement linéaire, qui quitterait de {0} mm le chemin examiné ; donnez une distance de retrait plus courte, ou un autre program.schedule.by</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>the axes beside the robot are not told in order, or BASE is not coupled to what they move</source>
         <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à ce qu&apos;ils déplacent</translation>
@@ -12375,6 +12395,11 @@
         <location filename="../../freecad_am/posts/nc/read.py"/>
         <source>the way of the move, and so its time, is not known</source>
         <translation>le chemin du mouvement, et donc son temps, n&apos;est pas connu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
+        <source>the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own</source>
+        <translation>le balayage d&apos;ArcTech fait partie de ses données de soudage, que le pupitre crée, et n&apos;a pas de numéro à lui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model/wire.py"/>
@@ -14685,6 +14710,11 @@
         <location filename="../../freecad_am/core/geometry/mesh/orientation.py"/>
         <source>{0} solids were inside out and were turned</source>
         <translation>{0} solides étaient retournés et ont été remis à l&apos;endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>{0} stands among the lines of an instruction of ArcTech</source>
+        <translation>{0} se trouve parmi les lignes d&apos;une instruction d&apos;ArcTech</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>

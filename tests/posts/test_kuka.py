@@ -24,6 +24,8 @@ INSTRUCTIONS = [
     r"\$BASE=EK\(MACHINE_DEF\[3\]\.ROOT,MACHINE_DEF\[3\]\.MECH_TYPE,BASE_DATA\[\d+\]\)", r"\$VEL_EXTAX\[[1234]\]=\d+",
     r"BAS\(#(?:INITMOV,0|BASE,\d+|TOOL,\d+|VEL_PTP,(?:[1-9]\d?|100))\)", r"\$IPO_MODE=#BASE", r"\$ORI_TYPE=#VAR",
     r"\$VEL\.CP=[0-2]\.\d{6}", r"\$APO\.CDIS=\d+\.\d{3}", r"\$OUT\[\d+\]=(?:TRUE|FALSE)", r"WAIT SEC (?:0|\d+\.\d{3})",
+    r"TRIGGER WHEN (?:DISTANCE=1|PATH=ArcGetPath\(#\w+,WDAT(?:OFF)?\d+\)) DELAY=(?:0|ArcGetDelay\(#\w+,WDAT\d+\)) "
+    r"DO ArcMainNG\(#\w+,WDAT(?:OFF)?\d+,WSEAM\) PRIO=-1", r"ArcMainNG\(#\w+,WDAT(?:OFF)?\d+,WSEAM\)",
     r"WAIT FOR \$IN\[\d+\]==TRUE", r"[A-Za-z]\w{0,19}\(\)", r"; [ -~]{1,80}",
 ]  # fmt: skip
 
@@ -85,7 +87,8 @@ def assert_modules(files):
             before = "\n".join(told[:n])
             assert all(word in before for word in ("INITMOV", "#BASE,", "#TOOL,", "IPO_MODE", "ORI_TYPE"))
             assert ("VEL_PTP" if told[n].startswith("PTP") else "$VEL.CP") in before
-            after = next(line for line in told[n + 1 :] if not line.startswith((";", "$VEL", "$APO", "BAS")))
+            calls = (";", "$VEL", "$APO", "BAS", "TRIGGER", "ArcMainNG")
+            after = next(line for line in told[n + 1 :] if not line.startswith(calls))
             assert not told[n].endswith("C_DIS") or (after.startswith("LIN") and "$APO.CDIS" in before)
             assert after.startswith(("PTP", "LIN", "WAIT"))  # outputs and calls come where the robot stands
 
@@ -139,7 +142,25 @@ def both(of, **more):
         "external_kinds": ("linear", "rotary", "rotary"), **more})
 
 
+def lit(of, **more):
+    """The same with the arc lit at the end of a linear move onto each bead, by schedules 3, 4 and so on."""
+    blocks, schedule = list(of.blocks), 3
+    for n in range(len(blocks) - 2, -1, -1):  # from behind, for more blocks come
+        if isinstance(blocks[n], DepositOn):
+            first, before = blocks[n + 1], blocks[n - 1]
+            onto = moves("rapid", np.degrees(before.joints[-1:]) + 0.01, 0.2, before.layer, before.bead, 100.0,
+                         interpolation="linear", position=first.position[:1] - [1.5, 0.0, 0.0], rotation=first.rotation[:1])
+            blocks.insert(n, onto)
+    for n, block in enumerate(blocks):
+        if isinstance(block, DepositOn):
+            blocks[n] = dataclasses.replace(block, schedule=schedule)
+        if isinstance(block, DepositOff):
+            blocks[n], schedule = DepositOff(0.0, schedule), schedule + 1
+    return dataclasses.replace(of, blocks=tuple(blocks), **{"name": "arc", **more})
+
+
 GOLDENS = {
+    "arc": lit(JOB), "arcparts": lit(JOB, max_points=5, blend=50, name="arcs"),
     "whole": JOB, "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup"), "positioner": beside(JOB),
     "track": along(JOB), "both": both(JOB),
 }

@@ -32,19 +32,19 @@ from ..refusals import (
     refuse_without_positions,
     refuse_without_speeds,
 )
-from . import text
+from . import arc, text
 from .read import read
 
 __all__ = ["read", "write"]
 
 NO_ANALOGUE = "whether WAIT FOR looks at $ANIN until it changes was not found documented"
 # why the speed of the wire cannot follow that of the torch
-CONTROLLER = Controller(external=True, positioner="2")
+CONTROLLER = Controller(external=True, positioner="2", arc_moves=True)
 PENDANT = Pendant("KUKA", ("A", "B", "C"), MOVING_ZYX)
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
-NO_WEAVE = "ArcTech weaves by data that only the pendant makes"
+NO_WEAVE = "the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own"
 NO_TRIGGER = "it is not written yet"
-NO_SCHEDULE = {"arc": "instructions of ArcTech name weld data that only the pendant makes"}
+NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
 MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")
 ON_CONTROLLER = on_controller(
@@ -149,6 +149,7 @@ def _refuse(program: Program) -> None:
 
 def _refuse_schedules(program: Program) -> None:
     refuse_schedules(program, LAST_OUTPUT - text.BITS + 1, LAST_SCHEDULE)
+    arc.refuse_post_flow(program)
     own = range(program.schedule_output, program.schedule_output + text.BITS)
     if _scheduled(program) and program.deposit_output in own:
         raise InputError(
@@ -173,6 +174,7 @@ def _own_remarks(program: Program) -> Iterator[str]:
         stands = f"the base of MACHINE_DEF[{program.unit}]" if program.on_positioner else "BASE_DATA"
         yield (f"E{program.first_external + axis - AXES} is the track in mm, which carries $ROBROOT; {stands} stands in the"
                " world")
+    yield from arc.remarks(program)
     if program.dry_run:
         yield "dry run: no deposit"
 
@@ -180,6 +182,8 @@ def _own_remarks(program: Program) -> Iterator[str]:
 def _instructions(program: Program, block: Block) -> list[str]:
     # a wait of no time holds what reads ahead until the robot stands
     output = f"$OUT[{program.deposit_output}]="
+    if isinstance(block, (DepositOn, DepositOff)) and block.schedule is not None:
+        return [arc.after(block), *text.wait(block.lead)]
     if isinstance(block, DepositOn):
         return [] if program.dry_run else [_STAND, f"{output}TRUE", *text.wait(block.lead)]
     if isinstance(block, DepositOff):
@@ -211,4 +215,6 @@ def _body(program: Program, pieces: Sequence[Piece]) -> list[str]:
     said: dict[str, str] = {}
     for piece in pieces:
         lines += text.spoken(piece.words[piece.start : piece.stop], said) if isinstance(piece, Run) else piece
+        if isinstance(piece, list) and any(line.startswith(arc.CALL) for line in piece):
+            said.clear()  # what ArcTech sets is not known
     return [*lines, _STAND]

@@ -8,15 +8,13 @@ that no motion can hide in what was not understood.
 from __future__ import annotations
 
 import re
-from array import array
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from freecad_am.core.types import Array
-
-from ...core.issues import InputError, Text
-from ...core.read_moves import Event, ReadMoves
+from ...core.issues import Text
+from ...core.read_moves import ARC, ReadMoves
+from .found import Run, not_read, read_moves
+from .read_arc import of_arc
 
 _N = r"(-?\d+\.\d+)"
 _AXES, _PLACES = (",".join(f"{name} {_N}" for name in names.split()) for names in ("A1 A2 A3 A4 A5 A6", "X Y Z A B C"))
@@ -36,52 +34,6 @@ _TRACK = re.compile(r"; E([1-6]) is the track in mm\b")
 _INITIAL, _ON_FLANGE, _TURNING = "BAS(#INITMOV,0)", "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR"
 
 
-def _floats() -> array[float]:
-    return array("d")
-
-
-@dataclass
-class _Run:
-    """What happened so far while the modules are followed, column by column.
-
-    state: what was set last, by its name; a module counts on nothing that another one has set. standing: nothing moves, for
-    the program has waited. signals: outputs, the first and the last, by the name they have in the module. beside: values of
-    the axes beside the robot at each move; unit: the mechanism that BASE is coupled to, and numbers of all these axes;
-    slides: of the one that a remark calls the track.
-    """
-
-    files: dict[str, tuple[str, list[str]]]
-    values: list[Array] = field(default_factory=list)
-    linear: bytearray = field(default_factory=bytearray)
-    deposit: bytearray = field(default_factory=bytearray)
-    speed: array[float] = field(default_factory=_floats)
-    share: array[float] = field(default_factory=_floats)
-    rounding: array[float] = field(default_factory=_floats)
-    base: array[float] = field(default_factory=_floats)
-    tool: array[float] = field(default_factory=_floats)
-    events: list[Event] = field(default_factory=list)
-    followed: list[str] = field(default_factory=list)
-    state: dict[str, float] = field(default_factory=dict)
-    half_digits: dict[str, float] = field(default_factory=dict)
-    external: list[Array] = field(default_factory=list)
-    signals: dict[str, tuple[int, int]] = field(default_factory=dict)
-    unit: str | None = None
-    numbers: tuple[int, ...] = ()
-    slides: tuple[int, ...] = ()
-    output: str = ""
-    on: bool = False
-    standing: bool = True
-
-    def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
-        """Something happens before the next move."""
-        self.events.append(Event(len(self.speed), kind, value, digits))
-
-    def note_digits(self, what: str, texts: tuple[str, ...]) -> None:
-        """Keep half of the last digit of numbers of a kind."""
-        half = 0.5 * 10.0 ** -min(len(text.partition(".")[2]) for text in texts)
-        self.half_digits[what] = max(half, self.half_digits.get(what, 0.0))
-
-
 def read(files: dict[str, bytes]) -> ReadMoves:
     """All moves of the files in the order of execution, beginning with the module that no other one calls.
 
@@ -92,22 +44,22 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         lines = files[file].decode("latin-1").replace("\r\n", "\n").rstrip("\n").split("\n")
         title = _HEADED.match(lines[2]) if len(lines) > 3 and lines[:2] == ["&ACCESS RVP", "&REL 1"] else None
         if title is None or lines[-1] != "END" or f"{title[1]}.src".lower() != file.lower():
-            raise _not_read(file, "it is not a module with one routine of the file's name")
+            raise not_read(file, "it is not a module with one routine of the file's name")
         found[title[1].lower()] = (file, lines)
     called = {call[1].lower() for _, lines in found.values() for line in lines if (call := _CALLED.match(line))}
     main = [name for name in found if name not in called]
     if len(main) != 1:
-        raise _not_read("program", Text("{} programs are called by none of the others, expected one", len(main)))
-    run = _Run(found)
+        raise not_read("program", Text("{} programs are called by none of the others, expected one", len(main)))
+    run = Run(found)
     _go(main[0], run)
     if not run.speed:
-        raise _not_read("program", "there are no moves")
+        raise not_read("program", "there are no moves")
     if len(run.followed) != len(found):
-        raise _not_read("program", "there are modules that are never run, or run twice")
-    return _read_moves(run)
+        raise not_read("program", "there are modules that are never run, or run twice")
+    return read_moves(run)
 
 
-def _go(name: str, run: _Run) -> None:
+def _go(name: str, run: Run) -> None:
     """Carry out the lines of a module in order, and of those it calls."""
     file, lines = run.files[name]
     run.followed.append(name)
@@ -116,64 +68,91 @@ def _go(name: str, run: _Run) -> None:
         where = f"{file} line {number}"
         if _TO_AXES.match(line) or _STRAIGHT.match(line):
             _moved(line, run, where)
+        elif of_arc(line):
+            _arc(line, run, where)
         elif declared := _DECLARED.match(line):
             _declare(declared, lines[3 : number - 1], run, where)
         elif (set_to := _NUMBERED.match(line)) and set_to[1] in run.signals:
             _set(run.signals[set_to[1]], int(set_to[2]), run, where)
-        elif setting := _PERCENT.match(line):
-            run.state["percent"] = float(setting[1])
-        elif setting := _METRES.match(line):
-            run.state["speed"] = 1000.0 * float(setting[1])
-            run.half_digits["speed"] = max(run.half_digits.get("speed", 0.0), 500.0 * 10.0 ** -len(setting[2]))
-        elif setting := _ROUNDING.match(line):
-            run.state["rounding"] = float(setting[1])
-        elif setting := _SELECTED.match(line):
-            run.state[setting[1]] = float(setting[2])
-            if setting[1] == "BASE":
-                run.state.pop("EK", None)
         elif coupled := _COUPLED.match(line):
             _couple(coupled, run, where)
-        elif setting := _SHARED.match(line):
-            run.state[f"E{setting[1]}"] = float(setting[2])
-        elif line in (_INITIAL, _ON_FLANGE, _TURNING):
-            if line == _INITIAL:
-                run.state = {}  # what was set before counts no more
-            run.state[line] = 1.0
+        elif _setting(line, run):
+            pass
         elif layer := _LAYERED.match(line):
             run.happens("layer", float(layer[1]))
         elif track := _TRACK.match(line):
             run.slides += (int(track[1]),)
         elif not line.startswith(";"):
             _done(line, run, where)
-    if not run.standing:
-        raise _not_read(file, "it ends before the last move does")
+    if not run.standing or run.arc.begun:
+        raise not_read(file, "it ends before the last move does")
 
 
-def _couple(coupled: re.Match[str], run: _Run, where: str) -> None:
+def _setting(line: str, run: Run) -> bool:
+    """Keep what a line sets for the moves behind it; whether it does."""
+    if setting := _PERCENT.match(line):
+        run.state["percent"] = float(setting[1])
+    elif setting := _METRES.match(line):
+        run.state["speed"] = 1000.0 * float(setting[1])
+        run.half_digits["speed"] = max(run.half_digits.get("speed", 0.0), 500.0 * 10.0 ** -len(setting[2]))
+    elif setting := _ROUNDING.match(line):
+        run.state["rounding"] = float(setting[1])
+    elif setting := _SELECTED.match(line):
+        run.state[setting[1]] = float(setting[2])
+        if setting[1] == "BASE":
+            run.state.pop("EK", None)
+    elif setting := _SHARED.match(line):
+        run.state[f"E{setting[1]}"] = float(setting[2])
+    elif line in (_INITIAL, _ON_FLANGE, _TURNING):
+        if line == _INITIAL:
+            run.state = {}  # what was set before counts no more
+        run.state[line] = 1.0
+    else:
+        return False
+    return True
+
+
+def _couple(coupled: re.Match[str], run: Run, where: str) -> None:
     """The base is carried by a mechanism."""
     if coupled[1] != coupled[2] or run.state.get("BASE") != float(coupled[3]):
-        raise _not_read(where, "root and type are of two mechanisms, or the base is not the one selected")
+        raise not_read(where, "root and type are of two mechanisms, or the base is not the one selected")
     run.state["EK"] = float(coupled[1])
 
 
-def _declare(declared: re.Match[str], before: list[str], run: _Run, where: str) -> None:
+def _declare(declared: re.Match[str], before: list[str], run: Run, where: str) -> None:
     """Name a group of outputs in a module, which comes before its instructions."""
     if any(not line.startswith(";") for line in before):
-        raise _not_read(where, "it is declared behind an instruction")
+        raise not_read(where, "it is declared behind an instruction")
     run.signals[declared[1]] = int(declared[2]), int(declared[3])
 
 
-def _set(outputs: tuple[int, int], number: int, run: _Run, where: str) -> None:
+def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
     """A group of outputs, the first and the last, is set to a number."""
     if not run.standing or number >= 2 ** (outputs[1] - outputs[0] + 1):
-        raise _not_read(where, "it is set ahead of the motion, or its outputs cannot tell such a number")
+        raise not_read(where, "it is set ahead of the motion, or its outputs cannot tell such a number")
     if run.output and outputs[0] <= int(run.output) <= outputs[1]:
-        raise _not_read(where, "one of its outputs switches the deposit")
+        raise not_read(where, "one of its outputs switches the deposit")
     run.happens("schedule", float(outputs[0]), float(number))
 
 
-def _done(line: str, run: _Run, where: str) -> None:
+def _arc(line: str, run: Run, where: str) -> None:
+    """A line of ArcTech: what moves count on may have been set by it."""
+    switched = run.arc.called(line)
+    if switched is None:
+        raise not_read(where, "it is none of the lines that ArcTech has here, or names other data than the ones before it")
+    for name in ("speed", "rounding", "percent", *(f"E{number}" for number in range(1, 7))):
+        run.state.pop(name, None)
+    if switched:
+        if run.output or run.on == (switched == "on"):
+            raise not_read(where, "an output switches the deposit too, or the arc is lit or ended twice")
+        run.on = switched == "on"
+        run.happens(switched, float(run.arc.number), ARC)
+
+
+def _done(line: str, run: Run, where: str) -> None:
     """An instruction, neither move nor setting: it is read ahead but for waits, so outputs and calls come after one."""
+    if run.arc.begun:
+        raise not_read(where, Text("{!r} stands among the lines of an instruction of ArcTech", line))
     if pause := _PAUSE.match(line):
         run.standing = _stopped(run, where)
         run.happens("wait", float(pause[1]), digits=0.5 * 10.0 ** -len(pause[2] or "") if pause[2] else 0.0)
@@ -181,39 +160,41 @@ def _done(line: str, run: _Run, where: str) -> None:
         run.standing = _stopped(run, where)
         run.happens("input", float(awaited[1]))
     elif not run.standing:
-        raise _not_read(where, Text("{!r} is read ahead of the motion: no wait stands before it", line))
+        raise not_read(where, Text("{!r} is read ahead of the motion: no wait stands before it", line))
     elif switched := _SWITCHED.match(line):
-        if run.output not in ("", switched[1]):
-            raise _not_read(where, "a second output is switched")
+        if run.output not in ("", switched[1]) or any(ARC in event.value for event in run.events):
+            raise not_read(where, "a second output is switched")
         run.output, run.on = switched[1], switched[2] == "TRUE"
         run.happens("on" if run.on else "off", float(switched[1]), "$OUT")
     elif call := _CALLED.match(line):
         if call[1].lower() not in run.files:
             run.happens("call", call[1].upper())
         elif call[1].lower() in run.followed or run.on:
-            raise _not_read(where, Text("{} is run already, or called while depositing", call[1]))
+            raise not_read(where, Text("{} is run already, or called while depositing", call[1]))
         else:
             _go(call[1].lower(), run)
     else:
-        raise _not_read(where, Text("the instruction {!r} is not understood", line))
+        raise not_read(where, Text("the instruction {!r} is not understood", line))
 
 
-def _stopped(run: _Run, where: str) -> bool:
+def _stopped(run: Run, where: str) -> bool:
     """True: a wait holds the program until the robot stands. A corner before it would be no corner."""
     if run.speed and not np.isnan(run.rounding[-1]):
-        raise _not_read(where, "the move before it is to be approximated, and it stops there")
+        raise not_read(where, "the move before it is to be approximated, and it stops there")
     return True
 
 
-def _moved(line: str, run: _Run, where: str) -> None:
+def _moved(line: str, run: Run, where: str) -> None:
     straight, state = _STRAIGHT.match(line), run.state
+    if not run.arc.moved(straight is not None, bool(straight and straight[8])):
+        raise not_read(where, "a move of ArcTech is a linear one that stops, behind all the lines that belong to it")
     needed = {_INITIAL, _ON_FLANGE, _TURNING, "BASE", "TOOL"} | ({"speed"} if straight else {"percent"})
     if straight and straight[8]:
         needed |= {"rounding"}
     if not needed <= set(state):
-        raise _not_read(where, "the module does not set all that the move counts on")
+        raise not_read(where, "the module does not set all that the move counts on")
     if not straight and not 1.0 <= state["percent"] <= 100.0:
-        raise _not_read(where, Text("{:.0f} % of the joint speeds is none of 1 to 100", state["percent"]))
+        raise not_read(where, Text("{:.0f} % of the joint speeds is none of 1 to 100", state["percent"]))
     match = straight or _TO_AXES.match(line)
     assert match is not None
     texts = match.groups()[:6]
@@ -238,52 +219,16 @@ def _moved(line: str, run: _Run, where: str) -> None:
     run.standing = False
 
 
-def _external_axes(numbers: tuple[int, ...], share: float, run: _Run, where: str) -> None:
+def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str) -> None:
     """Look at the axes beside the robot of a move: the same ones in all of them, coupled, and as fast as the move needs, in
     percent: a linear one goes at its own speed only where they may be as fast as they can."""
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
     if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):
-        raise _not_read(where, "moves with other axes beside the robot are mixed")
+        raise not_read(where, "moves with other axes beside the robot are mixed")
     moved = set(numbers) - set(run.slides)
     in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
     if not in_order or bool(moved) != bool(unit) or len(run.slides) > 1 or not {*run.slides} <= {*numbers}:
-        raise _not_read(where, "the axes beside the robot are not told in order, or BASE is not coupled to what they move")
+        raise not_read(where, "the axes beside the robot are not told in order, or BASE is not coupled to what they move")
     if any(run.state.get(f"E{number}") != share for number in numbers):
-        raise _not_read(where, Text("axes beside the robot do not run at {:.0f} % of their speeds", share))
+        raise not_read(where, Text("axes beside the robot do not run at {:.0f} % of their speeds", share))
     run.unit, run.numbers = unit, numbers
-
-
-def _read_moves(run: _Run) -> ReadMoves:
-    linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
-    values, rounding = np.array(run.values), np.array(run.rounding)
-    half, seen = run.half_digits, linear[:, None]
-    a, b, c = np.radians(np.where(seen, values[:, 3:], np.nan)).T
-    any_line = bool(linear.any())
-    external = np.array(run.external)
-    joints = np.radians(np.hstack((np.where(seen, np.nan, values), external)))
-    joints[:, 6:] = np.where(np.isin(run.numbers, run.slides), external, joints[:, 6:])
-    return ReadMoves(
-        None if np.isnan(joints).all() else joints, float(np.radians(half.get("joints", 0.0))),
-        np.full(len(linear), np.nan), deposit, linear, np.isnan(rounding), tuple(run.events),
-        position=np.where(seen, values[:, :3], np.nan) if any_line else None,
-        rotation=_about(2, a) @ _about(1, b) @ _about(0, c) if any_line else None,
-        position_digits=half.get("places", 0.0), rotation_digits=float(np.radians(half.get("turns", 0.0))),
-        speed=np.array(run.speed), speed_digits=half.get("speed", 0.0), share=np.array(run.share), share_digits=0.005,
-        linear_digits=half.get("slides", 0.0), rounding=rounding,
-        user_frame=np.array(run.base), tool_frame=np.array(run.tool),
-        unit=run.unit or "", first_external=run.numbers[0] if run.numbers else 1,
-    )
-
-
-def _about(axis: int, angle: Array) -> Array:
-    """(n, 3, 3) rotations about X, Y or Z."""
-    turned = np.zeros((len(angle), 3, 3))
-    one, other = (axis + 1) % 3, (axis + 2) % 3
-    turned[:, axis, axis] = 1.0
-    turned[:, one, one] = turned[:, other, other] = np.cos(angle)
-    turned[:, other, one], turned[:, one, other] = np.sin(angle), -np.sin(angle)
-    return turned
-
-
-def _not_read(where: str, why: str) -> InputError:
-    return InputError("UNREADABLE_PROGRAM", where, "{}; write the program anew", why)

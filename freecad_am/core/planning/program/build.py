@@ -43,6 +43,7 @@ from ...program import (
 )
 from ...toolpath import Toolpath
 from ..joint_path import BeadPath
+from . import arc_approach
 from .beads import deposited, parted
 from .remarks import frames_of, remarks_of, six_of
 
@@ -60,7 +61,7 @@ def build(
     waits: s that the machine stands before each layer (`Layer.wait`), none when left out; `between_layers.wait` counts
     towards them. Before the first layer that is run there is nothing to wait for.
 
-    Raises InputError: START_AT for a start past the last bead, NO_SCHEDULE.
+    Raises InputError: START_AT for a start past the last bead, NO_SCHEDULE, SCHEDULE.
     """
     blocks = _Blocks(motion, cell, process, parameters, controller).of_all(waits, returns)
     remarks = remarks_of(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
@@ -195,6 +196,10 @@ class _Blocks:
         """Rapids that lead to a bead; where it returns to a place the torch waits above it."""
         cooling = self.process.cooling
         place = int(self.motion.layer[rows[-1]]), int(self.motion.bead[rows[-1]])
+        if arc_approach.asked(self.parameters, self.controller):
+            arc_approach.check(self.motion, self.cell, rows, arriving)
+            before = [self._moves(rows[:-1], RAPID, arriving)] if len(rows) > 1 else []
+            return [*before, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
         if cooling.below is None or place not in returns:
             return [self._moves(rows, RAPID, arriving)]
         onto = self.motion.role[rows] == motions.APPROACH

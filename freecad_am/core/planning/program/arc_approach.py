@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Linear moves onto beads, for controllers whose arc instruction is such a move: it lights the arc at its end.
+
+Rapids run straight in the joints, and clearance was looked at on that way. Only so much of the end of it is told as a linear
+move as stays next to it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import motion as motions
+from ...controller import Controller
+from ...issues import InputError, Text
+from ...kinematics.cell import Cell
+from ...motion import Motion
+from ...parameters.program import ProgramParameters
+from ...types import Array
+from .beads import ARC
+
+# mm and rad that a linear move may leave the way that was looked at, which clearance has to spare; and how much of that a
+# way is cut to
+MOST_MM, MOST_RAD, SHARE = 0.2, 1e-3, 0.75
+_BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
+
+
+def asked(parameters: ProgramParameters, controller: Controller) -> bool:
+    """Whether the last moves onto beads are linear ones."""
+    return parameters.schedule.by == ARC and controller.arc_moves and parameters.motion == "cartesian"
+
+
+def with_short_approaches(motion: Motion, cell: Cell) -> Motion:
+    """The motion with one more row on the last way onto each bead where a linear move from its start would leave it too far;
+    the joints still run straight along it, and stop there."""
+    ends = _ends(motion)
+    ends = ends[ends > 0]
+    off, tilt = apart(motion, cell, ends)
+    with np.errstate(divide="ignore"):  # how far it leaves grows with the square of the way
+        share = np.sqrt(SHARE / np.maximum(off / MOST_MM, tilt / MOST_RAD))
+    cut = (off > SHARE * MOST_MM) | (tilt > SHARE * MOST_RAD)
+    ends, share = ends[cut], share[cut]
+    if not len(ends):
+        return motion
+    rows = np.insert(np.arange(len(motion)), ends, ends)
+    columns = {field.name: getattr(motion, field.name)[rows] for field in dataclasses.fields(motion)}
+    added = ends + np.arange(len(ends))
+    columns["joints"][added] = motion.joints[ends] + share[:, None] * (motion.joints[ends - 1] - motion.joints[ends])
+    flange = cell.machine.chain.forward(columns["joints"][added])
+    columns["position"][added], columns["tool"][added] = cell.tip_in_part(flange)
+    columns["duration"][added] = (1.0 - share) * motion.duration[ends]
+    columns["duration"][added + 1] = share * motion.duration[ends]
+    for row in (added, added + 1):
+        way = np.linalg.norm(columns["position"][row] - columns["position"][row - 1], axis=1)
+        columns["speed"][row] = way / columns["duration"][row]
+    columns["role"][added + 1] = motions.APPROACH
+    return Motion(**columns)
+
+
+def apart(motion: Motion, cell: Cell, ends: NDArray[np.intp]) -> tuple[Array, Array]:
+    """(k,) mm and rad by which a linear move to each of the rows `ends` (k,) leaves the way straight in the joints."""
+    joints, position, tool = (
+        (column[ends - 1, None] + _BETWEEN[:, None] * (column[ends] - column[ends - 1])[:, None]).reshape(-1, width)
+        for column, width in ((motion.joints, motion.joints.shape[1]), (motion.position, 3), (motion.tool, 3))
+    )
+    tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
+    shape = len(ends), len(_BETWEEN)
+    off, tilt = (np.linalg.norm(one - other, axis=1).reshape(shape).max(axis=1, initial=0.0)
+                 for one, other in ((tip, position), (axis, tool)))
+    return off, tilt
+
+
+def check(motion: Motion, cell: Cell, rows: NDArray[np.intp], arriving: bool) -> None:
+    """Raises InputError SCHEDULE where a linear move to the last of rapid `rows`, at a bead, would leave the way that was
+    looked at. arriving: where the first of them comes from is not known."""
+    last = rows[-1:]
+    place = Text("layer {} bead {}", int(motion.layer[last[0]]), int(motion.bead[last[0]]))
+    if arriving and len(rows) == 1:
+        raise InputError(
+            "SCHEDULE", place, "the arc is lit at the end of a linear move, and the program begins at the bead itself; give "
+            "a retract distance, or another program.schedule.by",
+        )
+    off, tilt = apart(motion, cell, last)
+    if not (off[0] <= MOST_MM and tilt[0] <= MOST_RAD):
+        raise InputError(
+            "SCHEDULE", place, "the arc is lit at the end of a linear move, which would leave the way that was looked at by "
+            "{:.2g} mm; give a shorter retract distance, or another program.schedule.by", off[0],
+        )
+
+
+def _ends(motion: Motion) -> NDArray[np.intp]:
+    """The rows of the last moves onto beads."""
+    return np.flatnonzero(~motion.deposit[:-1] & motion.deposit[1:])
