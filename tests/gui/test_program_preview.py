@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The panel of a program shows how it begins and what it is in all, and what the controller refuses as it is typed."""
 
+import dataclasses
 import re
 import threading
+from types import SimpleNamespace
 
 import pytest
 
 from freecad_am import api
+from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.gui import registry
 from freecad_am.gui.panels.program import FIRST
+from freecad_am.gui.widgets import suggestions
 
 PANEL = "RoboticAM_Program"
 
@@ -164,3 +168,19 @@ def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(p
             promises.item(row).text().startswith("? The text takes the tool") for row in range(promises.count())
         ), "a text that was not read back", 20,
     )
+
+
+@pytest.mark.parametrize(("machine", "setup", "preferred", "shown"), [
+    ("kuka-kr16-2", "tool-on-robot", "kuka", ("kuka", "cartesian")),
+    ("kuka-kr16-2", "tool-on-robot", "", ("kuka", "cartesian")),
+    ("kuka-kr16-2", "part-on-robot", "kuka", ("", "")), ("kuka-kr16-2", "part-on-robot", "", ("none", "")),
+    ("abb-irb2400-12-155", "tool-on-robot", "abb", ("", "")), ("abb-irb2400-12-155", "tool-on-robot", "", ("abb", "joint")),
+    ("fanuc-crx10ia", "part-on-robot", "", ("", "")), ("no-such-machine", "tool-on-robot", "kuka", ("", "")),
+])
+def test_a_new_program_is_shown_with_the_motion_that_its_controller_has(monkeypatch, machine, setup, preferred, shown):
+    """As New Job writes it: joint moves of KRL cannot keep a speed."""
+    monkeypatch.setattr(suggestions.preferences, "post", lambda: preferred)
+    settings = dataclasses.replace(CellParameters(), machine=machine, setup=setup)
+    proxy = SimpleNamespace(value=lambda cell: settings)
+    assert suggestions.post_for(SimpleNamespace(Cell=SimpleNamespace(Proxy=proxy))) == shown
+    assert suggestions.post_for(None) == suggestions.post_for(SimpleNamespace(Cell=None)) == ("", "")

@@ -11,7 +11,7 @@ from ...core.kinematics.machines import machine
 from ...core.parameters.program import ProgramParameters
 from ...core.process.model import bead_table
 from ...objects import user_machines
-from ...objects.checks.controllers import writers, written_by
+from ...objects.checks.controllers import post_of, writers, written_by
 from ...objects.fields import preferences
 from ...posts import catalogue
 from ..texts.translation import tr
@@ -74,15 +74,16 @@ def no_post(name: str, setup: str = "") -> str:
 
 
 def post_for(path: Any) -> tuple[str, str]:
-    """Post and motion for the machine of a joint path, ('none', '') where nothing writes for its controller; ('', '') where
-    those by default will do, or the machine says nothing."""
+    """Post and motion of a new program for the cell of a joint path, ('none', '') where nothing writes for its controller;
+    ('', '') where those by default will do, or the machine says nothing."""
     if path is None or path.Cell is None:
         return "", ""
+    usual = ProgramParameters()
+    wanted = preferences.post() or usual.post
     try:
-        loaded = machine.load(path.Cell.Machine, user_machines.folders())
+        post, motion = post_of(path.Cell.Proxy.value(path.Cell), wanted, user_machines.folders())
     except InputError:
         return "", ""
-    wanted, posts = preferences.post() or ProgramParameters().post, written_by(loaded)
-    if posts is None or wanted in posts:
-        return "", ""
-    return next(iter(writers(loaded, posts, path.Cell.Setup)), (NO_POST, ""))
+    if not post:
+        return NO_POST, ""
+    return ("", "") if (post, motion) == (wanted, usual.motion) else (post, motion)
