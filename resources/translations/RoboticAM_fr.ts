@@ -6777,6 +6777,11 @@
         <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>a corner has no end from which the time of a trigger counts</source>
+        <translation>un coin n&apos;a pas de fin d&apos;où compterait le temps d&apos;un déclencheur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/curves.py"/>
         <source>a curve is {0} mm off the faces whose normals it is to have, at {1}; choose the faces that it lies on, or give strategy.direction</source>
         <translation>une courbe est à {0} mm des faces dont elle doit avoir les normales, en {1} ; choisissez les faces sur lesquelles elle repose, ou donnez strategy.direction</translation>
@@ -9325,6 +9330,11 @@
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>it rounds corners or accelerates in a way that is not understood</source>
         <translation>il arrondit les angles ou accélère d&apos;une façon qui n&apos;est pas comprise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>it stands among the lines of another instruction</source>
+        <translation>elle se trouve parmi les lignes d&apos;une autre instruction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/mesh_wall.py"/>
@@ -14713,8 +14723,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>{0} stands among the lines of an instruction of ArcTech</source>
-        <translation>{0} se trouve parmi les lignes d&apos;une instruction d&apos;ArcTech</translation>
+        <source>{0} stands among the lines of another instruction</source>
+        <translation>{0} se trouve parmi les lignes d&apos;une autre instruction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>

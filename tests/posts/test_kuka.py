@@ -26,6 +26,7 @@ INSTRUCTIONS = [
     r"\$VEL\.CP=[0-2]\.\d{6}", r"\$APO\.CDIS=\d+\.\d{3}", r"\$OUT\[\d+\]=(?:TRUE|FALSE)", r"WAIT SEC (?:0|\d+\.\d{3})",
     r"TRIGGER WHEN (?:DISTANCE=1|PATH=ArcGetPath\(#\w+,WDAT(?:OFF)?\d+\)) DELAY=(?:0|ArcGetDelay\(#\w+,WDAT\d+\)) "
     r"DO ArcMainNG\(#\w+,WDAT(?:OFF)?\d+,WSEAM\) PRIO=-1", r"ArcMainNG\(#\w+,WDAT(?:OFF)?\d+,WSEAM\)",
+    r"TRIGGER WHEN DISTANCE=1 DELAY=(?:0|-\d+) DO \$OUT\[\d+\]=(?:TRUE|FALSE)",
     r"WAIT FOR \$IN\[\d+\]==TRUE", r"[A-Za-z]\w{0,19}\(\)", r"; [ -~]{1,80}",
 ]  # fmt: skip
 
@@ -159,7 +160,15 @@ def lit(of, **more):
     return dataclasses.replace(of, blocks=tuple(blocks), **{"name": "arc", **more})
 
 
+def early(of, ahead=0.12, **more):
+    """The same with the deposit switched on the moves themselves."""
+    blocks = [dataclasses.replace(block, lead=0.0, ahead=ahead) if isinstance(block, (DepositOn, DepositOff)) else block
+              for block in of.blocks]
+    return dataclasses.replace(of, blocks=tuple(blocks), **{"name": "early", **more})
+
+
 GOLDENS = {
+    "trigger": early(JOB), "triggers": early(JOB, 0.0, max_points=5, name="earlies"),
     "arc": lit(JOB), "arcparts": lit(JOB, max_points=5, blend=50, name="arcs"),
     "whole": JOB, "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup"), "positioner": beside(JOB),
     "track": along(JOB), "both": both(JOB),
@@ -320,6 +329,22 @@ def test_axes_beside_the_robot():
     refusal(dataclasses.replace(beside(JOB), external_kinds=()), code="UNSUPPORTED_AXES", where="program.post")
 
 
+def test_the_deposit_is_switched_on_the_moves_themselves():
+    told = lines(kuka.write(early(JOB)), "early.src")
+    places = [n for n, line in enumerate(told) if line.startswith("TRIGGER")]
+    assert [told[n].partition("DELAY=")[2] for n in places] == [
+        f"-120 DO $OUT[3]={word}" for word in ("TRUE", "FALSE", "TRUE", "FALSE")]
+    # right in front of a move that stops, the last one onto a bead or of it, and no wait or output elsewhere
+    assert [told[n + 1].split()[0] for n in places] == ["PTP", "LIN", "PTP", "LIN"]
+    assert all(told[n + 1].endswith("}") for n in places) and not [line for line in told if line.startswith("$OUT")]
+    read = kuka.read(kuka.write(early(JOB)))
+    switched = [(e.row, e.kind, e.value, round(e.ahead, 9)) for e in read.events if e.kind in ("on", "off")]
+    assert switched == [(row, kind, (3.0, "$OUT"), 0.12) for row, kind in ((2, "on"), (5, "off"), (6, "on"), (8, "off"))]
+    assert read.deposit.tolist() == kuka.read(kuka.write(JOB)).deposit.tolist()
+    assert "TRIGGER" not in kuka.write(dataclasses.replace(early(JOB), dry_run=True))["early.src"].decode()
+    refusal(early(JOB, 0.26), code="TRIGGER_LEAD", where="layer 0 bead 0")  # the last move of the bead takes 0.25 s
+
+
 HAND = """&ACCESS RVP
 &REL 1
 DEF hand()
@@ -371,6 +396,12 @@ def test_a_module_by_hand():
     ("WAIT FOR $IN[4]==TRUE\n", "", "ahead of the motion"), ("WAIT SEC 0.5\n", "", "ahead of the motion"),
     ("C 179.5}", "C 179.5} C_DIS", "approximated"), ("$OUT[7]=FALSE", "$OUT[8]=FALSE", "second output"),
     ("gripper_open()", "hand()", "called by none"), ("gripper_open()", "GOTO x", "not understood"),
+    ("WAIT FOR", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=FALSE\nWAIT FOR", "among the lines"),
+    ("LIN {X 10.0", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=FALSE\nLIN {X 10.0", "no end"),
+    ("LIN {X 20.5", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[8]=FALSE\nLIN {X 20.5", "second output"),
+    ("LIN {X 20.5", "TRIGGER WHEN DISTANCE=1 DELAY=50 DO $OUT[7]=FALSE\nLIN {X 20.5", "ahead of the motion"),
+    ("LIN {X 20.5", "TRIGGER WHEN DISTANCE=0 DELAY=-50 DO $OUT[7]=FALSE\nLIN {X 20.5", "ahead of the motion"),
+    ("gripper_open()\n", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=TRUE\n", "before the last move"),
     (",A6 200.25", "", "not understood"), ("C 10.0}", "C 10.0,E1 5.0}", "are mixed"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(old, new, why):

@@ -19,19 +19,6 @@ SEAM = "WSEAM"  # data of the seam, of all of them
 ON, OFF = "WDAT", "WDATOFF"  # weld data, by number
 
 
-def before(program: Program) -> dict[int, str]:
-    """The lines in front of moves that light or end an arc, by the identity of the runs that end with them."""
-    lines: dict[int, str] = {}
-    last: Moves | None = None
-    for block in program.blocks:
-        if isinstance(block, Moves):
-            last = block
-        elif isinstance(block, (DepositOn, DepositOff)) and block.schedule is not None and last is not None:
-            made = _lighting(block.schedule) if isinstance(block, DepositOn) else _ending(block.schedule)
-            lines[id(last)] = "\n".join(made)
-    return lines
-
-
 def after(block: DepositOn | DepositOff) -> str:
     """The line behind such a move."""
     if isinstance(block, DepositOn):
@@ -69,7 +56,8 @@ def remarks(program: Program) -> Iterator[str]:
         yield f"{ON}{number}, {OFF}{number}: $VEL.CP is {speed} m/s"
 
 
-def _lighting(number: int) -> list[str]:
+def lighting(number: int) -> list[str]:
+    """The lines in front of the move that lights the arc."""
     data, seam = f"{ON}{number}", SEAM
     on_the_fly = f"TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOn,{data})"
     return [
@@ -80,7 +68,8 @@ def _lighting(number: int) -> list[str]:
     ]
 
 
-def _ending(number: int) -> list[str]:
+def ending(number: int) -> list[str]:
+    """The lines in front of the move that ends it."""
     data, seam = f"{OFF}{number}", SEAM
     return [
         f"TRIGGER WHEN PATH=ArcGetPath(#ArcOffBefore,{data}) DELAY=0 DO {CALL}#ArcOffBeforeOffStd,{data},{seam}) PRIO=-1",

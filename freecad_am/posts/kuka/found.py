@@ -26,7 +26,8 @@ class Run:
     state: what was set last, by its name; a module counts on nothing that another one has set. standing: nothing moves, for
     the program has waited. signals: outputs, the first and the last, by the name they have in the module. beside: values of
     the axes beside the robot at each move; unit: the mechanism that BASE is coupled to, and numbers of all these axes;
-    slides: of the one that a remark calls the track. arc: the instruction of ArcTech that is being read.
+    slides: of the one that a remark calls the track. arc: the instruction of ArcTech that is being read. trigger: s
+    before its end at which the next move switches an output, which one, and whether on.
     """
 
     files: dict[str, tuple[str, list[str]]]
@@ -51,10 +52,11 @@ class Run:
     on: bool = False
     standing: bool = True
     arc: ArcMove = field(default_factory=ArcMove)
+    trigger: tuple[float, str, bool] | None = None
 
-    def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
-        """Something happens before the next move."""
-        self.events.append(Event(len(self.speed), kind, value, digits))
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None) -> None:
+        """Something happens before the next move, or so many s before the end of the last one."""
+        self.events.append(Event(len(self.speed), kind, value, digits, ahead))
 
     def note_digits(self, what: str, texts: tuple[str, ...]) -> None:
         """Keep half of the last digit of numbers of a kind."""

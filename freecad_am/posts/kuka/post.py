@@ -43,7 +43,7 @@ CONTROLLER = Controller(external=True, positioner="2", arc_moves=True)
 PENDANT = Pendant("KUKA", ("A", "B", "C"), MOVING_ZYX)
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
 NO_WEAVE = "the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own"
-NO_TRIGGER = "it is not written yet"
+NO_TRIGGER = ""  # the deposit can be switched on the move itself
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
 MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")
@@ -184,6 +184,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
     output = f"$OUT[{program.deposit_output}]="
     if isinstance(block, (DepositOn, DepositOff)) and block.schedule is not None:
         return [arc.after(block), *text.wait(block.lead)]
+    if isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
+        return []  # the move before does it
     if isinstance(block, DepositOn):
         return [] if program.dry_run else [_STAND, f"{output}TRUE", *text.wait(block.lead)]
     if isinstance(block, DepositOff):

@@ -30,6 +30,8 @@ _SWITCHED, _PAUSE = re.compile(r"\$OUT\[(\d+)\]=(TRUE|FALSE)$"), re.compile(r"WA
 _DECLARED, _NUMBERED = re.compile(r"SIGNAL (\w+) \$OUT\[(\d+)\] TO \$OUT\[(\d+)\]$"), re.compile(r"(\w+)=(\d+)$")
 _AWAITED, _LAYERED = re.compile(r"WAIT FOR \$IN\[(\d+)\]==TRUE$"), re.compile(r"; layer (\d+)$")
 _CALLED, _HEADED = re.compile(r"([A-Za-z]\w*)\(\)$"), re.compile(r"DEF ([A-Za-z]\w*)\(\)$")
+# counted in whole milliseconds from the end of the next move
+_TRIGGER = re.compile(r"TRIGGER WHEN DISTANCE=1 DELAY=(0|-[1-9]\d*) DO \$OUT\[(\d+)\]=(TRUE|FALSE)$")
 _TRACK = re.compile(r"; E([1-6]) is the track in mm\b")
 _INITIAL, _ON_FLANGE, _TURNING = "BAS(#INITMOV,0)", "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR"
 
@@ -70,6 +72,8 @@ def _go(name: str, run: Run) -> None:
             _moved(line, run, where)
         elif of_arc(line):
             _arc(line, run, where)
+        elif trigger := _TRIGGER.match(line):
+            _trigger(trigger, run, where)
         elif declared := _DECLARED.match(line):
             _declare(declared, lines[3 : number - 1], run, where)
         elif (set_to := _NUMBERED.match(line)) and set_to[1] in run.signals:
@@ -84,7 +88,7 @@ def _go(name: str, run: Run) -> None:
             run.slides += (int(track[1]),)
         elif not line.startswith(";"):
             _done(line, run, where)
-    if not run.standing or run.arc.begun:
+    if not run.standing or run.arc.begun or run.trigger:
         raise not_read(file, "it ends before the last move does")
 
 
@@ -137,6 +141,8 @@ def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
 
 def _arc(line: str, run: Run, where: str) -> None:
     """A line of ArcTech: what moves count on may have been set by it."""
+    if run.trigger:
+        raise not_read(where, "it stands among the lines of another instruction")
     switched = run.arc.called(line)
     if switched is None:
         raise not_read(where, "it is none of the lines that ArcTech has here, or names other data than the ones before it")
@@ -149,10 +155,25 @@ def _arc(line: str, run: Run, where: str) -> None:
         run.happens(switched, float(run.arc.number), ARC)
 
 
+def _trigger(trigger: re.Match[str], run: Run, where: str) -> None:
+    """The next move is to switch an output."""
+    if run.trigger or run.arc.begun:
+        raise not_read(where, "it stands among the lines of another instruction")
+    _one_output(trigger[2], run, where)
+    run.trigger = -0.001 * int(trigger[1]), trigger[2], trigger[3] == "TRUE"
+
+
+def _one_output(number: str, run: Run, where: str) -> None:
+    """The deposit is switched by one output, not by others or by ArcTech too."""
+    if run.output not in ("", number) or any(ARC in event.value for event in run.events):
+        raise not_read(where, "a second output is switched")
+    run.output = number
+
+
 def _done(line: str, run: Run, where: str) -> None:
     """An instruction, neither move nor setting: it is read ahead but for waits, so outputs and calls come after one."""
-    if run.arc.begun:
-        raise not_read(where, Text("{!r} stands among the lines of an instruction of ArcTech", line))
+    if run.arc.begun or run.trigger:
+        raise not_read(where, Text("{!r} stands among the lines of another instruction", line))
     if pause := _PAUSE.match(line):
         run.standing = _stopped(run, where)
         run.happens("wait", float(pause[1]), digits=0.5 * 10.0 ** -len(pause[2] or "") if pause[2] else 0.0)
@@ -162,9 +183,8 @@ def _done(line: str, run: Run, where: str) -> None:
     elif not run.standing:
         raise not_read(where, Text("{!r} is read ahead of the motion: no wait stands before it", line))
     elif switched := _SWITCHED.match(line):
-        if run.output not in ("", switched[1]) or any(ARC in event.value for event in run.events):
-            raise not_read(where, "a second output is switched")
-        run.output, run.on = switched[1], switched[2] == "TRUE"
+        _one_output(switched[1], run, where)
+        run.on = switched[2] == "TRUE"
         run.happens("on" if run.on else "off", float(switched[1]), "$OUT")
     elif call := _CALLED.match(line):
         if call[1].lower() not in run.files:
@@ -217,6 +237,16 @@ def _moved(line: str, run: Run, where: str) -> None:
     run.base.append(state["BASE"])
     run.tool.append(state["TOOL"])
     run.standing = False
+    if run.trigger:
+        _triggered(*run.trigger, run, where)
+
+
+def _triggered(ahead: float, output: str, on: bool, run: Run, where: str) -> None:
+    """The move has switched an output, so long before its end."""
+    if not np.isnan(run.rounding[-1]):
+        raise not_read(where, "a corner has no end from which the time of a trigger counts")
+    run.on, run.trigger = on, None
+    run.happens("on" if on else "off", float(output), "$OUT", digits=0.0005, ahead=ahead)
 
 
 def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str) -> None:

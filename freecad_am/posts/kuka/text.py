@@ -17,7 +17,7 @@ from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 from ..names import plain
 from ..parts import place
 from ..refusals import speeds_within
-from . import arc
+from . import arc, switching
 
 END_OF_LINE = "\r\n"
 SCHEDULE, BITS = "am_schedule", 8  # what is set to its number, and of how many outputs
@@ -78,7 +78,7 @@ class Lines:
         self._nominal = np.where(self._slides, program.max_speed, np.degrees(np.array(program.max_speed)))
         self._before: Array | None = None
         self._own = program.own_axes
-        self._arcs = arc.before(program)
+        self._switching = switching.ahead_of_moves(program)
         numbers = [program.first_external + k for k in range(len(program.external_kinds))]
         external = [f"E{number} %.{ANGLE_DECIMALS}f" for number in numbers]
         self._ptp, self._lin = (f"{word} {{{','.join([*values, *external])}}}" for word, values in (
@@ -107,8 +107,8 @@ class Lines:
             marked = [f"BAS(#VEL_PTP,{share:d})|{self._external_speeds(share)}{self._ptp % tuple(row)}"
                     for share, row in zip(percent, rows, strict=True)]
         self._before = values[-1]
-        if id(moves) in self._arcs:
-            marked[-1] = f"{self._arcs[id(moves)]}\n|{marked[-1]}"
+        if id(moves) in self._switching:
+            marked[-1] = switching.in_front(self._switching[id(moves)], marked[-1])
         return marked
 
     def _external_speeds(self, share: int) -> str:
@@ -140,17 +140,15 @@ class Lines:
 
 
 def spoken(words: Sequence[str], said: dict[str, str]) -> list[str]:
-    """The lines of moves, with the settings before them that differ from what is `said` so far, and become it.
-
-    Lines that end in a line feed call what may set anything.
-    """
+    """The lines of moves, with the settings before them that differ from what is `said` so far, and become it."""
     lines: list[str] = []
     for word in words:
         *settings, move = word.split("|")
         for setting in settings:
-            if setting.endswith("\n"):
+            if setting.startswith(switching.TRIGGER):
                 lines += setting.splitlines()
-                said.clear()
+                if arc.CALL in setting:
+                    said.clear()  # what ArcTech sets is not known
                 continue
             key = setting[: max(setting.find("="), 8)]
             if said.get(key) != setting:

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What stands right in front of moves that switch the deposit themselves: an output ahead of its place, or the arc."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ...core.program import Block, DepositOff, DepositOn, Moves, Program
+from . import arc
+
+TRIGGER = "TRIGGER "  # with which its line begins
+
+
+def ahead_of_moves(program: Program) -> dict[int, str]:
+    """The lines in front of the last one of runs of moves, by the identity of these runs."""
+    if program.dry_run:
+        return {}
+    return {id(moves): "\n".join(lines) for moves, block in _switching(program) if (lines := _lines(program, block))}
+
+
+def in_front(lines: str, word: str) -> str:
+    """The word of a move, its settings in front of it, with such lines. A trigger comes last; calls of ArcTech come first,
+    for what they set is set anew behind them."""
+    if arc.CALL in lines:
+        return f"{lines}|{word}"
+    settings, bar, move = word.rpartition("|")
+    return f"{settings}{bar}{lines}|{move}"
+
+
+def _switching(program: Program) -> Iterator[tuple[Moves, Block]]:
+    """What switches the deposit, with the moves before it."""
+    last: Moves | None = None
+    for block in program.blocks:
+        if isinstance(block, Moves):
+            last = block if len(block) else last
+        elif isinstance(block, (DepositOn, DepositOff)) and last is not None:
+            yield last, block
+
+
+def _lines(program: Program, block: Block) -> list[str]:
+    assert isinstance(block, (DepositOn, DepositOff))
+    if block.schedule is not None:
+        return arc.lighting(block.schedule) if isinstance(block, DepositOn) else arc.ending(block.schedule)
+    if block.ahead is None:
+        return []
+    early, switched = -round(1000.0 * block.ahead), "TRUE" if isinstance(block, DepositOn) else "FALSE"
+    return [f"{TRIGGER}WHEN DISTANCE=1 DELAY={early} DO $OUT[{program.deposit_output}]={switched}"]

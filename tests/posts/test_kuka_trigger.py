@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Triggers of KUKA modules in planned jobs: read back through two solvers as planned; one that is lost, doubled, moved, or
+of another time, output or value is refused."""
+
+import dataclasses
+import functools
+import re
+
+import pytest
+
+from freecad_am.core.issues import ERROR, InputError
+from freecad_am.core.parameters.program import ProgramParameters, TriggerParameters
+from freecad_am.posts.kuka import post as kuka
+from freecad_am.verify import verify
+from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
+from tests.programs import build
+
+BARE = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
+NAMES = ["kuka tool-on-robot", pytest.param("kuka positioner", marks=pytest.mark.long)]
+
+
+@functools.cache
+def made(name, lead):
+    cell, _, motion = planned(name)
+    parameters = ProgramParameters(post="kuka", motion="cartesian", trigger=TriggerParameters(lead=lead))
+    program = build(motion, cell, BARE, parameters, "job")
+    return cell, motion, program, kuka.write(program)["job.src"].decode()
+
+
+def said(name, lead, text):
+    cell, motion, program, _ = made(name, lead)
+    try:
+        found = verify(cell, motion, program, {"job.src": text.encode()}, kuka, CHORD_ERROR)
+    except InputError as error:
+        return {error.code}
+    return {issue.code for issue in found.issues if issue.level == ERROR}
+
+
+@pytest.mark.parametrize("lead", [0.0, 0.0456])
+@pytest.mark.parametrize("name", NAMES)
+def test_triggers_come_back_as_planned_and_none_may_be_another(name, lead):
+    text = made(name, lead)[3]
+    assert said(name, lead, text) == set()
+    lines = text.split("\r\n")
+    places = [n for n, line in enumerate(lines) if line.startswith("TRIGGER")]
+    assert len(places) == 12 and all(f"DELAY={-round(1000 * lead)} " in lines[n] for n in places)
+    assert not re.search(r"^\$OUT", text, re.MULTILINE)
+    for n in (places[0], places[1], places[6], places[11]):
+        before = max(k for k in range(n) if lines[k].startswith(("PTP", "LIN")))
+        line, other = lines[n], "FALSE" if lines[n].endswith("TRUE") else "TRUE"
+        changed = {
+            "lost": [*lines[:n], *lines[n + 1 :]], "doubled": [*lines[:n], line, *lines[n:]],
+            "of the move before": [*lines[:before], line, *lines[before:n], *lines[n + 1 :]],
+            "of the move after": [*lines[:n], lines[n + 1], line, *lines[n + 2 :]],
+            "sooner": [*lines[:n], re.sub(r"DELAY=-?\d+", f"DELAY={-round(1000 * lead) - 1}", line), *lines[n + 1 :]],
+            "later": [*lines[:n], re.sub(r"DELAY=-?\d+", f"DELAY={-round(1000 * lead) + 1}", line), *lines[n + 1 :]],
+            "of the start": [*lines[:n], line.replace("DISTANCE=1", "DISTANCE=0"), *lines[n + 1 :]],
+            "of another output": [*lines[:n], line.replace("$OUT[1]", "$OUT[2]"), *lines[n + 1 :]],
+            "the other way": [*lines[:n], re.sub("(TRUE|FALSE)$", other, line), *lines[n + 1 :]],
+            "where it stands": [*lines[:n], lines[n + 1], "WAIT SEC 0", line.partition(" DO ")[2], *lines[n + 2 :]],
+        }
+        passed = [what for what, those in changed.items() if not said(name, lead, "\r\n".join(those))]
+        assert passed == []
