@@ -11,7 +11,6 @@ import importlib
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -49,25 +48,13 @@ def environment_python() -> Path | None:
     return None
 
 
-def pace() -> float:
-    """ms of the processor that a fixed piece of work takes now, the least of some: on a machine that is shared it may take
-    half as long again for minutes, and so does everything that is held to seconds."""
-    import numpy as np
-
-    values, took = np.linspace(0.1, 1.0, 2000), []
-    for _ in range(8):
-        start = time.process_time()
-        for _ in range(400):
-            np.sqrt((values * values + values) * 1.1)
-        took.append(time.process_time() - start)
-    return 1e3 * min(took)
-
-
 def main(names: list[str]) -> int:
     """Print a line per comparison, and how busy and how fast the machine is before each benchmark: medians forgive some of
     that."""
     sys.path[:0] = [str(HERE.parent), str(HERE)]
     from freecad_am.batch import allocation, host
+
+    from pace import pace
 
     host.find_freecad()
     allocation.keep_freed()  # as commands do
