@@ -101,8 +101,8 @@ def _verify_poses(
     if read.joints is not None:
         issues += points.joint_issues(cell, planned, read, text_path.shorter_way(cell, program, read))
     issues += points.point_issues(planned, poses)
-    # an angle of a shows as sqrt(2) a in the sum of squares of the nine entries
-    twisted = np.linalg.norm(asked[:, :3, :3] - flange[:, :3, :3], axis=(1, 2)) > np.sqrt(2.0) * poses.tool_bound
+    issues += points.twice_issues(cell, planned, program, read, flange)
+    twisted = points.turned_otherwise(asked, flange, poses)
     issues += planned.issue("VERIFY_ROTATION", twisted, "the tool is turned otherwise than planned")
     strayed = 0.0
     # a tool that stays the same goes straight from point to point, and so does one that stands seen from a part that is held

@@ -44,7 +44,8 @@ class ReadMoves:
     """What a post's reader found in a program's text, all moves in the order of execution.
 
     joints: (n, axes) controller values, rad, and mm of linear axes, exactly as many digits as the text has; rows told in
-    Cartesian positions are NaN, None when all are; of texts that give positions and rotary axes, the linear axes alone
+    Cartesian positions are NaN, None when all are (a row may have both: where an arc is struck the text tells
+    the place again); of texts that give positions and rotary axes, the linear axes alone
     are NaN. digits: half of the last digit of the joint values, rad, one or (axes,); linear_digits: of linear axes, mm.
     duration: (n,) s,
     NaN where the text gives a speed; duration_digits: (n,) s by which its digits may be off, milliseconds and tenths

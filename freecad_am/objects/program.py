@@ -18,6 +18,7 @@ from ..core.planning.beads import moving_tool, steps
 from ..core.planning.program import arc_approach
 from ..core.planning.program import beads as program_beads
 from ..core.planning.program import build as programs
+from ..core.program import ROTARY
 from ..core.program import Program as ProgramText
 from ..core.toolpath import Toolpath
 from ..posts import catalogue, refusals
@@ -129,6 +130,10 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     by = parameters.schedule.by
     if parameters.trigger.lead is not None and not parameters.dry_run:
         _refuse_trigger(by, post.NO_TRIGGER)
+    post.refuse_process(refusals.Asked(
+        parameters.motion, cell.setup, ROTARY in programs.external_kinds(cell), by,
+        process.wire.feed_mode != "constant" and not parameters.dry_run, process.weaves, parameters.dry_run,
+    ))
     if by in post.NO_SCHEDULE and (process.scheduled or by == program_beads.ARC):
         raise refusals.schedule_refused(by, post.NO_SCHEDULE[by])
 

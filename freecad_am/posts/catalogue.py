@@ -14,6 +14,7 @@ from ..core.issues import InputError
 from ..core.orientation import Pendant
 from ..core.program import Program
 from ..core.read_moves import ReadMoves
+from .refusals import Asked
 
 NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb", "kuka")  # of the modules beside this one
 
@@ -45,6 +46,10 @@ class Post(Protocol):
     ) -> None:
         """Raises InputError, saying why, when this motion of this set-up cannot be said to the controller, with external
         axes of these kinds, as programs have them, and what the flange carries, None where that is not known yet."""
+
+    def refuse_process(self, asked: Asked) -> None:
+        """Raises InputError, saying why, where things of the process can be told, but not with each other, or not with this
+        motion or set-up."""
 
     def read(self, files: dict[str, bytes]) -> ReadMoves:
         """The moves found in the files, in the order of execution; raises InputError UNREADABLE_PROGRAM."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +16,24 @@ from ..core.program import LINEAR_MOVE, Call, DepositOff, DepositOn, Moves, Prog
 from .parts import place
 
 CALL = "process.between_layers.call"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a program is to tell of the process, with what else counts for that: motion, set-up, whether external axes turn
+    the part, by which way schedules are told; whether the wire follows the travel speed and beads are woven."""
+
+    motion: str
+    setup: str
+    turned: bool
+    by: str
+    wire: bool
+    weave: bool
+    dry_run: bool
+
+
+def refuse_no_process(asked: Asked) -> None:
+    """Of controllers that tell each thing of the process with every other one, or not at all."""
 
 
 def refuse_wire(program: Program, no_wire: str) -> None:
@@ -84,8 +103,8 @@ JOINT_WEAVE = "the controller swings the torch about linear moves, so far as is 
 def weave_refused(why: str, where: str = "process.weave") -> InputError:
     """The error for a weave that cannot be told."""
     return InputError(
-        "WEAVE", where, "{}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot; elsewhere use 0 in "
-        "process.weave and process.classes", why,
+        "WEAVE", where, "{}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot, abb with "
+        "program.schedule.by: arc too; elsewhere use 0 in process.weave and process.classes", why,
     )
 
 

@@ -11,10 +11,11 @@ from ..core.geometry.columns import lengths
 from ..core.issues import NOTE, Issue, Text
 from ..core.kinematics.cell import Cell
 from ..core.kinematics.chain import Chain
+from ..core.program import Program
 from ..core.read_moves import ReadMoves
 from ..kdl import chain as kdl_chain
 from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned, pieces
-from .text_path import Joints, Path, digits, given_by_position
+from .text_path import Joints, Path, digits, given_by_position, positions_path
 
 EVERY = 8  # of a long text so many-th row is driven through PyKDL
 THIRDS = np.array([0.0, 2.0, 4.0]) * np.pi / 3.0
@@ -65,6 +66,27 @@ def point_issues(planned: Planned, path: Path) -> list[Issue]:
     found = planned.issue("VERIFY_POINT", ~(off <= path.bound), message)
     message = Text("the tool is tilted by up to {:.3g} deg, more than the digits explain", np.degrees(tilted.max()))
     return found + planned.issue("VERIFY_TOOL", ~(tilted <= path.tool_bound), message)
+
+
+def twice_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves, flange: Array) -> list[Issue]:
+    """Positions that a text tells beside the joint values of a row, as where an arc is struck, against the planned point and
+    flange (n, 4, 4)."""
+    if read.position is None or read.joints is None:
+        return []
+    twice = np.isfinite(read.joints).all(axis=1) & np.isfinite(read.position).all(axis=1)
+    if not twice.any():
+        return []
+    path, asked, _ = positions_path(cell, program, read)
+    off = ~(lengths(path.position - planned.position) <= path.bound)
+    off |= ~(lengths(path.tool - planned.tool) <= path.tool_bound) | turned_otherwise(asked, flange, path)
+    return planned.issue("VERIFY_POINT", twice & off, "the text tells another position there than joint values")
+
+
+def turned_otherwise(asked: Array, flange: Array, path: Path) -> Mask:
+    """(n,) whether flanges (n, 4, 4) are turned by more than digits explain: an angle of a shows as sqrt(2) a in the sum of
+    squares of the nine entries."""
+    apart = np.linalg.norm(asked[:, :3, :3] - flange[:, :3, :3], axis=(1, 2))
+    return np.asarray(apart > np.sqrt(2.0) * path.tool_bound)
 
 
 def second_opinion(cell: Cell, planned: Planned, shown: Array, flange: Array) -> tuple[list[Issue], tuple[str, ...]]:

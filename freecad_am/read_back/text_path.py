@@ -182,7 +182,19 @@ def text_tips(cell: Cell, program: Program, read: ReadMoves) -> Path:
 
 
 def text_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array, Array]:
-    """The path of a text with positions, the flange poses and the tools (n, 4, 4) on the flange it asks for.
+    """The path of a text with positions, the flange poses and the tools (n, 4, 4) on the flange it asks for; of rows told in
+    joint values by these."""
+    path, asked, tools = positions_path(cell, program, read)
+    if read.joints is not None:
+        rows = np.isfinite(read.joints).all(axis=1)
+        given, asked[rows] = joint_path(cell, read.joints[rows], digits(cell, read))
+        path.position[rows], path.tool[rows], path.bound[rows], path.tool_bound[rows] = (
+            given.position, given.tool, given.bound, given.tool_bound)
+    return path, asked, tools
+
+
+def positions_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array, Array]:
+    """The same by its positions alone, NaN where it tells none.
 
     Texts without frames of their own count on the user frame that the program tells of. Every frame is off by half a
     digit: its origin by at most sqrt(3) of it, its rotation by three angles; a frame that does not turn the target about
@@ -202,8 +214,4 @@ def text_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Arra
     bound = count * np.sqrt(3.0) * read.position_digits + 3.0 * read.rotation_digits * lever + COMPUTED_MM
     tool_bound = np.full(len(bound), 3.0 * count * read.rotation_digits + COMPUTED_AXIS)
     position, tool = cell.tip_in_part(asked)
-    if read.joints is not None:
-        rows = np.isfinite(read.joints).all(axis=1)
-        path, asked[rows] = joint_path(cell, read.joints[rows], digits(cell, read))
-        position[rows], tool[rows], bound[rows], tool_bound[rows] = path.position, path.tool, path.bound, path.tool_bound
     return Path(position, tool, bound, tool_bound), asked, tools

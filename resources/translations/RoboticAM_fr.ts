@@ -1677,9 +1677,9 @@
         <translation>Un autre panneau de tâche est ouvert ; fermez-le d&apos;abord.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/post.py"/>
-        <source>ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one</source>
-        <translation>ArcL va à la vitesse de ses welddata tant que l&apos;arc brûle, autant qu&apos;on sache, et non à celle qui est planifiée</translation>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>ArcL is a linear move, and these are joint moves, which motion: cartesian replaces</source>
+        <translation>ArcL est un mouvement linéaire, et ceux-ci sont des mouvements articulaires, que motion: cartesian remplace</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/arc.py"/>
@@ -6172,6 +6172,11 @@
         <translation>Essaie où la pièce, son positionneur ou le point de dépôt peut se trouver, et montre la portée du robot</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>TriggSpeed follows the speed of linear moves, and these are joint moves</source>
+        <translation>TriggSpeed suit la vitesse de mouvements linéaires, et ceux-ci sont des mouvements articulaires</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Trigger</source>
         <translation>Commutation</translation>
@@ -7007,12 +7012,17 @@
         <translation>un deuxième U{0} est choisi</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>a second analogue output follows the speed, or a joint move, or without a deposit</source>
+        <translation>une seconde sortie analogique suit la vitesse, ou celle d&apos;un mouvement articulaire, ou sans dépôt</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc/read.py"/>
         <source>a second analogue output is set</source>
         <translation>une seconde sortie analogique est réglée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>a second output is switched</source>
         <translation>une seconde sortie est commandée</translation>
     </message>
@@ -7062,6 +7072,16 @@
         <translation>un triangle y a un point dont le numéro dépasse 64 bits</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/process_data.py"/>
+        <source>a trigger is not of the module, or set twice</source>
+        <translation>un déclencheur n&apos;est pas du module, ou est défini deux fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>a trigger is not set, or named twice, or the arc burns on</source>
+        <translation>un déclencheur n&apos;est pas défini, ou est nommé deux fois, ou l&apos;arc brûle encore</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>a turn per length such as 10 deg/mm</source>
         <translation>une rotation par longueur comme 10 deg/mm</translation>
@@ -7072,9 +7092,14 @@
         <translation>une valeur n&apos;est pas un nombre simple</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/post.py"/>
-        <source>a weave is an argument of ArcL, which runs at the speed of its welddata while the arc burns, so far as is known</source>
-        <translation>un balayage est un argument de ArcL, qui avance à la vitesse de ses welddata tant que l&apos;arc brûle, à ce que l&apos;on sait</translation>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>a weave is an argument of ArcL, which a dry run does not have; block weld and weave on the controller instead</source>
+        <translation>un balayage est un argument de ArcL, qu&apos;une marche à vide n&apos;a pas ; bloquez plutôt soudage et balayage sur la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>a weave is an argument of ArcL, which program.schedule.by: arc writes</source>
+        <translation>un balayage est un argument de ArcL, que program.schedule.by: arc écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
@@ -7247,11 +7272,6 @@
         <translation>une sortie analogique que KRL règle entre des mouvements lissés l&apos;est en avance sur le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/post.py"/>
-        <source>an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried</source>
-        <translation>une sortie analogique que RAPID règle entre deux mouvements l&apos;est en avance sur le mouvement, et TriggSpeed n&apos;a pas été essayé</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>an angle such as 90 deg</source>
         <translation>un angle comme 90 deg</translation>
@@ -7342,7 +7362,7 @@
         <translation>une autre installation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>another unit is active than in moves before</source>
         <translation>une autre unité est active que dans les mouvements d&apos;avant</translation>
     </message>
@@ -7477,9 +7497,14 @@
         <translation>les axes externes ne tournent pas à {0} % de leurs vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>axes beside the robot have no value, or their unit is not active, or not the object&apos;s</source>
         <translation>des axes externes n&apos;ont pas de valeur, ou leur unité n&apos;est pas active, ou n&apos;est pas celle de l&apos;objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>axes beside the robot would move where it stands</source>
+        <translation>des axes à côté du robot bougeraient là où il est à l&apos;arrêt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
@@ -9212,11 +9237,6 @@
         <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/post.py"/>
-        <source>it is not written yet</source>
-        <translation>cela n&apos;est pas encore écrit</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/torch.py"/>
         <source>it is open, so that nobody knows what is inside of it; give closed solids</source>
         <translation>elle est ouverte, si bien que nul ne sait ce qui est à l&apos;intérieur ; donnez des solides fermés</translation>
@@ -9492,6 +9512,11 @@
         <translation>sa trajectoire d&apos;outil a disparu ; choisissez-en une autre, ou supprimez aussi la trajectoire articulaire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>its triggers are not numbered in a row</source>
+        <translation>ses déclencheurs ne sont pas numérotés à la suite</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>its unit {0} is none of {1}</source>
         <translation>son unité {0} n&apos;est aucune de {1}</translation>
@@ -9505,6 +9530,11 @@
         <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>its view was closed</source>
         <translation>sa vue a été fermée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>its weld data has no speed, or is of another seam</source>
+        <translation>ses données de soudage n&apos;ont pas de vitesse, ou sont d&apos;un autre cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/placed.py"/>
@@ -9972,7 +10002,7 @@
         <translation>mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>more than one axis is called the track, or it has no value</source>
         <translation>plus d&apos;un axe est appelé le rail, ou il n&apos;a pas de valeur</translation>
     </message>
@@ -10007,7 +10037,7 @@
         <translation>remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>moves of more than one tool or work object are mixed</source>
         <translation>des mouvements de plus d&apos;un outil ou d&apos;un objet de travail sont mêlés</translation>
     </message>
@@ -10537,7 +10567,7 @@
         <translation>ou {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>other axes beside the robot have values than in moves before, or not all in a row</source>
         <translation>d&apos;autres axes externes ont des valeurs que dans les mouvements précédents, ou ils ne se suivent pas</translation>
     </message>
@@ -11162,6 +11192,11 @@
         <translation>il n&apos;a pas été trouvé documenté que VAL 3 mette plusieurs sorties à un seul numéro</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>that a robot swings the part under a torch that stands was not confirmed</source>
+        <translation>qu&apos;un robot balaie avec la pièce sous une torche fixe n&apos;a pas été confirmé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the X of {0} points out of the flange, not its Z: it is turned there, as tool0 stands to flange</source>
         <translation>le X de {0} sort de la bride, et non son Z : il y est tourné, comme tool0 se place par rapport à flange</translation>
@@ -11187,6 +11222,31 @@
         <translation>la sortie analogique arrête la machine au sein d&apos;un cordon, ou son compresseur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the arc burns already, or is struck where the robot does not stand</source>
+        <translation>l&apos;arc brûle déjà, ou est amorcé là où le robot n&apos;est pas à l&apos;arrêt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>the arc burns on a move of another kind</source>
+        <translation>l&apos;arc brûle pendant un mouvement d&apos;une autre sorte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the arc does not burn, or by another seam</source>
+        <translation>l&apos;arc ne brûle pas, ou par un autre cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the arc ends where the robot does not stop</source>
+        <translation>l&apos;arc s&apos;éteint là où le robot ne s&apos;arrête pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the arc ends with other data than it burnt by</source>
+        <translation>l&apos;arc s&apos;éteint avec d&apos;autres données que celles par lesquelles il brûlait</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
         <source>the arc is lit at the end of a linear move, and the program begins at the bead itself; give a retract distance, or another program.schedule.by</source>
         <translation>l&apos;arc s&apos;allume à la fin d&apos;un mouvement linéaire, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre program.schedule.by</translation>
@@ -11195,6 +11255,11 @@
         <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
         <source>the arc is lit at the end of a linear move, which would leave the way that was looked at by {0} mm; give a shorter retract distance, or another program.schedule.by</source>
         <translation>l&apos;arc s&apos;allume à la fin d&apos;un mouvement linéaire, qui quitterait de {0} mm le chemin examiné ; donnez une distance de retrait plus courte, ou un autre program.schedule.by</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the arc is struck with another weave</source>
+        <translation>l&apos;arc est amorcé avec un autre balayage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -11282,6 +11347,11 @@
         <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; omettez-la, ou prenez bead_model: none</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>the beads have more than {0} speeds, each of which is data of its own here; use fewer speeds, a constant wire or another way of telling schedules</source>
+        <translation>les cordons ont plus de {0} vitesses, dont chacune est une donnée à part ici ; utilisez moins de vitesses, un fil constant ou une autre façon de dire les programmes de soudage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>the calibration table cannot be read ({0}); give none, csw or the path of one</source>
         <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
@@ -11312,7 +11382,7 @@
         <translation>la forme explicite est pour six articulations, il y en a {0} ; omettez opw</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>the configurations that its positions name are supervised, and are none</source>
         <translation>les configurations que nomment ses positions sont surveillées, et n&apos;en sont pas</translation>
     </message>
@@ -11497,7 +11567,7 @@
         <translation>l&apos;origine de la bride n&apos;est pas sur l&apos;axe 6</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>the four numbers of an orientation are not those of a unit quaternion</source>
         <translation>les quatre nombres d&apos;une orientation ne sont pas ceux d&apos;un quaternion unitaire</translation>
     </message>
@@ -12032,7 +12102,7 @@
         <translation>le programme n&apos;a pas de nom ; donnez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/post.py"/>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>the program has no positions; use `motion: joint`</source>
         <translation>le programme n&apos;a pas de positions ; utilisez `motion: joint`</translation>
     </message>
@@ -12247,6 +12317,11 @@
         <translation>le texte mène {0} jusqu&apos;à {1} {2} au-delà de sa limite</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/points.py"/>
+        <source>the text tells another position there than joint values</source>
+        <translation>le texte y dit une autre position que les valeurs articulaires</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/times.py"/>
         <source>the time in the text does not give the planned speed</source>
         <translation>le temps dans le texte ne donne pas la vitesse planifiée</translation>
@@ -12407,6 +12482,11 @@
         <translation>le chemin du mouvement, et donc son temps, n&apos;est pas connu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the weave is another one within a bead</source>
+        <translation>le balayage change au sein d&apos;un cordon</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own</source>
         <translation>le balayage d&apos;ArcTech fait partie de ses données de soudage, que le pupitre crée, et n&apos;a pas de numéro à lui</translation>
@@ -12420,6 +12500,21 @@
         <location filename="../../freecad_am/core/process/model/wire.py"/>
         <source>the wire feeds {0} mm3/s, {1} mm/s of {2} mm wire, but beads of {3} x {4} mm at {5} mm/s take {6} mm3/s; set process.wire.feed to {7} mm/s, or to auto, or make width, layer height and travel speed what they are</source>
         <translation>le fil apporte {0} mm3/s, {1} mm/s d&apos;un fil de {2} mm, mais des cordons de {3} x {4} mm à {5} mm/s en demandent {6} mm3/s ; mettez process.wire.feed à {7} mm/s, ou à auto, ou donnez à la largeur, à la hauteur de couche et à la vitesse d&apos;avance leurs vraies valeurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>the wire goes on after its bead</source>
+        <translation>le fil continue après son cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the wire is fed by two scales at once, or ends where it was not fed, or within a bead</source>
+        <translation>le fil est dévidé par deux échelles à la fois, ou s&apos;arrête là où il ne l&apos;était pas, ou au sein d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>the wire of ArcL is told by its welddata</source>
+        <translation>le fil de ArcL est dit par ses welddata</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -13047,9 +13142,19 @@
         <translation>les points sont écrits en .csv ; terminez le nom ainsi</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/process_data.py"/>
+        <source>weld data is not taken of the controller yet, has two speeds or another than declared</source>
+        <translation>des données de soudage ne sont pas encore reprises de la commande, ont deux vitesses ou une autre que déclarée</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>what happens between moves is in another order than planned</source>
         <translation>ce qui se passe entre les mouvements est dans un autre ordre que planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process_data.py"/>
+        <source>what is taken of the controller is not weld data of the module, or taken twice</source>
+        <translation>ce qui est repris de la commande n&apos;est pas une donnée de soudage du module, ou l&apos;est deux fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
@@ -13075,6 +13180,11 @@
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
         <source>what was touched is {0} times as large as what is planned; these are points of another part, or in another order</source>
         <translation>ce qui a été palpé est {0} fois plus grand que ce qui est prévu ; ce sont des points d&apos;une autre pièce, ou dans un autre ordre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>whether TriggSpeed follows the speed over a part that moves was not confirmed</source>
+        <translation>que TriggSpeed suive la vitesse sur une pièce mobile n&apos;a pas été confirmé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
@@ -13120,6 +13230,11 @@
         <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>with edges of {0} mm, by layer height and smallest radius, the mesh of the wall has more than {1} triangles, about {2}; use a larger layer height, round sharp bends more, or deposit the wall in parts</source>
         <translation>avec des arêtes de {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, le maillage de la paroi a plus de {1} triangles, environ {2} ; prenez une plus grande hauteur de couche, arrondissez davantage les coudes serrés, ou déposez la paroi par parties</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>with the arc blocked the move has another speed</source>
+        <translation>avec l&apos;arc bloqué le mouvement a une autre vitesse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
@@ -14027,6 +14142,11 @@
         <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>{0} is not a speed of the module</source>
+        <translation>{0} n&apos;est pas une vitesse du module</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is not a speed of the module, or the move is told otherwise than by \T or \V</source>
         <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
@@ -14087,7 +14207,7 @@
         <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>{0} is not a zone of the module</source>
         <translation>{0} n&apos;est pas une zone du module</translation>
     </message>
@@ -15078,8 +15198,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot; elsewhere use 0 in process.weave and process.classes</source>
-        <translation>{0} ; fanuc et yaskawa balaient avec motion: cartesian et l&apos;outil sur le robot ; ailleurs, utilisez 0 dans process.weave et process.classes</translation>
+        <source>{0}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot, abb with program.schedule.by: arc too; elsewhere use 0 in process.weave and process.classes</source>
+        <translation>{0} ; fanuc et yaskawa balaient avec motion: cartesian et l&apos;outil sur le robot, abb aussi avec program.schedule.by: arc ; ailleurs mettez 0 dans process.weave et process.classes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>

@@ -14,11 +14,14 @@ from freecad_am.core.types import Array
 
 from ...core.issues import InputError, Text
 
-_DECLARED = re.compile(r"LOCAL (?:PERS (tooldata|wobjdata)|CONST (speeddata|zonedata)) (\w+):=(\[.*\]);$")
+_DECLARED = re.compile(r"LOCAL (?:PERS (tooldata|wobjdata|welddata)|CONST (speeddata|zonedata)) (\w+):=(\[.*\]);$")
+_TRIGGER = re.compile(r"LOCAL VAR triggdata (\w+);$")
+_TIP = re.compile(r"\[\d+(?:\.(\d+))?,")
 _TRACK = re.compile(r"! eax_([a-f]) is the track in mm\b")
 _MODULE_LINE, _PROC_LINE = re.compile(r"MODULE ([A-Za-z]\w*)$"), re.compile(r"PROC ([A-Za-z]\w*)\(\)$")
 # deg/s: a move that turns the tool faster would be slowed down
 _TURNING = 500.0
+_NO_ARC = [0] * 9
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,8 @@ class Frames:
 @dataclass
 class Module:
     """A file: the statements of its one routine with the numbers of their lines, and its data by name. slides: numbers of
-    the axes beside the robot that a remark calls the track."""
+    the axes beside the robot that a remark calls the track. speeds: mm/s of the tip, halves: of their last digits; welds:
+    mm/s of weld data."""
 
     file: str
     name: str
@@ -48,7 +52,10 @@ class Module:
     statements: list[tuple[int, str]]
     tools: dict[str, tuple[bool, Array]] = field(default_factory=dict)
     objects: dict[str, tuple[bool, Array]] = field(default_factory=dict)
-    speeds: set[str] = field(default_factory=set)
+    speeds: dict[str, float] = field(default_factory=dict)
+    halves: dict[str, float] = field(default_factory=dict)
+    welds: dict[str, float] = field(default_factory=dict)
+    triggers: set[str] = field(default_factory=set)
     zones: dict[str, float] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     slides: tuple[int, ...] = ()
@@ -95,13 +102,18 @@ def _module(file: str, lines: list[str]) -> Module:
 
 
 def _declare(module: Module, line: str, where: str) -> None:
-    declared = _DECLARED.match(line)
-    names = {*module.tools, *module.objects, *module.speeds, *module.zones}
+    declared, trigger = _DECLARED.match(line), _TRIGGER.match(line)
+    names = {*module.tools, *module.objects, *module.speeds, *module.zones, *module.welds, *module.triggers}
+    if trigger and trigger[1] not in names:
+        module.triggers.add(trigger[1])
+        return
     if declared is None or declared[3] in names:
         raise unreadable(where, Text("{!r} is not understood, or declares a name again", line))
     try:
         value = json.loads(declared[4].replace("TRUE", "true").replace("FALSE", "false"))
         _keep(module, declared[1] or declared[2], declared[3], value)
+        if tip := _TIP.match(declared[4]):
+            module.halves[declared[3]] = 0.5 * 10.0 ** -len(tip[1] or "")
     except (ValueError, TypeError):
         raise unreadable(where, Text("the value of {} is not understood", declared[3])) from None
 
@@ -119,10 +131,15 @@ def _keep(module: Module, kind: str, name: str, value: Any) -> None:
             raise ValueError
         module.objects[name], module.units[name] = (_truth(held), _pose(user) @ _pose(inside)), unit
     elif kind == "speeddata":
-        _, turning, _, _ = map(float, value)
+        tip, turning, _, _ = map(float, value)
         if turning < _TURNING:
             raise ValueError
-        module.speeds.add(name)
+        module.speeds[name] = tip
+    elif kind == "welddata":
+        speed, original, *arcs = value
+        if speed != original or arcs != [_NO_ARC, _NO_ARC]:
+            raise ValueError
+        module.welds[name] = float(speed)
     else:
         stops, tip, orientation, axes, turn, along, about = value
         if stops is not False or not tip == orientation == axes == along > 0.0 or not 0.0 < turn == about <= 0.2 * tip:

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.controller import Controller
 from ...core.issues import InputError
@@ -24,16 +24,19 @@ from ...core.program import (
     DepositOff,
     DepositOn,
     LayerStart,
+    Moves,
     Program,
     Schedule,
     Wait,
     WaitBelow,
     WaitInput,
+    Weave,
 )
 from ..names import Naming
 from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, packed, size, unbroken, with_retracts
 from ..refusals import (
+    Asked,
     refuse_calls_of_own,
     refuse_continuous,
     refuse_cooling,
@@ -41,26 +44,23 @@ from ..refusals import (
     refuse_incomplete,
     refuse_schedules,
     refuse_triggers,
-    refuse_wire,
+    refuse_weave,
     refuse_without_positions,
 )
-from . import numbers, text
+from . import numbers, process, text
 from .read import read
 
 __all__ = ["read", "write"]
 
 LAST_ANALOGUE = 4096
-# why the speed of the wire cannot follow that of the torch
 CONTROLLER = Controller(external=True, positioner="STN1", whole_beads=True, straight_in_part=True)
 PENDANT = Pendant("ABB", ("q1", "q2", "q3", "q4"), QUATERNION, 7)
-NO_WIRE = "an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried"
-NO_WEAVE = "a weave is an argument of ArcL, which runs at the speed of its welddata while the arc burns, so far as is known"
-NO_TRIGGER = "it is not written yet"
-NO_SCHEDULE = {
-    "arc": "ArcL runs at the speed of its welddata while the arc burns, so far as is known, not at the planned one",
-}
+NO_WIRE = NO_WEAVE = NO_TRIGGER = ""  # what of it is not told together: refuse_process
+NO_SCHEDULE: dict[str, str] = {}
+refuse_process = process.refuse
 LAST_GROUP, LAST_SCHEDULE = 9999, 65535  # group outputs
-MOVE_LINE = re.compile(rb" *Move(?:AbsJ|L|J) ")
+# an ArcLEnd at the plain speed stands where the move before it ended
+MOVE_LINE = re.compile(rb" *(?:Move(?:AbsJ|L|J)|Trigg(?:AbsJ|L)|ArcL|ArcLEnd(?! [^v]*v_am,)) ")
 ON_CONTROLLER = on_controller(
     "The controller's world is the robot's base",
     "Signals do1, di1 and so on have these names",
@@ -78,7 +78,7 @@ _RESERVED = frozenset(
     + ("FROM", "FUNC", "GOTO", "IF", "INOUT", "LOCAL", "MOD", "MODULE", "NOSTEPIN", "NOT", "NOVIEW", "OR", "PERS", "PROC")
     + ("RAISE", "READONLY", "RECORD", "RETRY", "RETURN", "STEP", "SYSMODULE", "TASK", "TEST", "THEN", "TO", "TRAP", "TRUE")
     + ("TRYNEXT", "UNDO", "VAR", "VIEWONLY", "WHILE", "WITH", "XOR", "USER", "BASE", text.MAIN.upper())
-    + tuple(name.upper() for name in (text.TOOL, text.WORK_OBJECT, text.SPEED))
+    + tuple(name.upper() for name in (text.TOOL, text.WORK_OBJECT, text.SPEED, *process.TRIGGER_NAMES))
 )
 # 16 characters on older controllers, of which the routine of a part takes two more than its name
 NAMING = Naming(
@@ -98,13 +98,16 @@ def write(program: Program) -> dict[str, bytes]:
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [line for words in ("Robotic AM", *program.remarks, *_own_remarks(program)) for line in text.remark(words)]
-    words = numbers.Words(program, text.SPEED, text.ZONE)
-    groups = list(grouped(program, words, lambda block: _instructions(program, block)))
+    remarks = [line for said in ("Robotic AM", *program.remarks, *_own_remarks(program)) for line in text.remark(said)]
+    zones = numbers.Words(program, text.SPEED, text.ZONE)
+    words = process.Process(program, zones)
+    groups = list(grouped(program, words, lambda block: _instructions(program, words, block)))
+    remarks += text.remark(f"declare on the controller {' '.join(words.declared)}") if words.declared else []
+    module = _Module(program, words, zones)
     if size([piece for group in groups for piece in group])[0] <= program.max_points:
         (pieces,) = packed(groups, program.max_points, _NO_END, unbroken)
         refuse_calls_of_own(program, {name}, program_name)
-        return {f"{name}.mod": _module(program, words, name, text.MAIN, remarks, pieces)}
+        return {f"{name}.mod": module.as_bytes(name, text.MAIN, remarks, pieces)}
     # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
     parts = with_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(parts))
@@ -112,7 +115,7 @@ def write(program: Program) -> dict[str, bytes]:
     files = {}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         head = text.remark(f"part {number} of {len(parts)}")
-        files[f"{part}.mod"] = _module(program, words, part, text.routine_of(part), head, pieces)
+        files[f"{part}.mod"] = module.as_bytes(part, text.routine_of(part), head, pieces)
     total = sum(map(len, files.values()))
     remarks += text.remark(f"{len(parts)} parts of {total} bytes in all, loaded from {FOLDER} one after the other")
     load = [line for part in names for line in text.load(FOLDER, part)]
@@ -137,15 +140,24 @@ def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     refuse_incomplete(program, "abb", AXES + len(program.external_kinds))
     refuse_external(program, text.MOST_AXES, r"[A-Za-z]\w{0,31}", "the name of its mechanical unit, such as STN1")
-    refuse_wire(program, NO_WIRE)
+    refuse_process(_asked(program))
+    refuse_weave(program, process.LAST_WEAVE)
     refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_ANALOGUE)
-    refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
+    refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE, process.LAST_SEAM)
     refuse_continuous(program)
     refuse_without_positions(program, straight=True)
     for block in program.blocks:
         if isinstance(block, Call):
             program_name(block.program, block.where)
+
+
+def _asked(program: Program) -> Asked:
+    arc = any(isinstance(block, DepositOn) and block.schedule is not None for block in program.blocks)
+    return Asked(
+        program.motion, program.setup, program.on_positioner, process.ARC if arc else "",
+        any(run.wire is not None for run in program.moves), bool(program.woven), program.dry_run,
+    )
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
@@ -161,12 +173,13 @@ def _own_remarks(program: Program) -> Iterator[str]:
         yield "dry run: no deposit"
 
 
-def _instructions(program: Program, block: Block) -> list[str]:
-    output = f"    SetDO do{program.deposit_output},"
+def _instructions(program: Program, words: process.Process, block: Block) -> list[str]:
     if isinstance(block, DepositOn):
-        return [] if program.dry_run else [f"{output}1;", *text.wait(block.lead)]
+        return [] if program.dry_run else [*_switched(program, words, block, True), *text.wait(block.lead)]
     if isinstance(block, DepositOff):
-        return [] if program.dry_run else [*text.wait(block.lead), f"{output}0;"]
+        return [] if program.dry_run else [*text.wait(block.lead), *_switched(program, words, block, False)]
+    if isinstance(block, Weave):
+        return []  # an argument of the moves
     if isinstance(block, Schedule):
         return [f"    SetGO go{program.schedule_output},{block.number};"]
     if isinstance(block, LayerStart):
@@ -182,32 +195,55 @@ def _instructions(program: Program, block: Block) -> list[str]:
     raise TypeError(f"no instruction for {block!r}")
 
 
-def _module(
-    program: Program, words: numbers.Words, name: str, routine: str, remarks: list[str], pieces: Sequence[Piece]
-) -> bytes:
-    held = program.holds_part
-    station, carried = numbers.pose(program.station), numbers.pose(program.carried)
-    lines = ["    ConfL\\Off;", "    SingArea\\Off;", *text.activated(program.unit)]
-    used: set[str] = set()
-    for piece in pieces:
-        if isinstance(piece, Run):
-            lines += _motion(piece, program.first_external, program.slides)
-            used.update(word.rpartition(",")[2] for word in piece.words[piece.start : piece.stop])
-        else:
-            lines += piece
-    zones = [(zone, size_mm) for size_mm, zone in words.zones.items() if zone in used]
-    tool, work_object = (station, carried) if held else (carried, station)
-    moved_by = program.unit if program.on_positioner else ""
-    return text.module(name, routine, remarks, text.data(tool, work_object, held, zones, moved_by), lines)
+def _switched(program: Program, words: process.Process, block: DepositOn | DepositOff, on: bool) -> list[str]:
+    """What switches the deposit where the robot stands; nothing where the moves themselves do."""
+    if block.schedule is not None:
+        if not on and not block.lead:
+            return []
+        moves = words.before
+        word = words.arc_start(block.schedule) if on else words.arc_end(block.schedule)
+        return _motion(moves, slice(len(moves) - 1, None), [word], program, straight=True)
+    return [] if block.ahead is not None else [f"    SetDO do{program.deposit_output},{int(on)};"]
 
 
-def _motion(run: Run, first: int, slides: NDArray[np.bool_]) -> list[str]:
-    """Lines through all points of a run. first: the number of the first axis beside the robot; slides: (axes,) the track."""
-    moves, rows = run.moves, slice(run.start, run.stop)
-    if moves.interpolation != LINEAR_MOVE:
-        return text.joint_moves(numbers.shown(moves.joints[rows], slides), run.words[rows], first)
-    assert moves.position is not None and moves.rotation is not None
+@dataclass(frozen=True)
+class _Module:
+    """Writes the modules of a program. words, zones: of its moves, all given already."""
+
+    program: Program
+    words: process.Process
+    zones: numbers.Words
+
+    def as_bytes(self, name: str, routine: str, remarks: list[str], pieces: Sequence[Piece]) -> bytes:
+        """One module with what of the data its moves use."""
+        program, held = self.program, self.program.holds_part
+        station, carried = numbers.pose(program.station), numbers.pose(program.carried)
+        lines: list[str] = []
+        used: set[str] = set()
+        for piece in pieces:
+            if isinstance(piece, Run):
+                rows = slice(piece.start, piece.stop)
+                lines += _motion(piece.moves, rows, piece.words[rows], program)
+                for word in piece.words[rows]:
+                    used.update(re.findall(r"\w+", word) if " " in word else (word.rpartition(",")[2],))
+            else:
+                lines += piece
+        zones = [(zone, size_mm) for size_mm, zone in self.zones.zones.items() if zone in used]
+        tool, work_object = (station, carried) if held else (carried, station)
+        moved_by = program.unit if program.on_positioner else ""
+        data = [*text.data(tool, work_object, held, zones, moved_by), *self.words.data(used)]
+        first = ["    ConfL\\Off;", "    SingArea\\Off;", *text.activated(program.unit), *self.words.setup(used)]
+        return text.module(name, routine, remarks, data, [*first, *lines])
+
+
+def _motion(moves: Moves, rows: slice, words: Sequence[str], program: Program, straight: bool = False) -> list[str]:
+    """Lines through some points of moves; straight: as positions, whatever the moves are."""
+    first, slides = program.first_external, program.slides
+    if moves.interpolation != LINEAR_MOVE and not straight:
+        return text.joint_moves(numbers.shown(moves.joints[rows], slides), words, first)
+    if moves.position is None or moves.rotation is None:
+        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
     return text.linear_moves(
         numbers.positions(moves.position[rows]), numbers.quaternions(moves.rotation[rows]),
-        numbers.shown(moves.joints[rows, AXES:], slides[AXES:]), run.words[rows], first,
+        numbers.shown(moves.joints[rows, AXES:], slides[AXES:]), words, first,
     )

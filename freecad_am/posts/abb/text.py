@@ -23,15 +23,15 @@ MAIN = "main"
 _NO_AXIS, MOST_AXES = "9E9", 6
 # mm/s of the tip, which every move replaces by a speed or a time of its own; deg/s it turns; axes beside the robot's: those
 # of RAPID's own v1000
-_SPEED = "[1000,500,5000,1000]"
+_SPEEDS = "500,5000,1000"
 # kg, mm: the load that RAPID's own tool0 has
 _NOWHERE = "[[0,0,0],[1,0,0,0]]"
 _LOAD = "[0.001,[0,0,0.001],[1,0,0,0],0,0,0]"
 _ANGLES = ",".join([f"%.{ANGLE_DECIMALS}f"] * 6)
-_JOINTS = f"    MoveAbsJ [[{_ANGLES}],<axes>]\\NoEOffs,%s,{TOOL}\\WObj:={WORK_OBJECT};"
+_JOINTS = f"    %s [[{_ANGLES}],<axes>]\\NoEOffs,%s,{TOOL}\\WObj:={WORK_OBJECT};"
 _POSE = f"[{','.join([f'%.{LENGTH_DECIMALS}f'] * 3)}],[{','.join([f'%.{TURN_DECIMALS}f'] * 4)}]"
 # ConfL is off: the controller takes the configuration nearest to where the arm is, and these are not looked at
-_POSITION = f"    MoveL [{_POSE},[0,0,0,0],<axes>],%s,{TOOL}\\WObj:={WORK_OBJECT};"
+_POSITION = f"    %s [{_POSE},[0,0,0,0],<axes>],%s,{TOOL}\\WObj:={WORK_OBJECT};"
 
 
 def module(name: str, routine: str, remarks: Iterable[str], data: Iterable[str], lines: Iterable[str]) -> bytes:
@@ -53,9 +53,14 @@ def data(tool: Pose, work_object: Pose, held: bool, zones: Sequence[tuple[str, f
     return [
         f"LOCAL PERS tooldata {TOOL}:=[{tool_held},[{at}],{_LOAD}];",
         f'LOCAL PERS wobjdata {WORK_OBJECT}:=[{object_held},{fixed},"{unit}",{user},{inside}];',
-        f"LOCAL CONST speeddata {SPEED}:={_SPEED};",
+        f"LOCAL CONST speeddata {SPEED}:={speed('1000')};",
         *(f"LOCAL CONST zonedata {zone}:={_zone(size)};" for zone, size in zones),
     ]
+
+
+def speed(tip: str) -> str:
+    """A speed of the tip, mm/s, with those of RAPID's own v1000."""
+    return f"[{tip},{_SPEEDS}]"
 
 
 def _zone(size: float) -> str:
@@ -68,14 +73,20 @@ def joint_moves(degrees: Array, words: Sequence[str], first: int = 1) -> list[st
     """Moves straight in the joints to values (n, 6 and those beside the robot), rounded already. words: speed and zone of
     each. first: the number of the first axis beside the robot, from 1."""
     line = _JOINTS.replace("<axes>", _axes(degrees.shape[1] - 6, first))
-    return [line % (*row, word) for row, word in zip(degrees.tolist(), words, strict=True)]
+    return _move_lines(line, "MoveAbsJ", degrees, words)
 
 
 def linear_moves(position: Array, quaternion: Array, external: Array, words: Sequence[str], first: int = 1) -> list[str]:
     """Moves straight in space to positions (n, 3), quaternions (n, 4) and axes beside the robot (n, k), rounded already."""
     line = _POSITION.replace("<axes>", _axes(external.shape[1], first))
-    values = np.hstack((position, quaternion, external)).tolist()
-    return [line % (*row, word) for row, word in zip(values, words, strict=True)]
+    return _move_lines(line, "MoveL", np.hstack((position, quaternion, external)), words)
+
+
+def _move_lines(line: str, instruction: str, values: Array, words: Sequence[str]) -> list[str]:
+    """A line for each row of values (n, k) and its word, which begins with its own instruction, or is one of the usual."""
+    split = [word.rpartition(" ") for word in words]
+    rows = zip(values.tolist(), split, strict=True)
+    return [line % (own or instruction, *row, word) for row, (own, _, word) in rows]
 
 
 def _axes(count: int, first: int) -> str:

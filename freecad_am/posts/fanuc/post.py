@@ -43,6 +43,7 @@ from ..refusals import (
     refuse_external,
     refuse_incomplete,
     refuse_named_track,
+    refuse_no_process,
     refuse_schedules,
     refuse_triggers,
     refuse_weave,
@@ -62,6 +63,7 @@ PENDANT = Pendant("FANUC", ("W", "P", "R"), FIXED_XYZ)
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 NO_WEAVE = ""  # linear moves can be woven
 NO_TRIGGER = "how a TP program switches an output ahead of a place (TB) was not tried"
+refuse_process = refuse_no_process
 LAST_WEAVE = 255  # of numbers of weave schedules
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs

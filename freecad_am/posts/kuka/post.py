@@ -26,6 +26,7 @@ from ..refusals import (
     refuse_external,
     refuse_incomplete,
     refuse_named_track,
+    refuse_no_process,
     refuse_schedules,
     refuse_triggers,
     refuse_wire,
@@ -44,6 +45,7 @@ PENDANT = Pendant("KUKA", ("A", "B", "C"), MOVING_ZYX)
 NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
 NO_WEAVE = "the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own"
 NO_TRIGGER = ""  # the deposit can be switched on the move itself
+refuse_process = refuse_no_process
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
 MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")

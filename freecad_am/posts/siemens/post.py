@@ -38,7 +38,7 @@ from ..nc import numbers
 from ..nc import parts as common
 from ..on_controller import on_controller
 from ..parts import Piece, Run, grouped, lines_of, packed, place, whole
-from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_schedules, refuse_triggers
+from ..refusals import refuse_calls_of_own, refuse_cooling, refuse_no_process, refuse_schedules, refuse_triggers
 from .read import read
 
 __all__ = ["read", "write"]
@@ -50,6 +50,7 @@ PENDANT = None  # no robot's
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
 NO_WEAVE = "programs of five-axis machines have no weave"
 NO_TRIGGER = "programs of five-axis machines switch the deposit between blocks, not at times before"
+refuse_process = refuse_no_process
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"N\d+ (?:G9 )?G[01] ")

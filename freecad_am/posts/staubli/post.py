@@ -24,6 +24,7 @@ from ..refusals import (
     refuse_continuous,
     refuse_cooling,
     refuse_incomplete,
+    refuse_no_process,
     refuse_triggers,
     refuse_wire,
     refuse_without_positions,
@@ -42,6 +43,7 @@ PENDANT = Pendant("Stäubli", ("Rx", "Ry", "Rz"), MOVING_XYZ)
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
 NO_WEAVE = "VAL 3 has no weave, so far as is documented"
 NO_TRIGGER = "VAL 3 has no output at a time before a place, so far as is documented"
+refuse_process = refuse_no_process
 NO_SCHEDULE = {
     "output": "that VAL 3 sets several outputs to one number was not found documented",
     "arc": "VAL 3 has no arc instructions",

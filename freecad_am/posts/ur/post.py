@@ -41,6 +41,7 @@ from ..refusals import (
     refuse_continuous,
     refuse_cooling,
     refuse_incomplete,
+    refuse_no_process,
     refuse_schedules,
     refuse_triggers,
     refuse_wire,
@@ -59,6 +60,7 @@ PENDANT = Pendant("Universal Robots", ("RX", "RY", "RZ"), ROTATION_VECTOR, 6)
 NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
 NO_WEAVE = "URScript has no weave of its own, so far as is documented"
 NO_TRIGGER = "URScript has no output at a time before a place, so far as is documented"
+refuse_process = refuse_no_process
 NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
 LAST_REGISTER, LAST_SCHEDULE = 47, 65535
 MOVE_LINE = re.compile(rb" *move[jlp]\(")

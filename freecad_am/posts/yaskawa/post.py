@@ -47,6 +47,7 @@ from ..refusals import (
     refuse_external,
     refuse_incomplete,
     refuse_named_track,
+    refuse_no_process,
     refuse_schedules,
     refuse_triggers,
     refuse_weave,
@@ -65,6 +66,7 @@ PENDANT = Pendant("Yaskawa", ("Rx", "Ry", "Rz"), FIXED_XYZ)
 NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
 NO_WEAVE = ""  # linear moves can be woven
 NO_TRIGGER = "how an INFORM job switches an output ahead of a place was not confirmed"
+refuse_process = refuse_no_process
 LAST_WEAVE = 255  # files of weaving conditions
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
 LAST_GROUP, LAST_SCHEDULE, LAST_FILE = 512, 255, 1000  # groups of eight outputs; files of arc conditions

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What was found of the moves of RAPID modules, column by column, and what comes of it."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from array import array
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from freecad_am.core.types import Array
+
+from ...core.issues import Text
+from ...core.read_moves import ARC, Event, ReadMoves
+from .modules import Frames, Module, turned, unreadable
+from .process_data import ProcessData
+
+_DECIMALS = re.compile(r"\.(\d+)")
+
+
+def _floats() -> array[float]:
+    return array("d")
+
+
+@dataclass(frozen=True)
+class Move:
+    """A move as its line has it: joint values, or place and orientation, and the axes beside the robot. amount: s of joint
+    moves, mm/s of linear ones, half: of its last digit. wire: of the analogue output, and half of its last digit."""
+
+    linear: bool
+    values: tuple[str, ...]
+    axes: str
+    amount: float
+    half: float
+    zone: str
+    frames: Frames
+    wire: float = np.nan
+    wire_half: float = 0.0
+
+
+@dataclass
+class Run:
+    """What happened so far while the routines are followed, column by column. external: axes beside the robot as they stand,
+    of which those `used` have values, `unit` theirs, and `slides` those that a remark calls the track; active: the
+    mechanical unit that the module has activated.
+
+    placed: whether a place of the move is told, in places and turns; joints: the numbers of joint moves. rounding: mm, NaN
+    of moves that stop. nearest: ConfL is off, and positions are taken as the arm reaches them best. given: what the module
+    has said of the process. output, on: what switches the deposit, and whether it is on. seam, weave: of the arc that
+    burns, struck: the weave it was struck with, until it moves, last: weld data and weave of the move before. feeding:
+    whether the wire goes on, fed: whether it ended in the bead.
+    """
+
+    found: dict[str, Module]
+    linear: bytearray = field(default_factory=bytearray)
+    deposit: bytearray = field(default_factory=bytearray)
+    placed: bytearray = field(default_factory=bytearray)
+    time_or_speed: array[float] = field(default_factory=_floats)
+    half: array[float] = field(default_factory=_floats)
+    rounding: array[float] = field(default_factory=_floats)
+    wire: array[float] = field(default_factory=_floats)
+    wire_half: array[float] = field(default_factory=_floats)
+    joints: list[str] = field(default_factory=list)
+    places: list[str] = field(default_factory=list)
+    turns: list[str] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+    followed: list[str] = field(default_factory=list)
+    frames: Frames | None = None
+    external: list[str] = field(default_factory=list)
+    used: tuple[int, ...] | None = None
+    unit: str = ""
+    slides: tuple[int, ...] = ()
+    active: str = ""
+    output: str = ""
+    on: bool = False
+    nearest: bool = False
+    given: ProcessData = field(default_factory=ProcessData)
+    seam: int = 0
+    weave: int = 0
+    struck: int | None = None
+    last: tuple[str, int] = ("", 0)
+    feeding: bool = False
+    fed: bool = False
+    analogue: int | None = None
+
+    @property
+    def moving(self) -> bool:
+        """Whether the last move passes through its end."""
+        return bool(self.time_or_speed) and not np.isnan(self.rounding[-1])
+
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None) -> None:
+        """Something happens before the next move."""
+        self.events.append(Event(len(self.time_or_speed), kind, value, digits, ahead))
+
+    def keep_switch(
+        self, output: str, on: bool, word: str, where: str, digits: float = 0.0, ahead: float | None = None
+    ) -> None:
+        """The deposit is switched by an output, or by a seam of the arc where it is ARC."""
+        if self.output not in ("", output if word != ARC else ARC):
+            raise unreadable(where, "a second output is switched")
+        self.output, self.on, self.fed = ARC if word == ARC else output, on, False
+        self.happens("on" if on else "off", float(output), word, digits=digits, ahead=ahead)
+
+    def keep_move(self, module: Module, move: Move, where: str) -> None:
+        """Keep a move."""
+        if move.linear and not self.nearest:
+            raise unreadable(where, "the configurations that its positions name are supervised, and are none")
+        if move.zone != "fine" and move.zone not in module.zones:
+            raise unreadable(where, Text("{} is not a zone of the module", move.zone))
+        if self.feeding and np.isnan(move.wire):
+            raise unreadable(where, "the wire goes on after its bead")
+        self._framed(move.frames, where)
+        self._external_axes(move.axes.split(","), move.frames, where)
+        for column, value in zip((self.places, self.turns) if move.linear else (self.joints,), move.values, strict=True):
+            column.append(value)
+        self.linear.append(move.linear)
+        self.placed.append(move.linear)
+        self.deposit.append(self.on)
+        self.time_or_speed.append(move.amount)
+        self.half.append(move.half)
+        self.rounding.append(np.nan if move.zone == "fine" else module.zones[move.zone])
+        self.wire.append(move.wire)
+        self.wire_half.append(move.wire_half)
+
+    def stands_at(self, move: Move, where: str) -> bool:
+        """Whether the position of an instruction is where the robot stands, as the text told it before. Where that was in
+        joints alone it is told now, and counts as the position of the move there too."""
+        if not self.time_or_speed or self.moving or move.zone != "fine":
+            return False
+        if self.external and self.external[-1] != self._used_of(move.axes.split(",")):
+            raise unreadable(where, "axes beside the robot would move where it stands")
+        if self.placed[-1]:
+            return (self.places[-1], self.turns[-1]) == move.values
+        self._framed(move.frames, where)
+        self.placed[-1] = True
+        self.places.append(move.values[0])
+        self.turns.append(move.values[1])
+        return True
+
+    def _framed(self, frames: Frames, where: str) -> None:
+        if self.frames is None:
+            self.frames = frames
+        elif frames is not self.frames and not frames.same(self.frames):
+            raise unreadable(where, "moves of more than one tool or work object are mixed")
+
+    def _used_of(self, texts: list[str]) -> str:
+        return ",".join(text for text in texts if text != "9E9")
+
+    def _external_axes(self, texts: list[str], frames: Frames, where: str) -> None:
+        """Keep the values of the axes beside the robot: of the same ones in all moves, those of the unit that the work
+        object is on, which is active, and the track. Where the work object stands, the track is the only one."""
+        used = tuple(number for number, text in enumerate(texts, 1) if text != "9E9")
+        if used != tuple(range(used[0], used[0] + len(used)) if used else ()) or self.used not in (None, used):
+            raise unreadable(where, "other axes beside the robot have values than in moves before, or not all in a row")
+        if len(self.slides) > 1 or not {*self.slides} <= {*used}:
+            raise unreadable(where, "more than one axis is called the track, or it has no value")
+        turned_ones = set(used) - set(self.slides)
+        if bool(turned_ones) != bool(frames.unit) or (self.active != frames.unit and (turned_ones or not used)):
+            raise unreadable(where, "axes beside the robot have no value, or their unit is not active, or not the object's")
+        if self.used is not None and self.unit != self.active:
+            raise unreadable(where, "another unit is active than in moves before")
+        self.used, self.unit = used, self.active
+        self.external += [self._used_of(texts)] if used else []
+
+
+def all_moves(run: Run) -> ReadMoves:
+    """The moves of all routines. Raises InputError UNREADABLE_PROGRAM."""
+    linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
+    time_or_speed, half, rounding = np.array(run.time_or_speed), np.array(run.half), np.array(run.rounding)
+    used = run.used or ()
+    joints = np.full((len(time_or_speed), 6 + len(used)), np.nan)
+    joints[~linear, :6] = np.radians(_numbers(run.joints, 6))
+    if used:
+        external = _numbers(run.external, len(used))
+        joints[:, 6:] = np.where(np.isin(used, run.slides), external, np.radians(external))
+    turning = run.joints if used == run.slides else run.joints + run.external
+    read_moves = ReadMoves(
+        None if np.isnan(joints).all() else joints, float(np.radians(_half_digit(turning))),
+        np.where(linear, np.nan, time_or_speed),
+        deposit, linear, np.isnan(rounding), tuple(run.events), speed=np.where(linear, time_or_speed, np.nan),
+        speed_digits=float(half[linear].max(initial=0.0)), duration_digits=half, rounding=rounding,
+        unit=run.unit if used else "", first_external=used[0] if used else 1,
+        linear_digits=_half_digit(run.external) if run.slides else 0.0,
+    )
+    if run.analogue is not None:
+        read_moves = dataclasses.replace(
+            read_moves, wire=np.array(run.wire), wire_digits=np.array(run.wire_half), wire_output=run.analogue)
+    return _seen(read_moves, run) if linear.any() else read_moves
+
+
+def _seen(read_moves: ReadMoves, run: Run) -> ReadMoves:
+    """With the positions of the tool in the work object. A work object that the robot holds is what it takes to the tool:
+    its position seen from there is that of the tool in it, turned about."""
+    used, placed = run.frames, np.array(run.placed, dtype=np.bool_)
+    assert used is not None
+    turns = _numbers(run.turns, 4)
+    length = np.linalg.norm(turns, axis=1)
+    if (np.abs(length - 1.0) > 1e-5).any():
+        raise unreadable("program", "the four numbers of an orientation are not those of a unit quaternion")
+    place, rotation = np.full((len(placed), 3), np.nan), np.full((len(placed), 3, 3), np.nan)
+    place[placed], rotation[placed] = _numbers(run.places, 3), turned(turns / length[:, None])
+    if used.held:
+        rotation = np.swapaxes(rotation, 1, 2)
+        place = -np.einsum("nij,nj->ni", rotation, place)
+    stands, carried = (used.tool, used.work_object) if used.held else (used.work_object, used.tool)
+    return dataclasses.replace(
+        read_moves, position=place, rotation=rotation, position_digits=_half_digit(run.places),
+        # four numbers, each off by half a digit, turn by at most four of these: as much as three angles of so much
+        rotation_digits=4.0 / 3.0 * _half_digit(run.turns), frame=stands,
+        tool=np.broadcast_to(carried, (len(placed), 4, 4)), held=used.held,
+    )
+
+
+def _numbers(texts: list[str], columns: int) -> Array:
+    """(n, columns) of the numbers of texts."""
+    return np.array(",".join(texts).split(",") if texts else [], dtype=np.float64).reshape(-1, columns)
+
+
+def _half_digit(texts: list[str]) -> float:
+    """Half of the last digit of numbers, 0 where there are none."""
+    return 0.5 * 10.0 ** -min(map(len, _DECIMALS.findall(" ".join(texts))), default=99)

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a RAPID program tells of the process on its moves: arc welding instructions with their data, an output that is
+switched ahead of a place, and an analogue output in proportion to the real speed of the tip.
+
+Such a move is another instruction than MoveL or MoveAbsJ: its word begins with that, and a space. Data of the welder -
+seam3, weld3, weave2 - is declared on the controller; a program takes weld3 and gives it the speed of its beads.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from ...core.issues import InputError
+from ...core.program import Block, DepositOff, DepositOn, Moves, Program, Weave
+from ..refusals import Asked, schedule_refused, weave_refused, wire_refused
+from . import text
+
+# names of a module's own data: speeds, weld data and triggers of the wire, by number; switching on and off
+SPEED, WELD, FEED, FEED_END, ON, OFF = "v_am", "d_am", "s_am", "s_off", "g_on", "g_off"
+TRIGGER_NAMES = (FEED_END, ON, OFF)
+MOST_NAMES = 500  # speeds, or data of one kind: each is a line that the controller keeps
+ARC, CARTESIAN = "arc", "cartesian"
+LAST_WEAVE, LAST_SEAM = 255, 9999
+_Key = TypeVar("_Key")
+_NO_ARC = "[0,0,0,0,0,0,0,0,0]"
+
+
+def refuse(asked: Asked) -> None:
+    """Raises InputError SCHEDULE, WEAVE or NO_WIRE_OUTPUT for what of the process cannot be told with the rest."""
+    arc = asked.by == ARC
+    if arc and asked.motion != CARTESIAN:
+        raise schedule_refused(ARC, "ArcL is a linear move, and these are joint moves, which motion: cartesian replaces")
+    if asked.weave and asked.dry_run:
+        raise weave_refused("a weave is an argument of ArcL, which a dry run does not have; block weld and weave on the "
+                            "controller instead")
+    if asked.weave and not arc:
+        raise weave_refused("a weave is an argument of ArcL, which program.schedule.by: arc writes")
+    if asked.weave and asked.setup == "part-on-robot":
+        raise weave_refused("that a robot swings the part under a torch that stands was not confirmed")
+    if not asked.wire:
+        return
+    if arc:
+        raise wire_refused("the wire of ArcL is told by its welddata")
+    if asked.motion != CARTESIAN:
+        raise wire_refused("TriggSpeed follows the speed of linear moves, and these are joint moves")
+    if asked.setup == "part-on-robot" or asked.turned:
+        raise wire_refused("whether TriggSpeed follows the speed over a part that moves was not confirmed")
+
+
+@dataclass(frozen=True)
+class Aboard:
+    """What is told on a run of moves. on, off: s ahead of the end of the last one. arc: the schedule of the arc, and weave
+    the number of its weave, 0 for none. ends: whether the bead ends with the run; stands: the torch stands there, still
+    depositing."""
+
+    moves: Moves
+    arc: int | None = None
+    weave: int = 0
+    on: float | None = None
+    off: float | None = None
+    ends: bool = False
+    stands: bool = False
+
+    @property
+    def lead(self) -> float | None:
+        """How long ahead of its end the deposit is switched on the run, None where it is not."""
+        return self.off if self.on is None else self.on
+
+
+def aboard(blocks: Iterable[Block]) -> list[Aboard]:
+    """What is told on each run of moves of a program, in order."""
+    found: list[Aboard] = []
+    arc, weave = None, 0
+    for block in blocks:
+        if isinstance(block, Moves) and len(block):
+            found.append(Aboard(block, arc, weave))
+        elif isinstance(block, Weave):
+            weave = block.number
+        elif isinstance(block, DepositOn):
+            arc = block.schedule
+            found[-1:] = [dataclasses.replace(one, on=block.ahead) for one in found[-1:]]
+        elif isinstance(block, DepositOff):
+            arc = None
+            found[-1:] = [
+                dataclasses.replace(one, off=block.ahead, ends=True, stands=block.lead > 0.0) for one in found[-1:]
+            ]
+    return found
+
+
+class Process:
+    """Words of the moves of a program, asked for block by block in the order of motion: those of `plain`, or of another
+    instruction where something of the process is told on them."""
+
+    def __init__(self, program: Program, plain: Callable[[Moves], Sequence[str]]) -> None:
+        self._program, self._plain = program, plain
+        self._aboard = [] if program.dry_run else aboard(program.blocks)
+        self._at = 0
+        self._speeds: dict[str, str] = {}
+        self._welds: dict[tuple[int, str], str] = {}
+        self._feeds: dict[str, str] = {}
+        leads = [one.lead for one in self._aboard if one.lead is not None]
+        self._lead = leads[0] if leads else 0.0
+
+    def __call__(self, moves: Moves) -> Sequence[str]:
+        """Speed, process and zone of each move."""
+        words = self._plain(moves)
+        if not self._aboard:
+            return words
+        own = self._aboard[self._at]
+        self._at += 1
+        if own.arc is not None:
+            return self._welded(words, own, own.arc)
+        fed = [] if moves.wire is None else [self._feed(ratio) for ratio in (moves.wire / moves.speed).tolist()]
+        if not fed and own.lead is None:
+            return words
+        last = len(words) - 1
+        at_end = [*([FEED_END] if fed and own.ends else []), *([ON] if own.on is not None else []),
+                  *([OFF] if own.off is not None else [])]
+        rows = range(len(words)) if fed else (last,)
+        words = list(words)
+        for row in rows:
+            words[row] = self._triggered(words[row], [*fed[row : row + 1], *(at_end if row == last else [])])
+        return words
+
+    def _triggered(self, word: str, triggers: Sequence[str]) -> str:
+        speed, _, corner = word.partition(",")
+        more = "".join(f"\\T{number}:={name}" for number, name in enumerate(triggers[1:], 2))
+        if "\\V:=" not in speed:
+            return f"TriggAbsJ {speed},{triggers[0]}{more},{corner}"
+        return f"TriggL {self._speed(speed)},{triggers[0]}{more},{corner}"
+
+    def _welded(self, words: Sequence[str], own: Aboard, schedule: int) -> list[str]:
+        welded = []
+        for row, word in enumerate(words, 1):
+            speed, _, corner = word.partition(",")
+            name = "ArcLEnd" if own.ends and not own.stands and row == len(words) else "ArcL"
+            welded.append(f"{name} {self._speed(speed)},{self._arc(own, schedule, _speed_in(speed))},{corner}")
+        return welded
+
+    def _arc(self, own: Aboard, schedule: int, speed: str) -> str:
+        """Seam, weld data at a speed, and weave."""
+        weld = _numbered(self._welds, WELD, (schedule, speed))
+        return f"seam{schedule},{weld}" + (f"\\Weave:=weave{own.weave}" if own.weave else "")
+
+    def _speed(self, word: str) -> str:
+        return _numbered(self._speeds, SPEED, _speed_in(word))
+
+    def _feed(self, ratio: float) -> str:
+        """The trigger by which the output follows the speed of the tip, mm/s: of wire in m/min there are `ratio` as many."""
+        return _numbered(self._feeds, FEED, f"{0.06 * self._program.nc.wire_gain * ratio:#.7G}")
+
+    def arc_start(self, schedule: int) -> str:
+        """The word of the instruction that strikes the arc where the next bead starts."""
+        own = self._aboard[self._at]
+        return f"ArcLStart {text.SPEED},{self._arc(own, schedule, f'{own.moves.speed[0]:.3f}')},fine"
+
+    def arc_end(self, schedule: int) -> str:
+        """The word of the instruction that ends it where the last bead did."""
+        own = self._aboard[self._at - 1]
+        return f"ArcLEnd {text.SPEED},{self._arc(own, schedule, f'{own.moves.speed[-1]:.3f}')},fine"
+
+    @property
+    def before(self) -> Moves:
+        """The last run of moves that words were given to."""
+        return self._aboard[self._at - 1].moves
+
+    def data(self, used: Collection[str]) -> list[str]:
+        """Declarations of the data whose names are used."""
+        speeds = [f"LOCAL CONST speeddata {name}:={text.speed(speed)};"
+                  for speed, name in self._speeds.items() if name in used]
+        welds = [f"LOCAL PERS welddata {name}:=[{speed},{speed},{_NO_ARC},{_NO_ARC}];"
+                 for (_, speed), name in self._welds.items() if name in used]
+        names = [name for name in (*self._feeds.values(), *TRIGGER_NAMES) if name in used]
+        return [*speeds, *welds, *(f"LOCAL VAR triggdata {name};" for name in names)]
+
+    def setup(self, used: Collection[str]) -> list[str]:
+        """Statements at the beginning of a routine that give it what it says."""
+        lines = []
+        for (schedule, speed), name in self._welds.items():
+            if name in used:
+                lines += [f"    {name}:=weld{schedule};", f"    {name}.weld_speed:={speed};",
+                          f"    {name}.org_weld_speed:={speed};"]
+        analogue = f"ao{self._program.nc.wire_output}"
+        lines += [f"    TriggSpeed {name},0\\Start,0,{analogue},{scale};"
+                  for scale, name in self._feeds.items() if name in used]
+        lines += [f"    TriggSpeed {FEED_END},0,0,{analogue},0;"] if FEED_END in used else []
+        when = f"{self._lead:.3f}\\Time" if self._lead > 0.0 else "0"
+        output = f"do{self._program.deposit_output}"
+        switches = [f"    TriggIO {name},{when}\\DOp:={output},{value};" for name, value in ((ON, 1), (OFF, 0))
+                    if name in used]
+        return lines + switches
+
+    @property
+    def declared(self) -> list[str]:
+        """Names of data that the controller has to have, as far as words were given."""
+        schedules = sorted({schedule for schedule, _ in self._welds})
+        weaves = sorted({one.weave for one in self._aboard if one.weave and one.arc is not None})
+        return [f"{kind}{number}" for number in schedules for kind in ("seam", "weld")] + [f"weave{n}" for n in weaves]
+
+
+def _speed_in(word: str) -> str:
+    """The speed that a word tells."""
+    return word.rpartition("=")[2]
+
+
+def _numbered(names: dict[_Key, str], kind: str, key: _Key) -> str:
+    """The name of a thing, the next one of its kind for a new one. InputError MOVE_SPEED where there are too many."""
+    if key not in names and len(names) == MOST_NAMES:
+        raise InputError(
+            "MOVE_SPEED", "process.travel_speed", "the beads have more than {} speeds, each of which is data of its own "
+            "here; use fewer speeds, a constant wire or another way of telling schedules", MOST_NAMES,
+        )
+    return names.setdefault(key, f"{kind}{len(names) + 1}")

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads moves of RAPID that tell something of the process: arc welding instructions, and moves with triggers."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from ...core.issues import Text
+from ...core.read_moves import ARC
+from .columns import Move, Run
+from .modules import Module, unreadable
+from .process_data import Feed, Switch, Weld
+
+_N = r"-?\d+\.\d+"
+AXES = rf"\[((?:(?:9E9|{_N}),){{5}}(?:9E9|{_N}))\]"
+JOINTS = rf"\[\[({','.join([_N] * 6)})\],{AXES}\]\\NoEOffs"
+_PLACE, _TURN = (f"\\[({','.join([_N] * count)})\\]" for count in (3, 4))
+POSITION = rf"\[{_PLACE},{_TURN},\[0,0,0,0\],{AXES}\]"
+_TAIL = r",(\w+),(\w+)\\WObj:=(\w+);$"
+_TRIGGERS = r",(\w+)((?:\\T[2-8]:=\w+)*)"
+_TRIGG_J = re.compile(rf"TriggAbsJ {JOINTS},(\w+)\\T:=(\d+\.(\d+)){_TRIGGERS}{_TAIL}")
+_TRIGG_L = re.compile(rf"TriggL {POSITION},(\w+){_TRIGGERS}{_TAIL}")
+_ARC = re.compile(rf"ArcL(Start|End|) {POSITION},(\w+),seam([1-9]\d*),(\w+)(?:\\Weave:=weave([1-9]\d*))?{_TAIL}")
+_MORE = re.compile(r"\\T(\d):=(\w+)")
+
+
+def process_move(line: str, module: Module, run: Run, where: str) -> bool:
+    """Whether the line is such a move, which then is carried out. Raises InputError UNREADABLE_PROGRAM."""
+    if arc := _ARC.match(line):
+        _arc_move(arc, module, run, where)
+    elif trigg := _TRIGG_J.match(line):
+        *values, axes, speed, amount, decimals, first, more, zone, tool, work_object = trigg.groups()
+        _speed_of(module, speed, where)
+        frames = module.tool_and_object(tool, work_object, where)
+        move = Move(False, tuple(values), axes, float(amount), 0.5 * 10.0 ** -len(decimals), zone, frames)
+        _triggered(move, _trigger_names(first, more, where), module, run, where)
+    elif trigg := _TRIGG_L.match(line):
+        place, turn, axes, speed, first, more, zone, tool, work_object = trigg.groups()
+        frames = module.tool_and_object(tool, work_object, where)
+        amount = _speed_of(module, speed, where)
+        move = Move(True, (place, turn), axes, amount, module.halves[speed], zone, frames)
+        _triggered(move, _trigger_names(first, more, where), module, run, where)
+    else:
+        return False
+    return True
+
+
+def _speed_of(module: Module, name: str, where: str) -> float:
+    if name not in module.speeds:
+        raise unreadable(where, Text("{} is not a speed of the module", name))
+    return module.speeds[name]
+
+
+def _trigger_names(first: str, more: str, where: str) -> list[str]:
+    """The triggers of a move, which count from \\T2 on without a gap."""
+    others = _MORE.findall(more)
+    if [int(number) for number, _ in others] != list(range(2, 2 + len(others))):
+        raise unreadable(where, "its triggers are not numbered in a row")
+    return [first, *(name for _, name in others)]
+
+
+def _triggered(move: Move, names: list[str], module: Module, run: Run, where: str) -> None:
+    triggers = [run.given.triggers.get(name) for name in names]
+    feeds = [trigger for trigger in triggers if isinstance(trigger, Feed)]
+    if None in triggers or len({*names}) != len(names) or (run.on and run.output == ARC):
+        raise unreadable(where, "a trigger is not set, or named twice, or the arc burns on")
+    for feed in feeds:
+        if run.analogue not in (None, feed.output) or not move.linear or not run.on:
+            raise unreadable(where, "a second analogue output follows the speed, or a joint move, or without a deposit")
+        run.analogue = feed.output
+    starts, ends = [feed for feed in feeds if feed.scale], [feed for feed in feeds if not feed.scale]
+    if len(starts) > 1 or len(ends) > 1 or (ends and not starts) or (starts and run.fed):
+        raise unreadable(where, "the wire is fed by two scales at once, or ends where it was not fed, or within a bead")
+    for feed in starts:
+        digits = feed.scale * move.half + feed.digits * (move.amount + move.half)
+        move = Move(move.linear, move.values, move.axes, move.amount, move.half, move.zone, move.frames,
+                    feed.scale * move.amount, digits)
+    run.keep_move(module, move, where)
+    run.feeding, run.fed = bool(starts) and not ends, bool(ends)
+    for trigger in triggers:
+        if isinstance(trigger, Switch):
+            run.keep_switch(trigger.output, trigger.on, "do", where, trigger.digits, trigger.ahead)
+
+
+def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
+    """The arc is struck where the robot stands, burns along a move, or ends with it, or where the robot stands after it."""
+    kind, place, turn, axes, speed, seam, weld_name, weave, zone, tool, work_object = arc.groups()
+    weld, woven = run.given.welds.get(weld_name), int(weave or 0)
+    if weld is None or weld.speed is None or weld.original != weld.speed or weld.schedule != int(seam):
+        raise unreadable(where, "its weld data has no speed, or is of another seam")
+    frames = module.tool_and_object(tool, work_object, where)
+    dry = _speed_of(module, speed, where)
+    move = Move(True, (place, turn), axes, weld.speed, weld.half, zone, frames)
+    if kind == "Start":
+        if run.on or not run.nearest or not run.stands_at(move, where):
+            raise unreadable(where, "the arc burns already, or is struck where the robot does not stand")
+        run.keep_switch(seam, True, ARC, where)
+        run.seam, run.weave, run.struck = int(seam), 0, woven
+        return
+    if not run.on or run.output != ARC or run.seam != int(seam):
+        raise unreadable(where, "the arc does not burn, or by another seam")
+    if kind == "End" and run.struck is None and run.stands_at(move, where):
+        if run.last != (weld_name, woven):
+            raise unreadable(where, "the arc ends with other data than it burnt by")
+        _ends(run, where)
+        return
+    _burns(move, weld, dry, woven, run, where)
+    run.keep_move(module, move, where)
+    run.last = weld_name, woven
+    if kind == "End":
+        if not np.isnan(run.rounding[-1]):
+            raise unreadable(where, "the arc ends where the robot does not stop")
+        _ends(run, where)
+
+
+def _burns(move: Move, weld: Weld, dry: float, woven: int, run: Run, where: str) -> None:
+    """Before a move of the arc: its weave begins with the first one, and is that of all; with the arc blocked it is as
+    fast."""
+    if dry != weld.speed:
+        raise unreadable(where, "with the arc blocked the move has another speed")
+    if run.struck is not None:
+        if run.struck != woven:
+            raise unreadable(where, "the arc is struck with another weave")
+        run.struck, run.weave = None, woven
+        if woven:
+            run.happens("weave", float(woven))
+    elif run.weave != woven:
+        raise unreadable(where, "the weave is another one within a bead")
+
+
+def straight(run: Run) -> None:
+    """The torch stands and is not swung any more."""
+    if run.weave and run.struck is None:
+        run.happens("weave", 0.0)
+        run.weave = 0
+
+
+def _ends(run: Run, where: str) -> None:
+    straight(run)
+    run.keep_switch(str(run.seam), False, ARC, where)

@@ -1,0 +1,33 @@
+MODULE wire
+  ! Robotic AM
+  ! set the load of t_am: mass and centre of gravity of what the robot carries
+  LOCAL PERS tooldata t_am:=[TRUE,[[0.000,0.000,150.000],[0.9689124,0.0000000,0.0000000,0.2474040]],[0.001,[0,0,0.001],[1,0,0,0],0,0,0]];
+  LOCAL PERS wobjdata w_am:=[FALSE,TRUE,"",[[700.000,10.500,-100.000],[0.0752729,-0.0959412,-0.0566580,0.9909183]],[[0,0,0],[1,0,0,0]]];
+  LOCAL CONST speeddata v_am:=[1000,500,5000,1000];
+  LOCAL CONST zonedata z_am1:=[FALSE,0.375,0.375,0.375,0.0375,0.375,0.0375];
+  LOCAL CONST speeddata v_am1:=[5.000,500,5000,1000];
+  LOCAL VAR triggdata s_am1;
+  LOCAL VAR triggdata s_off;
+  LOCAL VAR triggdata g_on;
+  LOCAL VAR triggdata g_off;
+  PROC main()
+    ConfL\Off;
+    SingArea\Off;
+    TriggSpeed s_am1,0\Start,0,ao1,0.2100000;
+    TriggSpeed s_off,0,0,ao1,0;
+    TriggIO g_on,0.020\Time\DOp:=do1,1;
+    TriggIO g_off,0.020\Time\DOp:=do1,0;
+    ! layer 0
+    MoveAbsJ [[0.0000,-30.0000,120.0000,0.0000,60.0000,0.0000],[9E9,9E9,9E9,9E9,9E9,9E9]]\NoEOffs,v_am\T:=0.50000,fine,t_am\WObj:=w_am;
+    TriggAbsJ [[0.0000,-30.0000,120.0000,0.0000,60.0000,0.0000],[9E9,9E9,9E9,9E9,9E9,9E9]]\NoEOffs,v_am\T:=0.50000,g_on,fine,t_am\WObj:=w_am;
+    TriggL [[10.000,0.250,105.000],[1.0000000,0.0000000,0.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,s_am1,z_am1,t_am\WObj:=w_am;
+    TriggL [[12.000,0.250,105.000],[0.7071068,0.0000000,0.0000000,0.7071068],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,s_am1,z_am1,t_am\WObj:=w_am;
+    TriggL [[14.000,0.500,105.000],[0.0000000,0.0000000,1.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,s_am1\T2:=s_off\T3:=g_off,fine,t_am\WObj:=w_am;
+    ! layer 1
+    MoveAbsJ [[0.5000,-30.0000,120.0000,0.0000,60.0000,0.0000],[9E9,9E9,9E9,9E9,9E9,9E9]]\NoEOffs,v_am\T:=0.50000,fine,t_am\WObj:=w_am;
+    TriggAbsJ [[0.5000,-30.0000,120.0000,0.0000,60.0000,0.0000],[9E9,9E9,9E9,9E9,9E9,9E9]]\NoEOffs,v_am\T:=0.50000,g_on,fine,t_am\WObj:=w_am;
+    TriggL [[10.000,0.250,105.000],[1.0000000,0.0000000,0.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,s_am1,z_am1,t_am\WObj:=w_am;
+    TriggL [[12.000,0.250,106.000],[0.7071068,0.0000000,0.0000000,0.7071068],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,s_am1,z_am1,t_am\WObj:=w_am;
+    TriggL [[14.000,0.500,105.000],[0.0000000,0.0000000,1.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,s_am1\T2:=s_off\T3:=g_off,fine,t_am\WObj:=w_am;
+  ENDPROC
+ENDMODULE
