@@ -7,6 +7,7 @@ import dataclasses
 import re
 from array import array
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,8 +25,7 @@ def _floats() -> array[float]:
     return array("d")
 
 
-@dataclass(frozen=True)
-class Move:
+class Move(NamedTuple):
     """A move as its line has it: joint values, or place and orientation, and the axes beside the robot. amount: s of joint
     moves, mm/s of linear ones, half: of its last digit. wire: of the analogue output, and half of its last digit."""
 
