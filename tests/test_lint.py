@@ -28,7 +28,8 @@ def tools():
     noted = ENVIRONMENT / "tools.txt"
     if not noted.exists() or noted.read_text(encoding="utf-8").split() != list(TOOLS):
         made = done(sys.executable, "-m", "venv", "--system-site-packages", ENVIRONMENT)
-        made = made if made.returncode else done(ENVIRONMENT / "bin" / "pip", "install", "-q", *TOOLS)
+        words = ("-q", "--no-compile", "--disable-pip-version-check")
+        made = made if made.returncode else done(ENVIRONMENT / "bin" / "pip", "install", *words, *TOOLS)
         if made.returncode:
             pytest.skip(f"{' and '.join(TOOLS)} cannot be installed: {made.stderr.strip()[-200:]}")
         noted.write_text("\n".join(TOOLS) + "\n", encoding="utf-8")

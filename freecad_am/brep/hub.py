@@ -14,6 +14,7 @@ from scipy.optimize import least_squares
 from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array
 
+from ..core.geometry.columns import lengths
 from ..core.geometry.developable import Developable
 from ..core.geometry.mesh.manifold import holes, separated
 from ..core.geometry.mesh.repair import Repaired, crossing_messages, mended_issues, repaired
@@ -205,7 +206,7 @@ def _flat(points: Array) -> bool:
 def _profile(points: Array, origin: Array, z: Array) -> tuple[Array, Array, float, float]:
     """Heights and radii (n,) of points about an axis; slope and radius at its origin of the line through them."""
     along = (points - origin) @ z
-    rho = np.linalg.norm(points - origin - along[:, None] * z, axis=1)
+    rho = lengths(points - origin - along[:, None] * z)
     slope, at_origin = np.linalg.lstsq(np.c_[along, np.ones(len(along))], rho, rcond=None)[0]
     return along, rho, float(slope), float(at_origin)
 

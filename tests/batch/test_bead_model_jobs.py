@@ -85,6 +85,7 @@ def test_layers_far_higher_than_beads_are_planned_and_told(fin):
 
 @pytest.mark.parametrize(("post", "motion"), [("siemens", "joint"), ("linuxcnc", "joint"), ("linuxcnc", "cartesian")])
 @pytest.mark.parametrize("fill", ["contours", "zigzag"])
+@pytest.mark.always
 def test_feeds_of_a_program_change_no_faster_than_asked_for(fin, post, motion, fill):
     """From the text: times of blocks, or their speeds, over the lengths of the beads that they run. No block is so short
     that a controller could not take it in time, and from block to block the speed changes by no more than the

@@ -100,6 +100,7 @@ def write_tube(path, radius, height, sides=180):
     path.write_text("\n".join([*lines, "endsolid tube", ""]))
 
 
+@pytest.mark.long
 def test_a_mesh_wall_has_half_its_width_on_the_side_with_less(workshop):
     write_tube(workshop.folder / "vase.stl", 30.0, 20.0)
     _, found, issues = planned(workshop, VASE % 2)

@@ -91,7 +91,10 @@ def test_a_job_without_a_cell_promises_nothing_of_joints(workshop):
 @pytest.mark.parametrize(
     ("change", "broken"),
     [
-        ("joints: {min_condition: 0.9}\n", {"The tool keeps away from singularities while it deposits"}),
+        pytest.param(
+            "joints: {min_condition: 0.9}\n", {"The tool keeps away from singularities while it deposits"},
+            marks=pytest.mark.long,
+        ),
         ("deposition_point: [1900, -900, 653, 0, 0, 0]", {"The joints bring the tool to every point"}),
     ],
 )

@@ -44,6 +44,7 @@ def written(sections):
 
 
 @pytest.mark.parametrize("name", JOBS)
+@pytest.mark.always("range", "tool", "branch", "machine", "speed")
 def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
     sections = {section: dict(keys) for section, keys in JOBS[name].items()}
     sections["cell"]["platform_diameter"] = "100 mm"

@@ -72,6 +72,7 @@ def test_a_toolpath_has_the_path_alone(workshop):
     assert ours == theirs and "Joints against their limits" not in ours and "Layers and path" in ours
 
 
+@pytest.mark.long
 def test_of_a_wall_it_compares_spacings_with_the_robots_motion(workshop):
     shell = Part.makeTorus(30.0, 8.0, App.Vector(-5, 0, 0), App.Vector(0, -1, 0), -180, 180, 40)
     shell.rotate(App.Vector(), App.Vector(0, 1, 0), -90)

@@ -67,6 +67,7 @@ def test_a_block_stands_on_the_plate_as_it_was_scanned(job, parts):
     assert page.count("Layer 0 as planned") == 2 and page.count("Layer 0 as laid") == 2  # a picture each, and its name
 
 
+@pytest.mark.long
 def test_a_wall_leaves_a_pipe_where_it_was_scanned(workshop, root):
     def radius(azimuth, along):
         return 32.0 + 0.6 * np.cos(2.0 * azimuth) + 0.01 * along

@@ -53,7 +53,7 @@ def wall(example, plans):
     return wall_checks.read_wall(plans.folder / example.wall, example.depth)
 
 
-@pytest.mark.parametrize("job", [one.job for one in EXAMPLES if one.has_cell])
+@pytest.mark.parametrize("job", [one.job for one in (*EXAMPLES, *LONG) if one.has_cell])
 def test_a_platform_of_an_example_is_under_what_it_carries(job, plans):
     """The plate is about the frame that sits on it; a part held beside that frame hangs in a clamp, and has none."""
     settings = yaml.safe_load(plans.text(job))

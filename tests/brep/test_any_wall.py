@@ -299,7 +299,7 @@ def blade():
     (lambda: shell(tube(2.0, 30.0), moved(tube(2.0, 30.0), 0, 0, 30)), slab, 4.0, "LAYER_HEIGHT", ["2 mm"]),
     (tight_pipe, slab, 2.0, "SELF_INTERSECTION", ["cuts itself"]),
     # noses of a blade turn over sharply and do not fold
-    (blade, slab, 2.0, "LAYER_HEIGHT", ["smallest radius of curvature, 0.0"]),
+    pytest.param(blade, slab, 2.0, "LAYER_HEIGHT", ["smallest radius of curvature, 0.0"], marks=pytest.mark.long),
 ])
 def test_refusals_by_real_shapes(make, substrate, height, code, words):
     error = refused(make(), (), substrate(), height)

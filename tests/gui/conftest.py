@@ -221,7 +221,7 @@ class Person:
         """The 3D view as (pixels, 3) colours 0..255."""
         import numpy as np
 
-        path = str(self.folder / "view.png")
+        path = str(self.folder / "view.bmp")  # a PNG takes longer to pack than to draw
         self.look().saveImage(path, width, height, "White")
         image = self.widgets.QImage(path).convertToFormat(self.widgets.QImage.Format_RGB32)
         rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
@@ -242,12 +242,13 @@ class Person:
         self.until(both, "a path in blue and yellow", 10)
 
     def screenshot(self, name):
-        """The whole screen, kept where ROBOTIC_AM_PICTURES says."""
+        """The whole screen, kept where ROBOTIC_AM_PICTURES says; nothing where it says nothing, as nobody looks at it."""
         folder = os.environ.get("ROBOTIC_AM_PICTURES")
         self.idle(0.3)
-        screen = self.widgets.QApplication.primaryScreen()
-        grabbed = screen.grabWindow(0) if self.core.qVersion().startswith("5") else screen.grabWindow()
-        assert grabbed.save(os.path.join(folder or str(self.folder), name + ".png"))
+        if folder:
+            screen = self.widgets.QApplication.primaryScreen()
+            grabbed = screen.grabWindow(0) if self.core.qVersion().startswith("5") else screen.grabWindow()
+            assert grabbed.save(os.path.join(folder, name + ".png"))
 
     def screen_pixels(self, colour, within=24):
         """How many pixels of the 3D view, as the screen shows it, have a colour 0..255."""

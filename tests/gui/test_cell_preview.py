@@ -186,6 +186,7 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     assert (made.machine, made.branch, document.UndoCount) == ("motoman-ar1440", other.branch, steps + 1)
 
 
+@pytest.mark.long
 def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisphere):
     """With the torch as it is entered; what was proposed for the one before goes, what was typed stays."""
     document = hemisphere.Document

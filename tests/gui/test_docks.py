@@ -139,8 +139,8 @@ def test_where_the_user_has_put_them_they_are_again(person, path):
     assert first.geometry().bottom() < third.geometry().top()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("order", ORDERS, ids=lambda order: "-".join(name[10:] for name in order))
-@pytest.mark.always("Path-Plots-SpinMap")
 def test_the_height_they_take_is_given_back(person, path, order):
     """To those that stay, the last that is opened closed first, and the first closed first."""
     before = around(person)

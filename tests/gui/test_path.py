@@ -258,6 +258,7 @@ def where(view, hand, point):
 
 
 @pytest.mark.parametrize("look", ["lines", "tubes"])
+@pytest.mark.always("tubes")
 def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
     proxy = joint_path.ViewObject.Proxy
     rows = proxy.rows

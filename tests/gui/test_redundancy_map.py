@@ -267,6 +267,7 @@ def test_handles_bend_the_polynomial_of_one_bead(person, hemisphere, hand):
     person.screenshot("spin_map_handles")
 
 
+@pytest.mark.long
 def test_one_rz_for_all_is_dragged_and_used(person, hemisphere, hand):
     path = job(hemisphere, joints={"method": "constant", "rz": 20})
     panel, one = opened(person, path)

@@ -87,7 +87,7 @@ def test_a_deleted_part_is_missing_everywhere_and_comes_back(person, job):
 
 
 @pytest.mark.parametrize("name", ["Cell", "Feature", "Toolpath", "JointPath"])
-@pytest.mark.always("Feature", "JointPath")
+@pytest.mark.always("JointPath")
 def test_a_deleted_stage_is_missing_and_comes_back(person, job, name):
     job.openTransaction("Delete")
     job.removeObject(name)

@@ -366,6 +366,7 @@ def test_a_program_of_linear_moves_plays_the_points_they_get(hemisphere):
     assert np.array_equal(run.motion.position[told.row], whole.motion.position[found.row])
 
 
+@pytest.mark.always("document", "toolpath", "undo")
 @pytest.mark.parametrize("what", ["document", "object", "toolpath", "recompute", "undo", "view"])
 def test_it_ends_by_itself_when_what_it_plays_goes_or_changes(person, hemisphere, what):
     doc = hemisphere.Document

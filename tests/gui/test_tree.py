@@ -163,7 +163,7 @@ def test_the_part_of_a_job_is_deleted_and_brought_back_by_keys(person, hand, job
 
 
 @pytest.mark.parametrize("name", ["Cell", "Feature", "Toolpath", "JointPath", "Program"])
-@pytest.mark.always("Cell", "Program")
+@pytest.mark.always("Cell")
 def test_a_stage_is_deleted_and_brought_back_by_keys(person, hand, job, name):
     before = state(job)
     label = job.getObject(name).Label

@@ -165,7 +165,7 @@ def test_what_may_be_chosen_is_read_whole_in_a_narrow_panel(person, cells):
         person.panel_closed()
 
 
-def test_a_machine_without_a_post_gets_none_proposed(person, hemisphere):
+def test_a_machine_without_a_post_gets_none_proposed(person, hemisphere, no_remedies):
     document = hemisphere.Document
     feature = api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5)
     for machine, setup, post, motion in (

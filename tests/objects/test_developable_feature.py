@@ -142,6 +142,7 @@ def test_a_cone_that_points_down_is_as_good(doc):
         assert off(bead.points * [1.0, 1.0, -1.0], index).max() < 1e-6
 
 
+@pytest.mark.long
 def test_the_hub_may_be_one_of_the_solids_or_fused_with_them(thruster):
     doc, hub, blades = thruster
     upper = blade_shapes(hub.Shape, (60.0,))

@@ -192,6 +192,7 @@ def _spanning():
 
 
 SPANNING = _spanning()
+ONE_OF_EACH = {way[0]: " ".join(way) for way in WAYS}.values()  # post
 
 
 def _bead(hub, side, layer):

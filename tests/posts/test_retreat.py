@@ -7,7 +7,7 @@ import pytest
 from freecad_am.core.issues import has_errors
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
-from tests.posts.planned_jobs import CHORD_ERROR, SPANNING, WAYS, planned, written
+from tests.posts.planned_jobs import CHORD_ERROR, ONE_OF_EACH, WAYS, planned, written
 
 BACK = 5.5  # mm; longer than what differs at the ends of the beads
 
@@ -17,7 +17,7 @@ def _steps(points):
 
 
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
-@pytest.mark.always(*SPANNING)
+@pytest.mark.always(*ONE_OF_EACH)
 def test_beads_end_where_they_were_before_their_end(way):
     """By the motion of the plan, then by the text, which is read back and held against it; a stop at each end of a bead."""
     cell, motion, program, files = written(way, retreat=BACK)

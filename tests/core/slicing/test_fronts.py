@@ -132,6 +132,7 @@ class BothEnds:
         return np.where(nearer, one, other), np.where(nearer[..., None], up, down)
 
 
+@pytest.mark.long
 def test_two_fronts_merge_with_corners():
     wall, height = ball(BothEnds()), 1.3
     layers = fronts.layers(wall, height).fronts

@@ -136,6 +136,7 @@ def test_every_bead_lies_on_something_deposited_before(name):
         before.insert(0, cKDTree(dense(layer.beads)))
 
 
+@pytest.mark.always("a half shell", "three tangent faces", "a bend", "a cap")
 @pytest.mark.parametrize("name", WALLS)
 def test_directions_are_tangent_to_the_wall_normal_to_the_bead_and_continuous(name):
     wall, height, _ = made(name)

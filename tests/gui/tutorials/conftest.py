@@ -40,8 +40,10 @@ class Lesson:
         told = {part.splitlines()[0].strip(): re.findall(r"!\[[^\]]*\]\(images/([\w-]+)\.png\)", part) for part in parts}
         self.told = {heading: pictures for heading, pictures in told.items() if re.match(r"\d+\. ", heading)}
         self.done, self.taken = [], []
-        self.folder = Path(os.environ.get("ROBOTIC_AM_PICTURES") or person.folder) / "tutorials"
-        self.folder.mkdir(parents=True, exist_ok=True)
+        kept = os.environ.get("ROBOTIC_AM_PICTURES")
+        self.folder = Path(kept) / "tutorials" if kept else None
+        if self.folder:
+            self.folder.mkdir(parents=True, exist_ok=True)
 
     # ---- the page
 
@@ -72,12 +74,8 @@ class Lesson:
             assert self.person.widgets.QApplication.activeModalWidget() is None
         self.hand.do("mousemove", 700, 893)  # nothing is lit up, and no tooltip is open
         self.person.idle(0.5)
-        screen = self.person.widgets.QApplication.primaryScreen()
-        grabbed = screen.grabWindow(0) if self.person.core.qVersion().startswith("5") else screen.grabWindow()
-        window = self.person.window
-        corner = window.mapToGlobal(self.person.core.QPoint(0, 0))
-        shown = grabbed.copy(self.person.core.QRect(corner, window.size()))
-        assert shown.save(str(self.folder / f"{name}.png"))
+        if self.folder:
+            self._keep(name)
         seen = self.pixels()
         if path:
             assert colourful(seen) > 250, f"{name}: no path is to be seen"
@@ -87,6 +85,15 @@ class Lesson:
             assert colourful(corner) > 200, f"{name}: the legend is not to be seen"
         if machine:
             assert of_machine(seen) > 15000, f"{name}: the machine is not to be seen"
+
+    def _keep(self, name):
+        """The window as the screen shows it, in a file for the page."""
+        screen = self.person.widgets.QApplication.primaryScreen()
+        grabbed = screen.grabWindow(0) if self.person.core.qVersion().startswith("5") else screen.grabWindow()
+        window = self.person.window
+        corner = window.mapToGlobal(self.person.core.QPoint(0, 0))
+        shown = grabbed.copy(self.person.core.QRect(corner, window.size()))
+        assert shown.save(str(self.folder / f"{name}.png"))
 
     def pixels(self):
         """The 3D view as the screen shows it, (height, width, 3) colours 0..255."""
@@ -178,8 +185,9 @@ class Lesson:
         assert path.is_file()
 
     def keep(self, path):
-        """Keep a document beside the pictures: the samples are what tutorials end with."""
-        shutil.copyfile(path, self.folder / path.name)
+        """Keep a document beside the pictures, where these are kept: the samples are what tutorials end with."""
+        if self.folder:
+            shutil.copyfile(path, self.folder / path.name)
 
     def save_and_open_again(self, path):
         """Save to a new file, close, and open it: nothing is lost, and nothing is to be computed."""

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...types import Array, Index
+from ..columns import lengths
 from ..walls.surface import dot
 
 CORNER = 1e-5  # rad; smaller turns between two arcs are a smooth join
@@ -158,7 +159,7 @@ class SpaceCurve:
         start = self.w[arcs[found]] + places[found] * self.span[arcs[found]]
         w = self.walked(np.broadcast_to(points[:, None], start.shape + (3,)), start)
         foot = self.at(w)[0]
-        distance = np.linalg.norm(points[:, None] - foot, axis=-1)
+        distance = lengths((points[:, None] - foot).reshape(-1, 3)).reshape(w.shape)
         best = np.argmin(distance, axis=1)
         row = np.arange(len(points))
         return distance[row, best], foot[row, best], self.wrapped(w[row, best])

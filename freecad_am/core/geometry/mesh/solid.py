@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from ...issues import InputError
 from ...types import Array, Index
+from ..columns import sides
 from ..formatting import place
 from ..walls.surface import dot
 from .crossing import crossings
@@ -195,10 +196,11 @@ def _spread(
         if kept is not None:
             here = kept(corner)
             corner, of = corner[here], of[here]
-        side = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
+        side = sides(corner)
         top = np.argmax(side, axis=1)
         small = side[np.arange(len(top)), top] <= longest
-        done.append((corner[small].mean(axis=1), of[small]))
+        a, b, c = (corner[small, k] for k in range(3))
+        done.append(((a + b + c) / 3.0, of[small]))
         corner, of, top = corner[~small], of[~small], top[~small]
         a, b, c = (corner[np.arange(len(top)), (top + k) % 3] for k in range(3))
         middle = 0.5 * (a + b)
