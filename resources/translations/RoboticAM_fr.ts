@@ -1957,7 +1957,7 @@
         <translation>Annulé : rien n&apos;a été fait.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <location filename="../../freecad_am/gui/cell/proposing.py"/>
         <source>Cancelled: the document is as it was.</source>
         <translation>Annulé : le document est tel qu&apos;il était.</translation>
     </message>
@@ -3542,9 +3542,14 @@
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cell.py"/>
+        <location filename="../../freecad_am/gui/cell/proposing.py"/>
         <source>Left as it was entered; for {} it would be {}.</source>
         <translation>Laissé comme saisi ; pour {} ce serait {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <source>Left as it was entered; the job of {} can be done with {}.</source>
+        <translation>Laissé comme saisi ; la tâche de {} peut se faire avec {}.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -4592,7 +4597,12 @@
         <translation>Programme…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cell.py"/>
+        <location filename="../../freecad_am/gui/cell/proposing.py"/>
+        <source>Proposed for the job of {}; enter what yours really has.</source>
+        <translation>Proposé pour la tâche de {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell/proposing.py"/>
         <source>Proposed for {}; enter what yours really has.</source>
         <translation>Proposé pour {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
     </message>
@@ -15657,7 +15667,7 @@
         <translation>{} : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cell.py"/>
+        <location filename="../../freecad_am/gui/cell/proposing.py"/>
         <source>{}: {} is now {}. {}</source>
         <translation>{} : {} est maintenant {}. {}</translation>
     </message>

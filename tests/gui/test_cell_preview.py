@@ -15,9 +15,10 @@ from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.core.kinematics.urdf.cell import texts_of
 from freecad_am.core.kinematics.urdf.reference import Reference
 from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.external import externals
 from freecad_am.core.simulation.placing import at_rest
+from freecad_am.gui.cell import proposing as cell_panel
 from freecad_am.gui.nodes.cell import resting_point
-from freecad_am.gui.panels import cell as cell_panel
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.work.progress import Cancelled
 from tests.core.kinematics import urdf_cells
@@ -186,7 +187,95 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     assert (made.machine, made.branch, document.UndoCount) == ("motoman-ar1440", other.branch, steps + 1)
 
 
+<<<<<<< HEAD
 @pytest.mark.long
+=======
+@pytest.fixture
+def leaning(person, hemisphere):
+    """A toolpath whose beads may lean by 10 deg from the vertical, which takes a positioner under a torch."""
+    document = hemisphere.Document
+    feature = api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5, max_from_vertical=10)
+    toolpath = api.make_toolpath(document, feature)
+    person.idle()
+    return toolpath
+
+
+def choose_torch(person, hand, panel):
+    hand.enter(panel, "Machine", "kuka-kr8-r2100-2-arc-hw")
+    setup = person.field(panel, "Setup")
+    person.until(setup.isEnabled, "the set-ups of a robot", 5)
+    person.choose(panel, "Setup", "tool-on-robot")
+
+
+@pytest.mark.long
+def test_the_job_at_hand_is_done_in_the_cell_that_is_proposed_for_a_robot(person, hand, leaning):
+    """With its toolpath in the document, a positioner; before, the platform was put where a ball could be laid."""
+    document, steps = leaning.Document, leaning.Document.UndoCount
+    person.click("RoboticAM_Cell")
+    panel = person.panel(PANEL)
+    choose_torch(person, hand, panel)
+    external, note = person.field(panel, "External"), person.field(panel, "ExternalNote")
+    person.until(lambda: "carries part" in external.text(), "a positioner", 30)
+    assert note.isVisible() and note.text().startswith(f"Proposed for the job of {leaning.Label}; ")
+    assert person.field(panel, "Branch").currentText() == "auto"
+    told(person, panel, "with the nozzle upright: ")
+    person.look()
+    person.screenshot("cell_for_job")
+    before = len(person.console())
+    person.press("Ok")
+    person.panel_closed()
+    cell = document.Cell
+    assert document.UndoCount == steps + 1 and "is now" not in person.console()[before:]  # all was seen
+    (positioner,) = externals(cell.External)
+    assert positioner.carries == "part"
+    path = api.make_joint_path(document, leaning, cell)
+    assert path.Status == "up to date", api.issues(path)
+    plain = api.make_cell(document, machine=cell.Machine, setup="tool-on-robot")  # what suits the robot alone
+    assert api.make_joint_path(document, leaning, plain).Status == "infeasible"
+
+
+POSITIONER = "motoman-motopos-d500 at 1615 0 0 0 0 0 carries part"
+
+
+@pytest.mark.parametrize("branch", [pytest.param("", marks=pytest.mark.long), "back down noflip"])
+def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(person, hand, planned, monkeypatch, branch):
+    """Nothing of it where one of its fields holds something of the user's: a positioner with another branch would be a third
+    cell. It goes with the robot that it was proposed for."""
+    asked = []
+
+    def suited(settings):
+        asked.append(settings)
+        torch = settings.setup == "tool-on-robot"
+        return replace(settings, external=POSITIONER, branch="auto") if torch else settings
+
+    monkeypatch.setattr(cell_panel.suited_cell, "of_toolpath", lambda toolpath: suited)
+    label = planned[1].Label
+    person.click("RoboticAM_Cell")
+    panel = person.panel(PANEL)
+    if branch:
+        person.field(panel, "Branch").setEditText(branch)
+    choose_torch(person, hand, panel)
+    external = person.field(panel, "External")
+    notes = [person.field(panel, f"{name}Note") for name in ("External", "Branch")]
+    left = f"Left as it was entered; the job of {label} can be done with "
+    words = left if branch else f"Proposed for the job of {label}; "
+    person.until(lambda: all(note.isVisible() and note.text().startswith(words) for note in notes), "what it needs", 60)
+    wanted = cell_of("kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot")
+    last = asked[-1]
+    assert (last.setup, last.deposition_point, last.external) == ("tool-on-robot", wanted.deposition_point, "none")
+    if branch:
+        assert external.text() == "none" and person.field(panel, "Branch").currentText() == branch
+        assert [note.text() for note in notes] == [f"{words}{text}." for text in (POSITIONER, "auto")]
+    else:
+        assert external.text() == POSITIONER and person.field(panel, "Branch").currentText() == "auto"
+    hand.enter(panel, "Machine", "kuka-kr16-2")
+    person.choose(panel, "Setup", "part-on-robot")
+    person.until(lambda: external.text() == "none" and not notes[0].isVisible(), "the positioner to go", 60)
+    person.press("Cancel")
+    person.panel_closed()
+
+
+>>>>>>> 86d13c91 (The panel of a cell proposes the branch, place or positioner in which the job of the toolpath at hand can be done)
 def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisphere):
     """With the torch as it is entered; what was proposed for the one before goes, what was typed stays."""
     document = hemisphere.Document

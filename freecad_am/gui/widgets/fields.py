@@ -174,7 +174,7 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
 
     if row.form == f.NUMBER:
         return Field(row, edit, lambda: _number(entered(), row.label))
-    return Field(row, edit, entered)
+    return Field(row, edit, entered, None if numeric else edit.setText)
 
 
 def _point(edit: Any) -> str:

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the panel of a cell proposes: what suits the machine that is chosen, and then the cell in which the job of the
+toolpath at hand can be done. What was entered stays, and the panel says what it would propose."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+
+from ...core.issues import AmError, InputError
+from ...core.kinematics.arrangement import of_setup
+from ...core.kinematics.machines.machine import Machine
+from ...core.kinematics.proposed_cell import cell_of
+from ...core.parameters.cell import CellParameters
+from ...objects import user_machines
+from ...objects.fields.rows import flat
+from ...objects.planned import suited_cell
+from ...objects.work.progress import Cancelled
+from ..background.busy import carry_out
+from ..background.later import Background, Later
+from ..background.worker import Worker
+from ..panels.preview import PreviewPanel
+from ..texts.translation import tr, translated
+from ..views.preview import Draft
+
+MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
+ARM, OBSTACLES, EXTERNAL = "cell_arm_clearance", "cell_obstacles", "cell_external"
+TOOL, TORCH, PLATFORM = "cell_nozzle_tool", "cell_nozzle_shape", "cell_platform"
+OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, TORCH, ARM, OBSTACLES, EXTERNAL)
+
+
+class ProposingPanel(PreviewPanel):
+    """Proposes in fields of a cell. A panel that does says what was wrong with a machine, and which toolpath is at hand."""
+
+    later: Later
+
+    def __init__(self, title: str, obj: Any, nodes: Any) -> None:
+        # what is proposed, by machine and set-up as the fields hold them, and which of these were followed last
+        self.of_machine: dict[tuple[str, str], CellParameters] = {}
+        self.before: tuple[str, str] | None = None
+        self.put: dict[str, Any] = {}  # what the panel itself has entered
+        self.noted: dict[str, Any] = {}  # what fields held when something was told of a proposal
+        super().__init__(title, [], obj, nodes)
+        self.enabled = {place: self.places[place][0].widget.isEnabled() for place in OF_ROBOTS}
+        if obj is None:
+            self.put.update((place, self._holds(place)) for place in (POINT, BRANCH))
+        self.proposing, self.suiting = Background(self.form), Background(self.form)
+
+    def _widget(self, place: str) -> Any:
+        return self.places[place][0].widget
+
+    def _tell_of_machine(self, text: str) -> None:
+        """What is wrong with the machine."""
+        raise NotImplementedError
+
+    def _toolpath(self) -> Any:
+        """The toolpath that is at hand, None without one."""
+        raise NotImplementedError
+
+    # ---- what suits a machine
+
+    def _ask_proposal(self, name: str, machine: Machine) -> None:
+        """Find out, beside the window, what suits the machine; nothing for one that was not chosen here."""
+        setup = self._widget(SETUP).currentData()
+        before, self.before = self.before, (name, setup)
+        if before == self.before or (before is None and self.obj is not None):
+            return
+        self.proposing.cancel()
+        self.suiting.cancel()
+        for place in self.noted:
+            self.tell(place, "")
+        self.noted.clear()
+        if not machine.free or not (of_setup(setup).free and of_setup(setup).planned):
+            return
+        folders, known, wanted, tool = user_machines.folders(), dict(self.of_machine), self.before, self._tool()
+
+        def work() -> dict[tuple[str, str], CellParameters]:
+            for one in filter(None, (before, wanted)):
+                with contextlib.suppress(InputError):  # the one before is gone
+                    known[one] = known.get(one) or cell_of(one[0], folders, one[1], tool)
+            return known
+
+        self.proposing.start(work, lambda worker: self._propose(worker, before, wanted, machine.title))
+
+    def _tool(self) -> Any:
+        """The pose of the tip on the flange as it is entered, None where that cannot be read as numbers."""
+        row, held = self.places[TOOL][0].row, self._holds(TOOL)
+        with contextlib.suppress(AmError):
+            return None if held is None else row.inner(held, row.label)
+        return None
+
+    def _propose(
+        self, worker: Worker, before: tuple[str, str] | None, wanted: tuple[str, str], title: str
+    ) -> None:
+        """Enter what suits the machine where nobody has entered anything else than what suited the one before."""
+        try:
+            self.of_machine = worker.result()
+        except AmError as error:
+            self._tell_of_machine(translated(error.message))
+            return
+        except Exception as error:  # of nobody's making
+            self._tell_of_machine(f"{type(error).__name__}: {error}")
+            return
+        proposal = self.of_machine.get(wanted)
+        default = CellParameters()
+        usual = (None if before is None else self.of_machine.get(before)) or default
+        if proposal is None:  # no cell can have it, which the preview tells
+            return
+        if EXTERNAL in self.put and self._may_put(EXTERNAL, default.external):  # that of the machine before
+            self.places[EXTERNAL][0].show(default.external)
+        for place, value, *was in (
+            (POINT, proposal.deposition_point, usual.deposition_point, default.deposition_point),
+            (BRANCH, proposal.branch, usual.branch, default.branch),
+        ):
+            field = self.places[place][0]
+            shown, holds = field.row.outer(value), self._holds(place)
+            if _alike(holds, shown):
+                continue
+            if self._may_put(place, *map(field.row.outer, was)):
+                self._put(place, shown, tr("Proposed for {}; enter what yours really has.").format(title))
+            else:
+                self._note(place, tr("Left as it was entered; for {} it would be {}.").format(title, _value_text(shown)))
+        self._ask_for_job()
+
+    def _may_put(self, place: str, *usual: Any) -> bool:
+        """Whether nobody has entered anything else than the panel itself, or what is usual."""
+        return self.enabled[place] and any(_alike(self._holds(place), one) for one in (self.put.get(place), *usual))
+
+    def _put(self, place: str, shown: Any, text: str) -> None:
+        """Enter what is proposed, and say so."""
+        self.places[place][0].show(shown)
+        self.put[place] = shown
+        self._note(place, text)
+
+    def _note(self, place: str, text: str) -> None:
+        """Tell something of a proposal as long as the field holds what it does."""
+        self.noted[place] = self._holds(place)
+        self.tell(place, text, wrong=False)
+
+    # ---- what suits the job at hand
+
+    def _ask_for_job(self) -> None:
+        """Find out, beside the window, in which cell the job of the toolpath at hand can be done, from what is entered on;
+        nothing where that is no cell, which the preview tells."""
+        toolpath = self._toolpath()
+        if toolpath is None:
+            return
+        with contextlib.suppress(AmError):
+            draft = Draft(self.proxy, self.document, self.draft, self._links(), self._values())
+            made, suited, label = draft.prepare(), suited_cell.of_toolpath(toolpath), toolpath.Label
+            entered = self._all_held()
+
+            def work() -> tuple[dict[str, Any], dict[str, Any]]:
+                settings = made().value
+                return flat(settings), flat(suited(settings))
+
+            self.suiting.start(draft.reporting(work), lambda worker: self._suit(worker, entered, label))
+
+    def _suit(self, worker: Worker, entered: dict[str, Any], label: str) -> None:
+        """Enter the cell of the job where nobody has entered anything else in any of its fields, else tell it there."""
+        try:
+            asked, found = worker.result()
+        except AmError:  # which the preview tells
+            return
+        except Exception as error:  # of nobody's making
+            self._tell_of_machine(f"{type(error).__name__}: {error}")
+            return
+        if self._all_held() != entered:  # something else was entered meanwhile
+            self._ask_for_job()
+            return
+        default, shown = flat(CellParameters()), {}
+        for place, (field, _, _) in self.places.items():
+            key = field.row.key
+            if found[key] != asked[key]:
+                shown[place] = field.row.outer(found[key]), field.row.outer(default[key])
+        free = all(place in self.enabled and self._may_put(place, usual) for place, (_, usual) in shown.items())
+        for place, (value, _) in shown.items():
+            self._unfolded(place)
+            if free:
+                self._put(place, value, tr("Proposed for the job of {}; enter what yours really has.").format(label))
+            else:
+                text = tr("Left as it was entered; the job of {} can be done with {}.")
+                self._note(place, text.format(label, _value_text(value)))
+
+    def _all_held(self) -> dict[str, Any]:
+        return {place: self._holds(place) for place in self.places}
+
+    # ---- entries
+
+
+    def _holds(self, place: str) -> Any:
+        """What a field holds, None where that cannot be read."""
+        with contextlib.suppress(InputError):
+            return self.places[place][0].value
+        return None
+
+    def judge_entries(self) -> None:
+        """What was told of a proposal goes once something else is entered."""
+        super().judge_entries()
+        for place, held in list(self.noted.items()):
+            if not _alike(self._holds(place), held):
+                del self.noted[place]
+                self.tell(place, "")
+
+    def _carry_out(self) -> bool:
+        """Make or change the cell, after what was typed last is followed. What that entered nobody has seen: it is told."""
+        before = dict(self.put)
+        self.later.at_once()
+        for background in (self.proposing, self.suiting):
+            worker = background.worker
+            if worker is None:
+                continue
+            try:
+                carry_out(worker.ended.wait, self.form.windowTitle())
+            except Cancelled:
+                self.suiting.cancel()
+                self.say(tr("Cancelled: the document is as it was."))
+                return False
+            background.at_once()
+        unseen = [self._line(place) for place, value in self.put.items() if value != before.get(place)]
+        done = super()._carry_out()
+        for line in unseen if done else []:
+            App.Console.PrintWarning(line)
+        return done
+
+    def _line(self, place: str) -> str:
+        """A line of the report view about what the panel itself has entered at a place."""
+        label, value = self.places[place][0].label, _value_text(self.put[place])
+        text = tr("{}: {} is now {}. {}").format(self.form.windowTitle(), label, value, self.notes[place].text())
+        return f"{text}\n"
+
+    def close(self, *_: Any) -> None:
+        """Take away the preview; once or more often."""
+        if self.is_open:
+            self.proposing.cancel()
+            self.suiting.cancel()
+        super().close()
+
+
+def _alike(one: Any, other: Any) -> bool:
+    """Whether two poses, or two texts, are the same to whoever reads them."""
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        if any(isinstance(number, str) for number in (*one, *other)):  # an expression
+            return one == other
+        return bool(np.allclose(one, other, rtol=0.0, atol=1e-6))
+    return isinstance(one, str) and isinstance(other, str) and one.replace(",", " ").split() == other.split()
+
+
+def _value_text(value: Any) -> str:
+    return value if isinstance(value, str) else " ".join(f"{number:g}" for number in value)
