@@ -187,9 +187,6 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     assert (made.machine, made.branch, document.UndoCount) == ("motoman-ar1440", other.branch, steps + 1)
 
 
-<<<<<<< HEAD
-@pytest.mark.long
-=======
 @pytest.fixture
 def leaning(person, hemisphere):
     """A toolpath whose beads may lean by 10 deg from the vertical, which takes a positioner under a torch."""
@@ -275,7 +272,7 @@ def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(person, hand, 
     person.panel_closed()
 
 
->>>>>>> 86d13c91 (The panel of a cell proposes the branch, place or positioner in which the job of the toolpath at hand can be done)
+@pytest.mark.long
 def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisphere):
     """With the torch as it is entered; what was proposed for the one before goes, what was typed stays."""
     document = hemisphere.Document
