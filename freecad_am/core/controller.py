@@ -18,7 +18,8 @@ class Controller:
     straight_in_part: whether linear moves with the part on the robot run straight as the part sees them, so that beads need
     no points in between. least_step: s, shorter moves of a bead are not taken, 0 where there is no limit. least_blend: mm
     next to a point, by controllers that blend by a share of it at 100 % and stop where that is too little. arc_moves:
-    whether arc instructions are linear moves themselves, the one onto the start of a bead and its last one.
+    whether arc instructions are linear moves themselves, the one onto the start of a bead and its last one. linear_triggers:
+    whether the deposit is switched ahead of a place on linear moves, in Cartesian programs on the one onto a bead too.
     """
 
     external: bool = False
@@ -31,3 +32,4 @@ class Controller:
     least_step: float = 0.0
     least_blend: float = 0.0
     arc_moves: bool = False
+    linear_triggers: bool = False

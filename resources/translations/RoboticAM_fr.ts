@@ -6857,6 +6857,11 @@
         <translation>un maillage n&apos;a pas de faces à choisir ; omettez-les</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>a module would have more than {0} speeds, each of which is data of its own here; use fewer speeds, or a smaller program.max_points</source>
+        <translation>un module aurait plus de {0} vitesses, dont chacune est une donnée à part ici ; utilisez moins de vitesses, ou un program.max_points plus petit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>a move before G1, G21, G90 and a work offset are said</source>
         <translation>un mouvement avant que G1, G21, G90 et un décalage d&apos;origine soient dits</translation>
@@ -11257,16 +11262,6 @@
         <translation>l&apos;arc s&apos;éteint avec d&apos;autres données que celles par lesquelles il brûlait</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
-        <source>the arc is lit at the end of a linear move, and the program begins at the bead itself; give a retract distance, or another program.schedule.by</source>
-        <translation>l&apos;arc s&apos;allume à la fin d&apos;un mouvement linéaire, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre program.schedule.by</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
-        <source>the arc is lit at the end of a linear move, which would leave the way that was looked at by {0} mm; give a shorter retract distance, or another program.schedule.by</source>
-        <translation>l&apos;arc s&apos;allume à la fin d&apos;un mouvement linéaire, qui quitterait de {0} mm le chemin examiné ; donnez une distance de retrait plus courte, ou un autre program.schedule.by</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
         <source>the arc is struck with another weave</source>
         <translation>l&apos;arc est amorcé avec un autre balayage</translation>
@@ -11357,11 +11352,6 @@
         <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; omettez-la, ou prenez bead_model: none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>the beads have more than {0} speeds, each of which is data of its own here; use fewer speeds, a constant wire or another way of telling schedules</source>
-        <translation>les cordons ont plus de {0} vitesses, dont chacune est une donnée à part ici ; utilisez moins de vitesses, un fil constant ou une autre façon de dire les programmes de soudage</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/process/model/bead_table.py"/>
         <source>the calibration table cannot be read ({0}); give none, csw or the path of one</source>
         <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
@@ -11445,6 +11435,16 @@
         <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the deposit</source>
         <translation>le dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
+        <source>the deposit begins with a linear move onto the bead, and the program begins at the bead itself; give a retract distance, or another {0}</source>
+        <translation>le dépôt commence par un mouvement linéaire vers le cordon, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
+        <source>the deposit begins with a linear move onto the bead, which would leave the way that was looked at by {0} mm; give a shorter retract distance, or another {1}</source>
+        <translation>le dépôt commence par un mouvement linéaire vers le cordon, qui s&apos;écarterait de {0} mm du chemin examiné ; donnez une distance de retrait plus courte, ou un autre {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>

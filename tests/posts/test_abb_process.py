@@ -13,6 +13,7 @@ from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters, ScheduleParameters, TriggerParameters
+from freecad_am.core.planning.program import arc_approach
 from freecad_am.core.program import DepositOff, DepositOn, Moves, Weave
 from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
@@ -54,6 +55,8 @@ def written(kind, most=2000, dry_run=False):
     if kind.startswith("wire"):
         motion = dataclasses.replace(motion, wire=np.where(motion.deposit, RATIO * motion.speed, np.nan))
         told["nc"] = NcParameters(wire_output=9, wire_gain=2.5)
+    if "ahead" in kind:
+        motion = arc_approach.with_short_approaches(motion, cell)
     parameters = ProgramParameters(post="abb", motion=way, max_points=most, dry_run=dry_run, **told)
     program = build(motion, cell, process, parameters, "job")
     return cell, motion, program, abb.write(program)
@@ -149,6 +152,8 @@ def test_the_deposit_is_switched_on_the_moves_onto_the_beads_and_at_their_ends(k
     assert on == (np.flatnonzero(np.diff(moved.astype(int)) == 1)).tolist()
     assert off == (np.flatnonzero(np.diff(moved.astype(int)) == -1)).tolist()
     assert not any("SetDO" in line for line in lines_of(kind))
+    # an IRC5 has no TriggAbsJ, so far as is known: Cartesian programs do without
+    assert any("TriggAbsJ" in line for line in lines_of(kind)) is (kind == "joint")
 
 
 @pytest.mark.parametrize("kind", ["wire", "wire ahead"])
@@ -198,11 +203,13 @@ DAMAGE = [  # of which text, what is found in it, and what stands there then
     ("held", r"(?m)^    ArcLEnd[^\n]*\n", ""), ("held", rf"(ArcLStart \[\[){N}", r"\g<1>0.100"),
     ("ahead", r"0\.045\\Time", "0"), ("ahead", r"0\.045\\Time", "0.046\\\\Time"), ("ahead", r"(g_on,\S*do)1", r"\g<1>2"),
     ("ahead", r"(g_off,\S*do1,)0", r"\g<1>1"), ("ahead", r"(?m)^    TriggIO g_off[^\n]*\n", ""),
-    ("ahead", r"TriggAbsJ (\[[^\n]*T:=[\d.]+),g_on", r"MoveAbsJ \1"), ("ahead", r"g_off(?=,fine)", "g_on"),
+    ("ahead", r"TriggL (\[[^\n]*),v_am1,g_on", r"MoveL \1,v_am\\V:=100.000"), ("ahead", r"g_off(?=,fine)", "g_on"),
     ("ahead", r"g_on(?=,fine)", "g_off"), ("ahead", r"(speeddata v_am1:=\[)[\d.]+", r"\g<1>8.100"),
-    ("ahead", r"(?m)^    TriggL[^\n]*\n", ""), ("ahead", r"(?m)^(    Move[^\n]*\n)(    TriggAbsJ[^\n]*\n)", r"\2\1"),
-    ("ahead", r"(?m)^(    TriggAbsJ \[)", r"    SetDO do1,1;\r\n\1"), ("ahead", r"(g_off)(?=,fine)", r"\1\\T2:=g_on"),
+    ("ahead", r"(?m)^    TriggL[^\n]*\n", ""), ("ahead", r"(?m)^(    Move[^\n]*\n)(    TriggL[^\n]*g_on[^\n]*\n)", r"\2\1"),
+    ("ahead", r"(?m)^(    TriggL [^\n]*g_on)", r"    SetDO do1,1;\r\n\1"), ("ahead", r"(g_off)(?=,fine)", r"\1\\T2:=g_on"),
     ("ahead", r"(?m)^  LOCAL VAR triggdata g_on[^\n]*\n", ""), ("ahead", rf"(TriggL \[\[){N}", r"\g<1>40.000"),
+    ("joint", r"TriggAbsJ (\[[^\n]*T:=[\d.]+),g_on", r"MoveAbsJ \1"),
+    ("joint", r"(?m)^(    TriggAbsJ \[)", r"    SetDO do1,1;\r\n\1"),
     ("joint", r"(TriggIO g_off,)0(?=\\)", r"\g<1>0.002\\Time"), ("joint", rf"(TriggAbsJ \[\[){N}", r"\g<1>1.0000"),
     ("joint", r"(TriggAbsJ [^\n]*T:=)([\d.]+)", r"\g<1>0.77777"),
     ("wire", r"(ao9,)(\d\.\d+)", r"\g<1>0.6400000"), ("wire", r"ao9,0;", "ao8,0;"), ("wire", r"ao9", "ao8"),
@@ -228,6 +235,14 @@ def test_a_text_with_anything_else_is_refused(kind, pattern, change):
             assert damaged != text and codes(kind, {**files, name: damaged.encode()}, most), found[0]
 
 
+def onto(rapid):
+    """A rapid with a linear move as its last one."""
+    columns = ("joints", "duration", "speed", "position", "rotation", "stops", "halt")
+    before, last = ({name: getattr(rapid, name)[rows] for name in columns} for rows in (slice(-1), slice(-1, None)))
+    return [dataclasses.replace(rapid, **before, role=rapid.role[:-1]),
+            dataclasses.replace(rapid, **last, role=rapid.role[-1:], interpolation="linear")]
+
+
 def told(of, name, **how):
     """The program with its beads told otherwise. arc, weave: numbers; ahead, wire: the lead, and wire a mm."""
     blocks = []
@@ -236,6 +251,8 @@ def told(of, name, **how):
             begins = isinstance(block, DepositOn)
             weave = [Weave(how["weave"] if begins else 0)] if "weave" in how else []
             lead = 0.0 if "ahead" in how else block.lead
+            if begins and "ahead" in how and of.motion == "cartesian":
+                blocks[-1:] = onto(blocks[-1])
             new = dataclasses.replace(block, schedule=how.get("arc"), ahead=how.get("ahead"), lead=lead)
             blocks += [new, *weave] if begins else [*weave, new]
         elif isinstance(block, Moves) and block.kind == "deposit" and "wire" in how:

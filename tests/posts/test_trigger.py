@@ -4,13 +4,16 @@ it; another time, place or output, or none, is refused; so is what a controller 
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.motion import UNKNOWN
 from freecad_am.core.parameters.bead_classes import CLASSES
+from freecad_am.core.parameters.process import CoolingParameters
 from freecad_am.core.parameters.program import ProgramParameters, ScheduleParameters, TriggerParameters
-from freecad_am.core.program import DepositOff, DepositOn, Moves
+from freecad_am.core.planning.program import arc_approach
+from freecad_am.core.program import DepositOff, DepositOn, Moves, WaitBelow
 from freecad_am.core.read_moves import Event
 from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
@@ -91,6 +94,38 @@ def test_a_lead_longer_than_the_move_it_stands_on_is_refused_with_its_bead():
             refuse_triggers(dataclasses.replace(program, dry_run=True), "")
         else:
             refuse_triggers(program, "")
+
+
+def test_a_controller_of_linear_triggers_goes_straight_onto_beads_and_waits_for_cooling_before():
+    cell, _, motion = planned("abb tool-on-robot")
+    bare = dataclasses.replace(PROCESS, lead_on=0.0, cooling=CoolingParameters(below=150.0))
+    ahead = ProgramParameters(post="abb", motion="cartesian", trigger=TriggerParameters(lead=0.02))
+    returns = {(1, 0), (1, 1)}
+    short = arc_approach.with_short_approaches(motion, cell)
+    blocks = build(short, cell, bare, ahead, "job", returns=returns).blocks
+    waits = [k for k, block in enumerate(blocks) if isinstance(block, WaitBelow)]
+    assert [(blocks[k].layer, blocks[k].bead) for k in waits] == sorted(returns)
+    for k, block in enumerate(blocks):
+        if isinstance(block, DepositOn):
+            onto = blocks[k - 1]
+            assert (onto.kind, onto.interpolation, len(onto), block.ahead) == ("rapid", "linear", 1, 0.02)
+    # the same moves, waits and places as without, but for the points put in on the way
+    plain = build(motion, cell, bare, dataclasses.replace(ahead, trigger=TriggerParameters()), "job", returns=returns)
+    assert all(run.interpolation == "joint" for run in plain.moves if run.kind == "rapid")
+    before = [plain.blocks[k - 1].joints[-1] for k, block in enumerate(plain.blocks) if isinstance(block, WaitBelow)]
+    np.testing.assert_array_equal([blocks[k - 1].joints[-1] for k in waits], before)
+    assert sum(map(len, plain.moves)) <= sum(len(block) for block in blocks if isinstance(block, Moves))
+
+
+def test_a_program_that_begins_at_a_bead_cannot_go_straight_onto_it():
+    cell, _, motion = planned("abb tool-on-robot")
+    first = int(np.argmax(motion.deposit))
+    bare = dataclasses.replace(motion, **{
+        field.name: getattr(motion, field.name)[first - 1:] for field in dataclasses.fields(motion)})
+    ahead = ProgramParameters(post="abb", motion="cartesian", trigger=TriggerParameters(lead=0.02))
+    with pytest.raises(InputError) as error:
+        build(bare, cell, PROCESS, ahead, "job")
+    assert error.value.code == "TRIGGER" and "program.trigger.lead" in error.value.message
 
 
 @pytest.mark.parametrize(("found", "due", "alike"), [

@@ -21,7 +21,7 @@ from . import text
 # names of a module's own data: speeds, weld data and triggers of the wire, by number; switching on and off
 SPEED, WELD, FEED, FEED_END, ON, OFF = "v_am", "d_am", "s_am", "s_off", "g_on", "g_off"
 TRIGGER_NAMES = (FEED_END, ON, OFF)
-MOST_NAMES = 500  # speeds, or data of one kind: each is a line that the controller keeps
+MOST_NAMES = 500  # of speeds, or data of one kind, in a module: each is a line that the controller keeps
 ARC, CARTESIAN = "arc", "cartesian"
 LAST_WEAVE, LAST_SEAM = 255, 9999
 _Key = TypeVar("_Key")
@@ -168,7 +168,13 @@ class Process:
         return self._aboard[self._at - 1].moves
 
     def data(self, used: Collection[str]) -> list[str]:
-        """Declarations of the data whose names are used."""
+        """Declarations of the data whose names are used. InputError MOVE_SPEED where a module would have too many."""
+        for all_names in (self._speeds, self._welds, self._feeds):
+            if len(set(all_names.values()) & set(used)) > MOST_NAMES:
+                raise InputError(
+                    "MOVE_SPEED", "program.max_points", "a module would have more than {} speeds, each of which is data of "
+                    "its own here; use fewer speeds, or a smaller program.max_points", MOST_NAMES,
+                )
         speeds = [f"LOCAL CONST speeddata {name}:={text.speed(speed)};"
                   for speed, name in self._speeds.items() if name in used]
         welds = [f"LOCAL PERS welddata {name}:=[{speed},{speed},{_NO_ARC},{_NO_ARC}];"
@@ -207,10 +213,5 @@ def _speed_in(word: str) -> str:
 
 
 def _numbered(names: dict[_Key, str], kind: str, key: _Key) -> str:
-    """The name of a thing, the next one of its kind for a new one. InputError MOVE_SPEED where there are too many."""
-    if key not in names and len(names) == MOST_NAMES:
-        raise InputError(
-            "MOVE_SPEED", "process.travel_speed", "the beads have more than {} speeds, each of which is data of its own "
-            "here; use fewer speeds, a constant wire or another way of telling schedules", MOST_NAMES,
-        )
+    """The name of a thing, the next one of its kind for a new one."""
     return names.setdefault(key, f"{kind}{len(names) + 1}")

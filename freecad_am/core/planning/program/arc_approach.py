@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Linear moves onto beads, for controllers whose arc instruction is such a move: it lights the arc at its end.
+"""Linear moves onto beads, for controllers whose arc instruction is such a move, which lights the arc at its end, or that
+switch the deposit ahead of a place on such moves.
 
 Rapids run straight in the joints, and clearance was looked at on that way. Only so much of the end of it is told as a linear
 move as stays next to it.
@@ -29,7 +30,9 @@ _BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 
 def asked(parameters: ProgramParameters, controller: Controller) -> bool:
     """Whether the last moves onto beads are linear ones."""
-    return parameters.schedule.by == ARC and controller.arc_moves and parameters.motion == "cartesian"
+    arc = parameters.schedule.by == ARC and controller.arc_moves
+    ahead = parameters.trigger.lead is not None and controller.linear_triggers
+    return parameters.motion == "cartesian" and (arc or ahead)
 
 
 def with_short_approaches(motion: Motion, cell: Cell) -> Motion:
@@ -72,21 +75,22 @@ def apart(motion: Motion, cell: Cell, ends: NDArray[np.intp]) -> tuple[Array, Ar
     return off, tilt
 
 
-def check(motion: Motion, cell: Cell, rows: NDArray[np.intp], arriving: bool) -> None:
-    """Raises InputError SCHEDULE where a linear move to the last of rapid `rows`, at a bead, would leave the way that was
-    looked at. arriving: where the first of them comes from is not known."""
+def check(motion: Motion, cell: Cell, rows: NDArray[np.intp], arriving: bool, arc: bool = True) -> None:
+    """Raises InputError SCHEDULE, of another program than one of an `arc` TRIGGER, where a linear move to the last of rapid
+    `rows`, at a bead, would leave the way that was looked at. arriving: where the first of them comes from is not known."""
     last = rows[-1:]
     place = Text("layer {} bead {}", int(motion.layer[last[0]]), int(motion.bead[last[0]]))
+    code, key = ("SCHEDULE", "program.schedule.by") if arc else ("TRIGGER", "program.trigger.lead")
     if arriving and len(rows) == 1:
         raise InputError(
-            "SCHEDULE", place, "the arc is lit at the end of a linear move, and the program begins at the bead itself; give "
-            "a retract distance, or another program.schedule.by",
+            code, place, "the deposit begins with a linear move onto the bead, and the program begins at the bead itself; "
+            "give a retract distance, or another {}", key,
         )
     off, tilt = apart(motion, cell, last)
     if not (off[0] <= MOST_MM and tilt[0] <= MOST_RAD):
         raise InputError(
-            "SCHEDULE", place, "the arc is lit at the end of a linear move, which would leave the way that was looked at by "
-            "{:.2g} mm; give a shorter retract distance, or another program.schedule.by", off[0],
+            code, place, "the deposit begins with a linear move onto the bead, which would leave the way that was looked at "
+            "by {:.2g} mm; give a shorter retract distance, or another {}", off[0], key,
         )
 
 

@@ -44,7 +44,7 @@ from ...program import (
 from ...toolpath import Toolpath
 from ..joint_path import BeadPath
 from . import arc_approach
-from .beads import deposited, parted
+from .beads import ARC, deposited, parted
 from .remarks import frames_of, remarks_of, six_of
 
 # what the rows of a motion are for, by its numbers
@@ -196,18 +196,22 @@ class _Blocks:
         """Rapids that lead to a bead; where it returns to a place the torch waits above it."""
         cooling = self.process.cooling
         place = int(self.motion.layer[rows[-1]]), int(self.motion.bead[rows[-1]])
-        if arc_approach.asked(self.parameters, self.controller):
-            arc_approach.check(self.motion, self.cell, rows, arriving)
-            before = [self._moves(rows[:-1], RAPID, arriving)] if len(rows) > 1 else []
-            return [*before, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
         if cooling.below is None or place not in returns:
-            return [self._moves(rows, RAPID, arriving)]
+            return self._onto(rows, arriving)
         onto = self.motion.role[rows] == motions.APPROACH
         if not onto.any():
             onto[-1] = True
         above = [self._moves(rows[~onto], RAPID, arriving)] if not onto.all() else []
-        down = self._moves(rows[onto], RAPID, arriving and not above)
-        return [*above, WaitBelow(cooling.input, cooling.zero + cooling.gain * cooling.below, *place), down]
+        down = self._onto(rows[onto], arriving and not above)
+        return [*above, WaitBelow(cooling.input, cooling.zero + cooling.gain * cooling.below, *place), *down]
+
+    def _onto(self, rows: NDArray[np.int64], arriving: bool) -> list[Block]:
+        """Rapids onto a bead, the last one as a linear move where the controller needs one."""
+        if not arc_approach.asked(self.parameters, self.controller):
+            return [self._moves(rows, RAPID, arriving)]
+        arc_approach.check(self.motion, self.cell, rows, arriving, self.parameters.schedule.by == ARC)
+        before = [self._moves(rows[:-1], RAPID, arriving)] if len(rows) > 1 else []
+        return [*before, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
 
     def _moves(self, rows: NDArray[np.int64], kind: str, arriving: bool = False) -> Moves:
         """A run of rows; arriving: the first one comes from where the machine happens to stand."""
