@@ -63,7 +63,10 @@ def test_beads_are_lit_and_ended_and_their_speeds_are_told_again(name):
     for on, off in zip(beads, ends):
         # the last move stops, its speed is told once more behind what may have set another one
         assert text[off - 1].startswith("LIN") and text[off - 1].endswith("}")
-        assert "$VEL.CP" in "".join(text[off - 3 : off - 1]) and "Before" in text[off - 3] + text[off - 4] + text[off - 5]
+        call = max(n for n in range(off) if "(#ArcOffBeforeMoveStd,WDATOFF7," in text[n])
+        settings = text[call + 1 : off - 1]
+        assert call > on and all(line.startswith("$VEL") for line in settings)
+        assert any(line.startswith("$VEL.CP=") for line in settings)
         first = next(n for n in range(on + 1, off) if text[n].startswith("LIN"))
         assert any(line.startswith("$VEL.CP=") for line in text[on:first])
         assert text[on - 1].startswith("LIN") and "C_DIS" not in text[on - 1]
