@@ -4,10 +4,9 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.inverse import offset_wrist_polynomial as polynomial
-from freecad_am.core.kinematics.inverse import offset_wrist_search as search
 from freecad_am.core.kinematics.inverse import recognition
-from freecad_am.core.kinematics.inverse import trigonometric_zeros as trigonometric
+from freecad_am.core.kinematics.inverse.offset_wrist import polynomial, search
+from freecad_am.core.kinematics.inverse.offset_wrist import trigonometric_zeros as trigonometric
 from tests.core.kinematics.arms import (
     CROOKED_CRX,
     CRX_10IA,

@@ -13,7 +13,7 @@ from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
 from . import opw_recognition
-from .offset_wrist import OffsetWristArm
+from .offset_wrist.arm import OffsetWristArm
 from .opw_recognition import NEAR_MM, POSITION, ROTATION, STRAIGHT, clean
 from .parallel_axes import ParallelAxesArm
 from .serial_arm import SerialArm

@@ -3,8 +3,8 @@
 
 Axes 4 and 5 meet in a point that axis 6 turns about itself. For each angle of axis 6 the triangle of shoulder, elbow and
 that point gives axis 4, for either side of axis 1 and either elbow; what is left is the angle between axes 4 and 5, one
-function of axis 6 whose zeros are all solutions, at most 16 of them. `offset_wrist_polynomial` finds them;
-`offset_wrist_search` those that are too near to each other for it, `offset_wrist_on_axis` those next to axis 1.
+function of axis 6 whose zeros are all solutions, at most 16 of them. `polynomial` finds them;
+`search` those that are too near to each other for it, `on_axis` those next to axis 1.
 """
 
 from __future__ import annotations
@@ -15,15 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...geometry import frames
-from ...geometry.angles import TURN
-from ...types import Array, Mask
-from ..chain import Chain
-from . import offset_wrist_on_axis as on_axis
-from . import offset_wrist_polynomial as polynomial
-from . import offset_wrist_search as search
-from .offset_wrist_plane import Curves, geometry
-from .offset_wrist_search import Zeros
+from ....geometry import frames
+from ....geometry.angles import TURN
+from ....types import Array, Mask
+from ...chain import Chain
+from . import on_axis, polynomial, search
+from .plane import Curves, geometry
+from .search import Zeros
 
 CHUNK = 2048
 MAX_SOLUTIONS = 16  # solutions of six revolute joints

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...geometry.angles import TURN
-from ...types import Array, Index, Mask
-from .offset_wrist_plane import TINY, Curves
+from ....geometry.angles import TURN
+from ....types import Array, Index, Mask
+from .plane import TINY, Curves
 
 NEWTON = 3
 LONGEST_STEP_RAD = 1e-3

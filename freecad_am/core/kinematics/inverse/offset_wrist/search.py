@@ -13,11 +13,11 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...types import Array, Index
-from . import offset_shoulder_loops
-from .offset_wrist_plane import TINY, Curves, Spot, geometry, plane_of, spot_of
+from ....types import Array, Index
+from . import shoulder_loops
+from .loops import Loops, angle_along, loops_of
+from .plane import TINY, Curves, Spot, geometry, plane_of, spot_of
 
 SAMPLES = 36
 SAMPLE_SHIFT = 0.37  # of a step: no sample where the arm is stretched or folded, where a zero of it would have either sign
@@ -26,7 +26,6 @@ FLAT = (0.02, 4e-4)  # of the cosine between axes 4 and 5: steps whose ends are 
 SWING = 0.96  # cosine of the most that arm or axis 4 may turn in a step
 ROUNDS, PEAKS = 60, 12  # of the search for a zero, and for an extreme
 TOUCHES = 1e-11  # of the cosine between axes 4 and 5: an extreme so near is a zero
-EDGE = 1e-12  # of the cosine of axis 6: by how much rounding may take a stretched arm out of reach
 SAME_RAD = 1e-7  # nearer zeros are one: where two meet, rounding parts them by its root
 
 
@@ -42,40 +41,20 @@ class Zeros(NamedTuple):
     slope: Array
 
 
-class Loops(NamedTuple):
-    """Loops (k,): pose and side; `elbow` 1 or -1 of whole turns, 0 of others. The angle of axis 6 is middle - half cos t, or
-    middle + t of whole turns. `near`, `far`: the angles, from where the point is farthest out, at which the arm is stretched
-    and folded; whether it ever is. `mean`, `swing`: mean and half the difference of squared distances from the shoulder.
-
-    Of an arm whose axis 2 is ahead of axis 1 `near` and `far` are the angles at both ends, `stretched` and `folded` whether
-    the first is where it is stretched and the last where it is folded, `mean` and `swing` 0."""
-
-    pose: Index
-    side: Array
-    elbow: Array
-    middle: Array
-    half: Array
-    near: Array
-    far: Array
-    stretched: NDArray[np.bool_]
-    folded: NDArray[np.bool_]
-    mean: Array
-    swing: Array
-
-    def of(self, some: Index) -> Loops:
-        """Some of them."""
-        columns: tuple[Any, ...] = self
-        return Loops(*(column[some] for column in columns))
-
-
 def zeros(curves: Curves) -> Zeros:
     """All zeros, in no order."""
-    loops = _loops(curves)
+    loops = loops_of(curves)
     t = (np.arange(-1, SAMPLES + 2) + SAMPLE_SHIFT) * (2.0 * math.pi / SAMPLES)
-    loop, low, high = _steps(curves, loops, np.arange(len(loops.pose)), np.broadcast_to(t, (len(loops.pose), len(t))), 0)
+    return along(curves, loops, np.broadcast_to(t, (len(loops.pose), len(t))), 0, alike=True)
+
+
+def along(curves: Curves, loops: Loops, t: Array, level: int, alike: bool = False) -> Zeros:
+    """The zeros between samples t (k, s) along loops, of which the first and the last are there for extremes beside them;
+    `level`: how often steps between samples were divided; `alike`: all rows of t are."""
+    loop, low, high = _steps(curves, loops, np.arange(len(loops.pose)), t, level, alike)
     at = loops.of(loop)
     root = _refined(curves, at, low, high)
-    angle, bent = _angle(curves, at, root)
+    angle, bent = angle_along(curves, at, root)
     elbow = np.where(at.elbow != 0.0, at.elbow, np.where(np.sin(root) >= 0.0, 1.0, -1.0))
     found = Zeros(at.pose, angle, at.side, elbow, bent, _slope(curves, at, angle, elbow))
     columns: tuple[Any, ...] = found
@@ -101,7 +80,7 @@ def values(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array)
 def _bent(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) -> Array:
     """Sine and cosine (2, k) of the elbow's bend."""
     if curves.ahead:
-        squared = offset_shoulder_loops.squared_distance(curves, pose, angle, side)
+        squared = shoulder_loops.squared_distance(curves, pose, angle, side)
     else:
         cos, sin = np.cos(angle), np.sin(angle)
         point = [part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.point.transpose(1, 0, 2)]
@@ -111,100 +90,8 @@ def _bent(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) 
     return np.stack([elbow * np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0)), cosine])
 
 
-def _bent_from_end(curves: Curves, at: Loops, angle: Array, elbow: Array, end: tuple[Array, Array, Array]) -> Array:
-    """Sine and cosine (2, k) of the elbow's bend, exact near the end of a span: its angle, half the way since, and whether
-    the arm is stretched there."""
-    ends, since, stretched = end
-    longest, shortest = (curves.upper + curves.fore) ** 2, (curves.upper - curves.fore) ** 2
-    squared = offset_shoulder_loops.squared_distance(curves, at.pose, angle, at.side)
-    nearer = np.abs(offset_shoulder_loops.difference(curves, at.pose, ends, since, at.side))
-    free = at.elbow != 0.0
-    to_stretched = np.where(free | ~stretched, longest - squared, nearer)
-    to_folded = np.where(free | stretched, squared - shortest, nearer)
-    scale = 1.0 / (2.0 * curves.upper * curves.fore)
-    sine = scale * np.sqrt(np.maximum(to_stretched, 0.0) * np.maximum(to_folded, 0.0))
-    return np.stack([elbow * sine, np.where(stretched | free, 1.0 - to_stretched * scale, to_folded * scale - 1.0)])
-
-
-def _loops(curves: Curves) -> Loops:
-    """The loops of all poses, on both sides."""
-    if curves.ahead:
-        return _offset_loops(curves)
-    constant, cos, sin = curves.point
-    radius = 0.5 * ((cos * cos).sum(axis=0) + (sin * sin).sum(axis=0))
-    mean = (constant * constant).sum(axis=0) + radius
-    by_cos, by_sin = 2.0 * (constant * cos).sum(axis=0), 2.0 * (constant * sin).sum(axis=0)
-    swing, out = np.hypot(by_cos, by_sin) + TINY, np.arctan2(by_sin, by_cos)
-    near = ((curves.upper + curves.fore) ** 2 - mean) / swing
-    far = ((curves.upper - curves.fore) ** 2 - mean) / swing
-    stretched, folded = near < 1.0, far > -1.0
-    reached = (near > -1.0 - EDGE) & (far < 1.0 + EDGE)
-    near_at, far_at = np.arccos(np.clip(near, -1.0, 1.0)), np.arccos(np.clip(far, -1.0, 1.0))
-    whole, both = reached & ~stretched & ~folded, reached & stretched & folded
-    none, middle_of, half_of = np.zeros(len(mean)), 0.5 * (near_at + far_at), 0.5 * (far_at - near_at)
-    kinds = [
-        (whole, 1.0, out, none), (whole, -1.0, out, none),
-        (reached & stretched & ~folded, 0.0, out + math.pi, math.pi - near_at),
-        (reached & folded & ~stretched, 0.0, out, far_at),
-        (both, 0.0, out + middle_of, half_of), (both, 0.0, out - middle_of, -half_of),
-    ]
-    loops = []
-    for some, elbow, at, half in kinds:
-        pose = np.flatnonzero(some)
-        one = np.ones(len(pose))
-        of_pose = (column[pose] for column in (at, half, near_at, far_at, stretched, folded, mean, swing))
-        loops += [Loops(pose, side * one, elbow * one, *columns) for columns in [tuple(of_pose)] for side in (1.0, -1.0)]
-    return Loops(*(np.concatenate(columns) for columns in zip(*loops)))
-
-
-def _offset_loops(curves: Curves) -> Loops:
-    """The loops of all poses, on both sides, of an arm whose axis 2 lies ahead of axis 1."""
-    found = []
-    for side in (1.0, -1.0):
-        pose, begin, end, stretched, folded, whole = offset_shoulder_loops.spans(curves, side)
-        one, zero = np.ones(len(pose)), np.zeros(len(whole))
-        no = zero > 0.0
-        none = 0.0 * one
-        found.append(Loops(pose, side * one, none, 0.5 * (begin + end), 0.5 * (end - begin), begin, end, stretched, folded,
-                           none, none))
-        found += [Loops(whole, zero + side, zero + elbow, *(zero,) * 4, no, no, zero, zero) for elbow in (1.0, -1.0)]
-    return Loops(*(np.concatenate(columns) for columns in zip(*found)))
-
-
-def _angle(curves: Curves, at: Loops, t: Array) -> tuple[Array, Array]:
-    """The angle of axis 6 (k,) at t along loops, and sine and cosine (2, k) of the elbow's bend, exact to its last digits
-    where the arm is stretched or folded."""
-    whole = at.elbow != 0.0
-    begun, left = np.sin(0.5 * t), np.cos(0.5 * t)
-    course = begun * begun
-    half = np.abs(at.half)
-    since = 2.0 * half * course
-    angle = np.where(whole, at.middle + t, at.middle - at.half * (1.0 - 2.0 * course))
-    if curves.ahead:
-        elbow = np.where(whole, at.elbow, np.where(begun * left >= 0.0, 1.0, -1.0))
-        # half the way from the nearer end, and whether the arm is stretched there
-        first = course <= 0.5
-        since = np.where(first, at.half * course, -at.half * left * left)
-        ends = np.where(first, at.near, at.far)
-        stretched = np.where(first, at.stretched, ~at.folded)
-        return angle, _bent_from_end(curves, at, angle, elbow, (ends, since, stretched))
-    from_out = np.where(whole, t, np.where(at.stretched, at.near + since, since - half))
-    scale = 1.0 / (2.0 * curves.upper * curves.fore)
-    squared = at.mean + at.swing * np.cos(from_out)
-    begin, end = np.sin(half * course), np.sin(half * left * left)
-    # squared distances to where the arm is stretched, and to where it is folded: differences of cosines as products
-    other = np.where(at.folded, np.sin(0.5 * (from_out + at.near)), end)
-    to_stretched = np.where(at.stretched, 2.0 * at.swing * other * begin, (curves.upper + curves.fore) ** 2 - squared)
-    other = np.where(at.stretched, np.sin(0.5 * (from_out + at.far)), begin)
-    to_folded = np.where(at.folded, 2.0 * at.swing * other * end, squared - (curves.upper - curves.fore) ** 2)
-    cosine = 1.0 - to_stretched * scale
-    sine = scale * np.sqrt(np.maximum(to_stretched, 0.0) * np.maximum(to_folded, 0.0))
-    sign = np.where(whole, at.elbow, np.where(begun * left >= 0.0, 1.0, -1.0))
-    return angle, np.stack([sign * sine, cosine])
-
-
 def _at(curves: Curves, at: Loops, t: Array) -> Spot:
-    angle, bent = _angle(curves, at, t)
+    angle, bent = angle_along(curves, at, t)
     return geometry(curves, at.pose, angle, at.side, bent)
 
 
@@ -223,10 +110,12 @@ def _sampled(curves: Curves, loops: Loops, which: Index, t: Array, alike: bool) 
     return spot_of(curves, plane, (bent, bend))
 
 
-def _steps(curves: Curves, loops: Loops, which: Index, t: Array, level: int) -> tuple[Index, Array, Array]:
+def _steps(
+    curves: Curves, loops: Loops, which: Index, t: Array, level: int, alike: bool = False
+) -> tuple[Index, Array, Array]:
     """Loops (k,) and ends (k,), (k,) of steps with a zero in them, from samples t (m, s) along loops `which` (m,), of which
-    the first and the last are there for extremes beside them alone. At level 0 all rows of t are alike."""
-    spot = _sampled(curves, loops, which, t, level == 0)
+    the first and the last are there for extremes beside them alone."""
+    spot = _sampled(curves, loops, which, t, alike)
     value = spot.value
     above = value >= 0.0
     change = above[:, 1:] != above[:, :-1]

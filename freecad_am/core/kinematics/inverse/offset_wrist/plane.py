@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...types import Array, Index
+from ....types import Array, Index
 
 TINY = 1e-150
 

@@ -19,7 +19,7 @@ solution, and its T = (q D R - C X) / Y follows without a root, as exact near th
 D and C are of degree 1 in R and in cosine and sine, R^2 and H are of degree 2; so g = A + R B, where A is a trigonometric
 polynomial of degree 4 and B one of degree 3. A^2 - R^2 B^2, of degree 8, has the zeros in front and at the back, the 16
 solutions of six joints. Where a, s and q are 0, as of CRX and HC10, B is 0, and each zero of A is a solution in front and
-one at the back. `trigonometric_zeros` parts them. Where two are too near to each other for that, `offset_wrist_search` looks
+one at the back. `trigonometric_zeros` parts them. Where two are too near to each other for that, `search` looks
 for those of the pose too.
 """
 
@@ -29,12 +29,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...geometry.angles import TURN
-from ...types import Array, Index, Mask
-from . import offset_wrist_search as search
+from ....geometry.angles import TURN
+from ....types import Array, Index, Mask
+from . import flat as without_digits
+from . import search
 from . import trigonometric_zeros as trigonometric
-from .offset_wrist_plane import TINY, Curves
-from .offset_wrist_search import Zeros
+from .plane import TINY, Curves
+from .search import Zeros
 
 NEWTON, NEWTON_RAD = 12, 5e-10  # turns of the flange that follow are off by as much
 SAME_RAD = 1e-6  # nearer zeros that the search finds are those found here
@@ -73,12 +74,12 @@ def is_even(curves: Curves) -> bool:
 
 
 def zeros(curves: Curves) -> Zeros:
-    """All zeros, in no order, as of `offset_wrist_search.zeros`."""
+    """All zeros, in no order, as of `search.zeros`."""
     length = 1.0 / (curves.upper + curves.fore)
     arm = _Lengths(curves.upper * length, curves.fore * length, curves.ahead * length, *curves.lean, curves.square)
     parts = np.stack([curves.point * length, curves.five])
     even = is_even(curves)
-    number, low, high, near, close, touching = trigonometric.parted(_coefficients(arm, parts, even))
+    number, low, high, near, close, touching, drowned = trigonometric.parted(_coefficients(arm, parts, even))
     of_zero = np.take(parts, number, axis=3)
     side = np.ones(len(number)) if even else _side(arm, of_zero, low, high)
     angle, sure, away = _roots(arm, of_zero, side, low, high, near)
@@ -98,7 +99,8 @@ def zeros(curves: Curves) -> Zeros:
     others = search.zeros(Curves(curves.point[:, :, left], curves.five[:, :, left], curves.upper, curves.fore, curves.lean,
                                  curves.square, curves.ahead))
     found = _together(found, others._replace(pose=left[others.pose]), close)
-    return _with(found, _touching(arm, curves, parts, *touching))
+    found = _with(found, _touching(arm, curves, parts, *touching))
+    return _with(found, without_digits.zeros(curves, *drowned)) if len(drowned[0]) else found
 
 
 def _touching(arm: _Lengths, curves: Curves, parts: Array, number: Index, angle: Array) -> Zeros:

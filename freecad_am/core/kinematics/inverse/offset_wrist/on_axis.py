@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ...geometry.angles import TURN
-from ...types import Array, Index, Mask
-from .offset_wrist_plane import TINY, Curves, geometry
-from .offset_wrist_search import Zeros
+from ....geometry.angles import TURN
+from ....types import Array, Index, Mask
+from .plane import TINY, Curves, geometry
+from .search import Zeros
 
 # of the length of the stretched arm: how near to axis 1 the point passes where this is done, how far from it solutions are
 # taken, and within what no others are, for their planes have too few digits

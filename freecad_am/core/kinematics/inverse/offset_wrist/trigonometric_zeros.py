@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.angles import TURN
-from ...types import Array, Index, Mask
+from ....geometry.angles import TURN
+from ....types import Array, Index, Mask
 
 STEPS = {4: 32, 8: 48}  # of a turn, by degree
 PIECES, LEVELS = 4, {4: 10, 8: 7}  # into which undecided steps are cut, and how often: of the higher degree while it tells
@@ -33,7 +33,8 @@ DROWNED = 8.0  # times that a step's values and slopes are, at most, that roundi
 class Parted(NamedTuple):
     """Steps (k,) with one zero: the polynomial's number, its ends and about where between them the zero is; and which
     polynomials (n,) have zeros too near to each other to tell. touching: number and angle (m,) of such zeros, from how the
-    polynomial bends where it touches zero to the last digits."""
+    polynomial bends where it touches zero to the last digits. drowned: number and ends (s,) of steps throughout which it is
+    of the size of rounding."""
 
     number: Index
     low: Array
@@ -41,6 +42,7 @@ class Parted(NamedTuple):
     near: Array
     close: Mask
     touching: tuple[Index, Array]
+    drowned: tuple[Index, Array, Array]
 
 
 class _Steps(NamedTuple):
@@ -85,6 +87,7 @@ def parted(coefficients: Array) -> Parted:
     waves: Array | None = None
     width, found, close = TURN / STEPS[degree], [], np.zeros(coefficients.shape[1], dtype=bool)
     touches: list[tuple[Index, Array]] = []
+    drowned: list[tuple[Index, Array, Array]] = []
     steps = _first(coefficients, width, fourth, touching)
     for level in range(LEVELS[degree]):
         single, open_ = _single_or_open(steps, fourth, rounding, width)
@@ -92,6 +95,8 @@ def parted(coefficients: Array) -> Parted:
         lost = _drowned(open_, rounding)
         close[open_.number if level >= SURE - 1 else open_.number[lost]] = True
         is_last = level == LEVELS[degree] - 1
+        under = np.flatnonzero(lost)
+        drowned.append((open_.number[under], open_.begin[under], open_.begin[under] + width))
         ended = np.flatnonzero(lost | is_last)
         touches.append((open_.number[ended], open_.begin[ended] + 0.5 * width))
         open_ = _some(open_, np.flatnonzero(~lost))
@@ -103,14 +108,16 @@ def parted(coefficients: Array) -> Parted:
         steps = _without_empty(_cut(waves, open_, width), fourth, touching, width)
     number, low, high, near = (np.concatenate(columns) for columns in zip(*(_places(*one) for one in found)))
     numbers, middles = (np.concatenate(columns) for columns in zip(*touches))
-    return Parted(number, low, high, near, close, _touching(coefficients, numbers, middles, touching, rounding))
+    flat, begin, end = (np.concatenate(columns) for columns in zip(*drowned))
+    found_at = _touching(coefficients, numbers, middles, touching, rounding)
+    return Parted(number, low, high, near, close, found_at, (flat, begin, end))
 
 
 def _touching(
     coefficients: Array, number: Index, at: Array, most: Array, rounding: Array
 ) -> tuple[Index, Array]:
     """Number and angle (m,) of the zeros next to angles (k,) at which a polynomial has an extreme no farther from zero than
-    `most`: where a parabola there is zero, or the extreme where it is zero but for rounding."""
+    `most`, or just beyond zero: where a parabola there is zero, or the extreme where it is zero but for rounding."""
     of, degree = coefficients[:, number], len(coefficients) // 2
 
     def derivative(order: int) -> Array:
@@ -121,7 +128,9 @@ def _touching(
         bend = derivative(2)
         at = at - np.clip(derivative(1) / np.where(bend == 0.0, 1.0, bend), -WITHIN, WITHIN)
     value, bend, noise = derivative(0), derivative(2), UNTOLD * rounding[number]
-    kept = np.flatnonzero((np.abs(value) <= most[number]) & (bend != 0.0))
+    # through zero to where the steps are too wide to part both zeros
+    through = (value * bend < 0.0) & (np.abs(value) < 0.5 * WITHIN**2 * np.abs(bend))
+    kept = np.flatnonzero(((np.abs(value) <= most[number]) | through) & (bend != 0.0))
     number, at, value, bend, noise = number[kept], at[kept], value[kept], bend[kept], noise[kept]
     unsure = np.sqrt(2.0 * noise / np.abs(bend))
     # the same one found from several steps
