@@ -16,9 +16,9 @@ from freecad_am.core.planning.redundancy import map as spin_map
 from freecad_am.core.simulation.margins import speed_ratios
 from freecad_am.gui.path.colouring import NONE, TOO_NEAR
 from freecad_am.gui.redundancy_map import tool as docks
-from freecad_am.gui.redundancy_map.canvas import TURN
 from freecad_am.gui.redundancy_map.cells import FINE
 from freecad_am.gui.redundancy_map.dock import NAME
+from freecad_am.gui.redundancy_map.drawn.canvas import TURN
 from freecad_am.objects.staleness import UP_TO_DATE
 from tests.gui.positioner_jobs import on_positioner
 

@@ -7,16 +7,16 @@ from typing import Any
 
 from ..inspection.panel import InspectionPanel
 from .cell import CellPanel
-from .cladding import CladdingPanel
-from .curves import CurvesPanel
-from .feature import FeaturePanel
-from .hub import HubPanel
+from .features.cladding import CladdingPanel
+from .features.curves import CurvesPanel
+from .features.hub import HubPanel
+from .features.revolution import FeaturePanel
+from .features.solid import SolidPanel
+from .features.wall import WallPanel
 from .joint_path import JointPathPanel
 from .program import ProgramPanel
-from .solid import SolidPanel
 from .stage import show
 from .toolpath import ToolpathPanel
-from .wall import WallPanel
 
 PANELS: dict[type, Any] = {panel.stage: panel for panel in (
     CellPanel, FeaturePanel, WallPanel, HubPanel, SolidPanel, CladdingPanel, CurvesPanel, ToolpathPanel, JointPathPanel,

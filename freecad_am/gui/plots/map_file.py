@@ -22,7 +22,7 @@ TICKS = np.arange(-180, 181, 60)  # deg
 
 def save(board: Any, branch: int, canvas: Any, obj: Any) -> None:
     """Ask for a file, and write to it the map of a joint path as the canvas shows it, or its cells; board: its
-    `redundancy_map.board.Board`."""
+    `redundancy_map.drawn.board.Board`."""
     if canvas.painted is None:
         return
     picture, painted, curves = board.pictures[branch], canvas.painted, list(canvas.curves)

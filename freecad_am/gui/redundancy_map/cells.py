@@ -9,9 +9,9 @@ from typing import Any
 
 from ..background.later import Background
 from ..background.worker import Worker
-from .board import Board
-from .canvas import Canvas
-from .picture import painted
+from .drawn.board import Board
+from .drawn.canvas import Canvas
+from .drawn.picture import painted
 
 ROUGH, FINE = 6, 1  # one of so many rows is looked at
 

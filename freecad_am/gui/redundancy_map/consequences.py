@@ -11,8 +11,8 @@ from ...core.planning.redundancy.curve import Followed, Sums
 from ..background.later import Background
 from ..background.worker import Worker
 from ..texts.translation import tr
-from .curves import COLOURS, OWN, PLANNED
 from .draft import Draft
+from .drawn.curves import COLOURS, OWN, PLANNED
 from .form import Form
 from .readout import certified, joint_ranges
 

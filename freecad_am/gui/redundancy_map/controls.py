@@ -13,9 +13,9 @@ from ...core.kinematics.inverse import opw
 from ...core.parameters.joints import HIGHEST
 from ...core.planning.redundancy.map import ROTATION, RZ
 from ..texts.translation import tr
-from .board import Board
 from .draft import CONSTANT, POLYNOMIALS, Draft
-from .picture import KINDS
+from .drawn.board import Board
+from .drawn.picture import KINDS
 
 STEP = 1.0  # deg of an arrow of a coefficient
 MAX_VALUE = 1e6

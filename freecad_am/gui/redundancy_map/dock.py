@@ -21,18 +21,18 @@ from ..docks.lookout import Lookout
 from ..plots.map_file import save
 from ..preferences import watch
 from ..texts.translation import tr, translated, translated_error
-from .board import Board
-from .canvas import Canvas
 from .cells import Cells
 from .comparison import Comparison
 from .consequences import Consequences
 from .controls import AXES, CURVES, Controls
-from .curves import COLOURS, Dragged, drawn
 from .draft import Draft
+from .drawn.board import Board
+from .drawn.canvas import Canvas
+from .drawn.curves import COLOURS, Dragged, drawn
+from .drawn.picture import KINDS
 from .figures import Figures
 from .form import Form
 from .jump import jump
-from .picture import KINDS
 from .readout import readout
 from .source import Source, source_of, status_of
 

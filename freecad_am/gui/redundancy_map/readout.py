@@ -14,7 +14,7 @@ from ...core.kinematics.cell import Cell as Station
 from ...core.kinematics.machines.machine import Machine
 from ..texts.touching import link_touches
 from ..texts.translation import tr
-from .board import Cell
+from .drawn.board import Cell
 
 PAST = 1e-9  # rad, of rounding
 

@@ -37,7 +37,7 @@ def cell() -> None:
 
 def feature() -> None:
     """The panel of a new feature of revolution."""
-    from ..panels.feature import FeaturePanel
+    from ..panels.features.revolution import FeaturePanel
     from ..panels.stage import show
 
     show(FeaturePanel())
@@ -45,15 +45,15 @@ def feature() -> None:
 
 def wall() -> None:
     """The panel of a new wall."""
+    from ..panels.features.wall import WallPanel
     from ..panels.stage import show
-    from ..panels.wall import WallPanel
 
     show(WallPanel())
 
 
 def solid() -> None:
     """The panel of new solids."""
-    from ..panels.solid import SolidPanel
+    from ..panels.features.solid import SolidPanel
     from ..panels.stage import show
 
     show(SolidPanel())
@@ -61,7 +61,7 @@ def solid() -> None:
 
 def curves() -> None:
     """The panel of new curves."""
-    from ..panels.curves import CurvesPanel
+    from ..panels.features.curves import CurvesPanel
     from ..panels.stage import show
 
     show(CurvesPanel())
@@ -69,7 +69,7 @@ def curves() -> None:
 
 def cladding() -> None:
     """The panel of a new cladding."""
-    from ..panels.cladding import CladdingPanel
+    from ..panels.features.cladding import CladdingPanel
     from ..panels.stage import show
 
     show(CladdingPanel())
@@ -77,7 +77,7 @@ def cladding() -> None:
 
 def hub() -> None:
     """The panel of new solids on a hub."""
-    from ..panels.hub import HubPanel
+    from ..panels.features.hub import HubPanel
     from ..panels.stage import show
 
     show(HubPanel())

@@ -6,17 +6,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ...core.issues import AmError, Issue
-from ...core.parameters.strategy import RevolutionParameters
-from ...core.strategies.revolution.plan import Slices, sliced
-from ...objects.checks import deposit
-from ...objects.feature import RevolutionFeature
-from ...objects.stage_parts import Outcome
-from ..nodes.meridian import MeridianNodes
-from ..picking import inputs
-from ..texts.translation import sentence, tr, translated
-from ..views.preview import Draft
-from .preview import PreviewPanel
+from ....core.issues import AmError, Issue
+from ....core.parameters.strategy import RevolutionParameters
+from ....core.strategies.revolution.plan import Slices, sliced
+from ....objects.checks import deposit
+from ....objects.feature import RevolutionFeature
+from ....objects.stage_parts import Outcome
+from ...nodes.meridian import MeridianNodes
+from ...picking import inputs
+from ...texts.translation import sentence, tr, translated
+from ...views.preview import Draft
+from ..preview import PreviewPanel
 
 Drawing = tuple[RevolutionParameters, Slices, list[Issue]]
 

@@ -12,26 +12,26 @@ from PySide import QtCore, QtGui
 
 from freecad_am.core.types import Array
 
-from ...core.issues import AmError
-from ...core.layers.along import field as along
-from ...core.layers.along import guide_edges
-from ...core.layers.leaning import Leaning, leaning
-from ...core.layers.planes.stacking import STANDING, stacked
-from ...core.parameters.filled import SolidParameters
-from ...core.strategies import size
-from ...objects.planned.proposed_family import COARSE
-from ...objects.shapes.bodies import FIXTURES
-from ...objects.solid_feature import SolidFeature
-from ...objects.stage_parts import Link, Outcome
-from .. import recorded
-from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
-from ..nodes.lines import Faces
-from ..picking import picking
-from ..picking.pick_field import PickField
-from ..texts.translation import marked, sentence, tr
-from ..views.preview import Draft
-from ..widgets.wheel import scrolls
-from .pick import PickPanel
+from ....core.issues import AmError
+from ....core.layers.along import field as along
+from ....core.layers.along import guide_edges
+from ....core.layers.leaning import Leaning, leaning
+from ....core.layers.planes.stacking import STANDING, stacked
+from ....core.parameters.filled import SolidParameters
+from ....core.strategies import size
+from ....objects.planned.proposed_family import COARSE
+from ....objects.shapes.bodies import FIXTURES
+from ....objects.solid_feature import SolidFeature
+from ....objects.stage_parts import Link, Outcome
+from ... import recorded
+from ...nodes.hub import NOTHING, Drawing, HubNodes, drawing
+from ...nodes.lines import Faces
+from ...picking import picking
+from ...picking.pick_field import PickField
+from ...texts.translation import marked, sentence, tr
+from ...views.preview import Draft
+from ...widgets.wheel import scrolls
+from ..pick import PickPanel
 
 STEEPEST = 89  # deg of the slider
 MM2_PER_CM2 = 100.0

@@ -8,17 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from ...core.issues import Issue
-from ...objects.checks import deposit
-from ...objects.shapes.bodies import taken
-from ...objects.stage_parts import Outcome
-from ...objects.surface_feature import SurfaceFeature
-from ..nodes.wall import WallNodes, drawn, first_curves
-from ..picking import picking
-from ..picking.pick_field import PickField
-from ..texts.translation import marked, sentence, tr, translated
-from ..views.preview import Draft
-from .pick import PickPanel
+from ....core.issues import Issue
+from ....objects.checks import deposit
+from ....objects.shapes.bodies import taken
+from ....objects.stage_parts import Outcome
+from ....objects.surface_feature import SurfaceFeature
+from ...nodes.wall import WallNodes, drawn, first_curves
+from ...picking import picking
+from ...picking.pick_field import PickField
+from ...texts.translation import marked, sentence, tr, translated
+from ...views.preview import Draft
+from ..pick import PickPanel
 
 _NAMES = {"Source": marked("Wall")}
 _ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}

@@ -10,21 +10,21 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.issues import AmError, Issue
-from ...core.parameters.filled import DevelopableParameters
-from ...core.strategies import size
-from ...objects.checks import deposit
-from ...objects.developable_feature import DevelopableFeature
-from ...objects.planned.proposed_family import COARSE
-from ...objects.shapes.bodies import FIXTURES
-from ...objects.stage_parts import Link, Outcome
-from .. import recorded
-from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
-from ..picking import picking
-from ..picking.pick_field import PickField
-from ..texts.translation import marked, sentence, tr
-from ..views.preview import Draft
-from .pick import PickPanel
+from ....core.issues import AmError, Issue
+from ....core.parameters.filled import DevelopableParameters
+from ....core.strategies import size
+from ....objects.checks import deposit
+from ....objects.developable_feature import DevelopableFeature
+from ....objects.planned.proposed_family import COARSE
+from ....objects.shapes.bodies import FIXTURES
+from ....objects.stage_parts import Link, Outcome
+from ... import recorded
+from ...nodes.hub import NOTHING, Drawing, HubNodes, drawing
+from ...picking import picking
+from ...picking.pick_field import PickField
+from ...texts.translation import marked, sentence, tr
+from ...views.preview import Draft
+from ..pick import PickPanel
 
 SOLIDS = Link(
     "Solids", "", marked("The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."),

@@ -10,9 +10,9 @@ from PySide import QtCore, QtGui
 
 from freecad_am.core.geometry.angles import TURN
 
-from ..colours import ramp
-from ..path.colouring import round_numbers
-from ..texts.translation import tr
+from ...colours import ramp
+from ...path.colouring import round_numbers
+from ...texts.translation import tr
 from .curves import Curve
 from .picture import enlarged
 

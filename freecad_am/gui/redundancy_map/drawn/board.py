@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from freecad_am.core.geometry.angles import TURN
 from freecad_am.core.types import Array
 
-from ...core.planning.joint_path import BeadPath
-from ...core.planning.redundancy import across as rotation_across
-from ...core.planning.redundancy import map as redundancy_map
-from ...core.planning.redundancy.curve import Followed
-from ...core.planning.redundancy.map import RZ, Columns, Picture, RedundancyMap
-from ..texts.translation import tr
-from .draft import CONSTANT, Draft
-from .pair import Pair, pair_of
-from .source import Source
+from ....core.planning.joint_path import BeadPath
+from ....core.planning.redundancy import across as rotation_across
+from ....core.planning.redundancy import map as redundancy_map
+from ....core.planning.redundancy.curve import Followed
+from ....core.planning.redundancy.map import RZ, Columns, Picture, RedundancyMap
+from ...texts.translation import tr
+from ..draft import CONSTANT, Draft
+from ..pair import Pair, pair_of
+from ..source import Source
 
 MOST_LABELS = 14
 ACROSS = 121  # columns of the values of an external axis

@@ -6,18 +6,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ...core.parameters.filled import CladdingParameters
-from ...objects.cladding_feature import CladdingFeature
-from ...objects.shapes.bodies import FIXTURES
-from ...objects.stage_parts import Link, Outcome
-from .. import recorded
-from ..nodes.wall import WallNodes
-from ..picking import picking
-from ..picking.pick_field import PickField
-from ..texts.translation import marked, sentence, tr
-from ..views.cladding import borders_of
-from ..views.preview import Draft
-from .pick import PickPanel
+from ....core.parameters.filled import CladdingParameters
+from ....objects.cladding_feature import CladdingFeature
+from ....objects.shapes.bodies import FIXTURES
+from ....objects.stage_parts import Link, Outcome
+from ... import recorded
+from ...nodes.wall import WallNodes
+from ...picking import picking
+from ...picking.pick_field import PickField
+from ...texts.translation import marked, sentence, tr
+from ...views.cladding import borders_of
+from ...views.preview import Draft
+from ..pick import PickPanel
 
 FACES = Link(
     "Source", "", marked("The faces to cover; of an object that is not a solid all of them, where none is picked."),

@@ -12,7 +12,7 @@ from PySide import QtCore, QtGui
 from freecad_am.core.geometry.angles import TURN, shortest
 from freecad_am.core.types import Array
 
-from ..texts.translation import tr
+from ...texts.translation import tr
 from .curves import Curve, Dragged, Handle
 from .painting import BOTTOM, LEFT, RIGHT, TOP, Painting
 from .picture import Painted

@@ -11,9 +11,9 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.planning.redundancy.curve import Compared, Followed
+from ....core.planning.redundancy.curve import Compared, Followed
+from ..draft import CONSTANT, Draft
 from .board import Board
-from .draft import CONSTANT, Draft
 
 OWN, PLANNED = "own", "planned"
 COLOURS = {

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.planning.redundancy.map import Picture
-from ..colours import ramp
-from ..path.colouring import NONE, TOO_FAR, TOO_NEAR, Scale, automatic
-from ..texts.translation import marked
+from ....core.planning.redundancy.map import Picture
+from ...colours import ramp
+from ...path.colouring import NONE, TOO_FAR, TOO_NEAR, Scale, automatic
+from ...texts.translation import marked
 
 MARGIN, CONDITION = marked("joint margin"), marked("condition")
 KINDS = (MARGIN, CONDITION)

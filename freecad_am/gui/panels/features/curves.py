@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from ...objects.curves_feature import CurvesFeature
-from ...objects.shapes.bodies import FIXTURES
-from ...objects.stage_parts import Link, Outcome
-from .. import recorded
-from ..nodes.wall import WallNodes
-from ..picking import picking
-from ..picking.pick_field import PickField
-from ..texts.translation import marked, sentence, tr
-from ..views.preview import Draft
-from .pick import PickPanel
+from ....objects.curves_feature import CurvesFeature
+from ....objects.shapes.bodies import FIXTURES
+from ....objects.stage_parts import Link, Outcome
+from ... import recorded
+from ...nodes.wall import WallNodes
+from ...picking import picking
+from ...picking.pick_field import PickField
+from ...texts.translation import marked, sentence, tr
+from ...views.preview import Draft
+from ..pick import PickPanel
 
 CURVES = Link(
     "Source", "", marked("The edges, wire, sketch or table of points to lay as beads."), type_name="App::PropertyLinkSub"
