@@ -1407,17 +1407,17 @@
         <translation>0, ou 1 si l&apos;articulation glisse le long de z : une machine à axes rotatifs en a trois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>1 face</source>
         <translation>1 face</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>1 solid on {1} ({2})</source>
         <translation>1 solide sur {1} ({2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>1 solid, {:.4g} mm high</source>
         <translation>1 solide, {:.4g} mm de haut</translation>
     </message>
@@ -1497,7 +1497,7 @@
         <translation>Un autre dossier de fichiers machine, comme un dossier partagé ; les vôtres sont aussi dans {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>A further part that the nozzle is kept clear of.</source>
         <translation>Une pièce supplémentaire que la buse évite.</translation>
     </message>
@@ -1547,7 +1547,7 @@
         <translation>AO[] entre deux mouvements d&apos;un FANUC est réglé à la lecture de sa ligne, avant le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/feature.py"/>
+        <location filename="../../freecad_am/gui/panels/features/revolution.py"/>
         <source>About {} turns along {:.4g} mm of wall</source>
         <translation>Environ {} tours le long de {:.4g} mm de paroi</translation>
     </message>
@@ -2067,7 +2067,7 @@
         <translation>Défaut de circularité à {0} mm, moindres carrés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>Cladding</source>
         <translation>Rechargement</translation>
     </message>
@@ -2102,7 +2102,7 @@
         <translation>Efface le choix</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
         <source>Click edges of one object.</source>
         <translation>Cliquez sur des arêtes d&apos;un seul objet.</translation>
     </message>
@@ -2247,7 +2247,7 @@
         <translation>Courbe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
         <source>Curves</source>
         <translation>Courbes</translation>
     </message>
@@ -2622,12 +2622,12 @@
         <translation>Axes externes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>Faces</source>
         <translation>Faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
         <source>Faces of the same object that the curves lie on, whose normals are the directions; none: the table&apos;s own, or the direction below.</source>
         <translation>Faces du même objet sur lesquelles reposent les courbes, dont les normales sont les directions ; aucune : celles du tableau, ou la direction ci-dessous.</translation>
     </message>
@@ -2647,7 +2647,7 @@
         <translation>Faces qui sont recouvertes.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>Faces that lean out over nothing by more than this angle are red in the 3D view</source>
         <translation>Les faces qui surplombent le vide de plus que cet angle sont rouges dans la vue 3D</translation>
     </message>
@@ -2662,7 +2662,7 @@
         <translation>Vitesse d&apos;avance la plus rapide à laquelle le matériau est déposé ; les cordons plus rapides sont signalés.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/feature.py"/>
+        <location filename="../../freecad_am/gui/panels/features/revolution.py"/>
         <source>Feature</source>
         <translation>Élément</translation>
     </message>
@@ -2757,7 +2757,7 @@
         <translation>Première couche à déposer.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
         <source>First layer: {}</source>
         <translation>Première couche : {}</translation>
     </message>
@@ -2807,7 +2807,7 @@
         <translation>Ajustement des largeurs de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>Fixtures</source>
         <translation>Montages</translation>
     </message>
@@ -2897,7 +2897,7 @@
         <translation>Autres méthodes planifiées pour la comparaison du rapport.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>Further part</source>
         <translation>Pièce supplémentaire</translation>
     </message>
@@ -2967,7 +2967,7 @@
         <translation>Croît sur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>Guide</source>
         <translation>Guide</translation>
     </message>
@@ -3172,7 +3172,7 @@
         <translation>Largeur pour laquelle comptent au remplissage les cordons de solides sur moyeu : la distance des cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou si un recouvrement compte avec elle.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>Hub</source>
         <translation>Moyeu</translation>
     </message>
@@ -3467,7 +3467,7 @@
         <translation>Couches, trajectoires articulaires et programmes vérifiés pour les robots qui déposent de la matière</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/feature.py"/>
+        <location filename="../../freecad_am/gui/panels/features/revolution.py"/>
         <source>Layers: {}, along {:.4g} mm of wall</source>
         <translation>Couches : {}, le long de {:.4g} mm de paroi</translation>
     </message>
@@ -4132,7 +4132,7 @@
         <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s, deg/s² et deg/s³, de translation en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses, accélérations et jerks là où ils ne sont pas connus.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>Of walls alone: solids on a hub grow along the normals of its surface</source>
         <translation>Des parois seulement : les solides sur moyeu croissent le long des normales de sa surface</translation>
     </message>
@@ -4242,12 +4242,12 @@
         <translation>Sortie</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>Overhang &gt; {}°</source>
         <translation>Surplomb &gt; {}°</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>Overhang &gt; {}°: {:.4g} cm² ({:.0f} %)</source>
         <translation>Surplomb &gt; {}° : {:.4g} cm² ({:.0f} %)</translation>
     </message>
@@ -5132,7 +5132,7 @@
         <translation>Couches pleines</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>Solids</source>
         <translation>Solides</translation>
     </message>
@@ -5152,7 +5152,7 @@
         <translation>Solides sur un moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>Solids on hub</source>
         <translation>Solides sur moyeu</translation>
     </message>
@@ -5297,7 +5297,7 @@
         <translation>Standard : Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
         <source>Stands on</source>
         <translation>Repose sur</translation>
     </message>
@@ -5332,7 +5332,7 @@
         <translation>Départs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>Starts on</source>
         <translation>Commence sur</translation>
     </message>
@@ -5487,7 +5487,7 @@
         <translation>Le repère monde de la commande est la base du robot, et les vitesses articulaires sont les nominales</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid.</source>
         <translation>Le cylindre ou le cône du moyeu sur lequel croître, ou le moyeu entier : alors sa surface est trouvée sous chaque solide.</translation>
     </message>
@@ -5537,12 +5537,12 @@
         <translation>Le document ou l&apos;objet de ce panneau a disparu ; annulez et ouvrez le panneau de nouveau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the solid.</source>
         <translation>Les arêtes, le fil ou l&apos;esquisse auxquels les couches le long d&apos;un guide sont normales ; aucun : la ligne médiane du solide.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
         <source>The edges, wire, sketch or table of points to lay as beads.</source>
         <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons.</translation>
     </message>
@@ -5552,7 +5552,7 @@
         <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons ; des faces à côté des arêtes donnent les directions.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>The faces on which the first of geodesic and offset layers lies; none: where they stand.</source>
         <translation>Les faces sur lesquelles repose la première des couches géodésiques ou décalées ; aucune : là où elles sont posées.</translation>
     </message>
@@ -5562,7 +5562,7 @@
         <translation>Les faces à recouvrir.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>The faces to cover; of an object that is not a solid all of them, where none is picked.</source>
         <translation>Les faces à recouvrir ; d&apos;un objet qui n&apos;est pas un solide, toutes, si aucune n&apos;est choisie.</translation>
     </message>
@@ -5722,7 +5722,7 @@
         <translation>La machine qui dépose, ou une cellule enregistrée ; le programme est écrit pour sa commande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/canvas.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/drawn/canvas.py"/>
         <source>The map is being computed…</source>
         <translation>La carte est en cours de calcul…</translation>
     </message>
@@ -5772,12 +5772,12 @@
         <translation>La pièce est à l&apos;intérieur du dépôt prédit, avec sa surépaisseur d&apos;usinage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
         <source>The part that they are laid on; none is needed on a platform.</source>
         <translation>La pièce sur laquelle ils sont déposés ; inutile sur un plateau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>The part that they stand on; none is needed on a platform.</source>
         <translation>La pièce sur laquelle ils reposent ; aucune n&apos;est nécessaire sur un plateau.</translation>
     </message>
@@ -5857,7 +5857,7 @@
         <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes sont choisies.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>The solids or closed meshes to deposit, one after the other; a click on one again leaves it out.</source>
         <translation>Les solides ou maillages fermés à déposer, l&apos;un après l&apos;autre ; un nouveau clic sur l&apos;un le retire.</translation>
     </message>
@@ -5942,7 +5942,7 @@
         <translation>{} est pris en entier. Pour des faces seules, cliquez-en plusieurs avec Ctrl ; pour une seule, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
         <source>The whole of {} is taken; Pick takes faces alone, click by click.</source>
         <translation>{} est pris en entier ; Choisir prend des faces seules, clic par clic.</translation>
     </message>
@@ -6372,7 +6372,7 @@
         <translation>Attentes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
         <source>Wall</source>
         <translation>Paroi</translation>
     </message>
@@ -6387,7 +6387,7 @@
         <translation>Paroi sur une pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
         <source>Wall on part</source>
         <translation>Paroi sur pièce</translation>
     </message>
@@ -7912,7 +7912,7 @@
         <translation>fermé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
         <source>closed, {:.1f} mm</source>
         <translation>fermée, {:.1f} mm</translation>
     </message>
@@ -7967,7 +7967,7 @@
         <translation>condition {:.4f}, minimum {:.4f}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>cone, R {:.4g} mm, half angle {:.4g}°</source>
         <translation>cône, R {:.4g} mm, demi-angle {:.4g}°</translation>
     </message>
@@ -8057,7 +8057,7 @@
         <translation>découpe des couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>cylinder, R {:.4g} mm</source>
         <translation>cylindre, R {:.4g} mm</translation>
     </message>
@@ -8292,17 +8292,17 @@
         <translation>première couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>first layer: 1 contour</source>
         <translation>première couche : 1 contour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>first layer: {} contours</source>
         <translation>première couche : {} contours</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>first layer: {} contours, {:.1f} mm</source>
         <translation>première couche : {} contours, {:.1f} mm</translation>
     </message>
@@ -9722,7 +9722,7 @@
         <translation>couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
         <source>layers ({} of {} beads)</source>
         <translation>couches ({} de {} cordons)</translation>
     </message>
@@ -10067,7 +10067,7 @@
         <translation>des mouvements avec d&apos;autres axes externes sont mêlés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/picture.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/drawn/picture.py"/>
         <source>near a singularity</source>
         <translation>près d&apos;une singularité</translation>
     </message>
@@ -10557,7 +10557,7 @@
         <translation>ouvert</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
         <source>open, {:.1f} mm</source>
         <translation>ouverte, {:.1f} mm</translation>
     </message>
@@ -10712,7 +10712,7 @@
         <translation>on palpe les points d&apos;une pièce immobile sous un outil porté par le robot ; retirez-les, et mesurez cell.platform ou la pose de ce qui porte la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
         <source>points of layer {}</source>
         <translation>points de la couche {}</translation>
     </message>
@@ -14842,7 +14842,7 @@
         <translation>{0} solide(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>{0} solids on {1} ({2})</source>
         <translation>{0} solides sur {1} ({2})</translation>
     </message>
@@ -15282,12 +15282,12 @@
         <translation>long de {:.1f} mm en {:.1f} s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>{:.4g} cm² in 1 layer</source>
         <translation>{:.4g} cm² en 1 couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>{:.4g} cm² in each of {} layers</source>
         <translation>{:.4g} cm² par couche, en {} couches</translation>
     </message>
@@ -15382,7 +15382,7 @@
         <translation>{} ({})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
         <source>{} against {} at layer {} bead {} point {}</source>
         <translation>{} contre {} à la couche {} cordon {} point {}</translation>
     </message>
@@ -15392,7 +15392,7 @@
         <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/board.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
         <source>{} at layer {} bead {} point {}</source>
         <translation>{} à la couche {} cordon {} point {}</translation>
     </message>
@@ -15417,7 +15417,7 @@
         <translation>{} ne peut pas être exécuté : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>{} cannot be taken for this.</source>
         <translation>{} ne convient pas ici.</translation>
     </message>
@@ -15432,7 +15432,7 @@
         <translation>{} compte dans l&apos;autre sens (signe)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
         <source>{} curves, {:.4g} mm in all</source>
         <translation>{} courbes, {:.4g} mm en tout</translation>
     </message>
@@ -15442,12 +15442,12 @@
         <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>{} faces in 1 sheet</source>
         <translation>{} faces en 1 nappe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>{} faces in {} sheets</source>
         <translation>{} faces en {} nappes</translation>
     </message>
@@ -15487,12 +15487,12 @@
         <translation>{} est un maillage, qui n&apos;a pas de faces exactes ; sélectionnez une pièce, par exemple d&apos;un fichier STEP.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
         <source>{} is another object; faces of a hub are of one object. Clear it first to start again.</source>
         <translation>{} est un autre objet ; les faces d&apos;un moyeu sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
         <source>{} is another object; faces of a wall are of one object. Clear it first to start again.</source>
         <translation>{} est un autre objet ; les faces d&apos;une paroi sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
     </message>
@@ -15612,7 +15612,7 @@
         <translation>{} solides sont sélectionnés, qui sont remplis</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
         <source>{} solids, {:.4g} mm high</source>
         <translation>{} solides, {:.4g} mm de haut</translation>
     </message>
