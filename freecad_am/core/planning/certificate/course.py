@@ -31,28 +31,33 @@ def none_broken(phi: Array, joints: Array) -> Mask:
     return np.zeros(len(phi), dtype=bool)
 
 
-def found(joints_at: Joints, scale: Array, phi: Array, joined: bool, broken: Broken = none_broken) -> Array:
-    """Rotations (n,) with the least sum of `scale` (n - 1, axes) times squared steps that is found from phi (n,) on.
+def found(
+    joints_at: Joints, scale: Array, phi: Array, joined: bool, broken: Broken = none_broken
+) -> tuple[Array, float]:
+    """Rotations (n,) with the least sum of `scale` (n - 1, axes) times squared steps that is found from phi (n,) on, and
+    that sum.
 
     joints_at: the joints (n, axes) of rotations (n,). joined: the last rotation stays as far from the first as it is.
-    broken: points (n,) where rotations and their joints may not be; where those known may not they are returned.
+    broken: points (n,) where rotations and their joints may not be; where those known may not they are returned, and
+    the sum is infinite.
     """
     here = joints_at(phi)
     if broken(phi, here).any():
-        return phi
+        return phi, np.inf
     moved = _steps(here)
+    value = float((moved * moved * scale).sum())
     for _ in range(STEPS):
         slope = shortest(joints_at(phi + APART) - joints_at(phi - APART)) / (2.0 * APART)
         if not (np.isfinite(slope).all() and np.isfinite(moved).all()):
             break
-        value = float((moved * moved * scale).sum())
         lower = _stepped(joints_at, scale, phi, (moved, slope), joined, broken)
         if lower is None:
             break
         phi, moved = lower
-        if float((moved * moved * scale).sum()) > (1.0 - DONE) * value:
+        before, value = value, float((moved * moved * scale).sum())
+        if value > (1.0 - DONE) * before:
             break
-    return phi
+    return phi, value
 
 
 def _stepped(
@@ -85,11 +90,7 @@ def best(
     rotations and the sum, infinite where none may."""
     kept, least = phi, np.inf
     for turned in TURN / STARTS * np.arange(STARTS):
-        course = found(joints_at, scale, phi + turned, joined, broken)
-        joints = joints_at(course)
-        if broken(course, joints).any():
-            continue
-        value = float((_steps(joints) ** 2 * scale).sum())
+        course, value = found(joints_at, scale, phi + turned, joined, broken)
         if value < least * (1.0 - EQUAL):
             kept, least = course, value
     return kept, least
