@@ -131,7 +131,7 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     if parameters.trigger.lead is not None and not parameters.dry_run:
         _refuse_trigger(by, post.NO_TRIGGER)
     post.refuse_process(refusals.Asked(
-        parameters.motion, cell.setup, ROTARY in programs.external_kinds(cell), by,
+        parameters.motion, cell.arrangement.holds_part, ROTARY in programs.external_kinds(cell), by,
         process.wire.feed_mode != "constant" and not parameters.dry_run, process.weaves, parameters.dry_run,
     ))
     if by in post.NO_SCHEDULE and (process.scheduled or by == program_beads.ARC):

@@ -20,11 +20,11 @@ CALL = "process.between_layers.call"
 
 @dataclass(frozen=True)
 class Asked:
-    """What a program is to tell of the process, with what else counts for that: motion, set-up, whether external axes turn
-    the part, by which way schedules are told; whether the wire follows the travel speed and beads are woven."""
+    """What a program is to tell of the process, with what else counts for that: motion, whether the robot holds the part or
+    external axes turn it, by which way schedules are told; whether the wire follows the travel speed and beads are woven."""
 
     motion: str
-    setup: str
+    held: bool
     turned: bool
     by: str
     wire: bool

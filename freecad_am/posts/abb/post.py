@@ -155,7 +155,7 @@ def _refuse(program: Program) -> None:
 def _asked(program: Program) -> Asked:
     arc = any(isinstance(block, DepositOn) and block.schedule is not None for block in program.blocks)
     return Asked(
-        program.motion, program.setup, program.on_positioner, process.ARC if arc else "",
+        program.motion, program.holds_part, program.on_positioner, process.ARC if arc else "",
         any(run.wire is not None for run in program.moves), bool(program.woven), program.dry_run,
     )
 

@@ -38,7 +38,7 @@ def refuse(asked: Asked) -> None:
                             "controller instead")
     if asked.weave and not arc:
         raise weave_refused("a weave is an argument of ArcL, which program.schedule.by: arc writes")
-    if asked.weave and asked.setup == "part-on-robot":
+    if asked.weave and asked.held:
         raise weave_refused("that a robot swings the part under a torch that stands was not confirmed")
     if not asked.wire:
         return
@@ -46,7 +46,7 @@ def refuse(asked: Asked) -> None:
         raise wire_refused("the wire of ArcL is told by its welddata")
     if asked.motion != CARTESIAN:
         raise wire_refused("TriggSpeed follows the speed of linear moves, and these are joint moves")
-    if asked.setup == "part-on-robot" or asked.turned:
+    if asked.held or asked.turned:
         raise wire_refused("whether TriggSpeed follows the speed over a part that moves was not confirmed")
 
 
