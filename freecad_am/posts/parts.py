@@ -151,6 +151,16 @@ def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[
     )
 
 
+def switching(program: Program) -> Iterator[tuple[Moves, DepositOn | DepositOff]]:
+    """What switches the deposit, in order, with the moves before it."""
+    last: Moves | None = None
+    for block in program.blocks:
+        if isinstance(block, Moves):
+            last = block if len(block) else last
+        elif isinstance(block, (DepositOn, DepositOff)) and last is not None:
+            yield last, block
+
+
 def lines_of(pieces: Sequence[Piece], motion: Callable[[Run], list[str]]) -> list[str]:
     """The lines of a part; `motion` writes those of a run."""
     return [line for piece in pieces for line in (motion(piece) if isinstance(piece, Run) else piece)]

@@ -6792,7 +6792,7 @@
         <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>a corner has no end from which the time of a trigger counts</source>
         <translation>un coin n&apos;a pas de fin d&apos;où compterait le temps d&apos;un déclencheur</translation>
     </message>
@@ -8487,11 +8487,6 @@
         <translation>nid d&apos;abeilles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>how a TP program switches an output ahead of a place (TB) was not tried</source>
-        <translation>la façon dont un programme TP commute une sortie avant un lieu (TB) n&apos;a pas été essayée</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>how a job waits for an analogue input differs with the controller&apos;s options, and the post yaskawa knows none</source>
         <translation>la façon dont un job attend une entrée analogique dépend des options de la commande, et le post-processeur yaskawa n&apos;en connaît aucune</translation>
@@ -9327,7 +9322,7 @@
         <translation>il déplace les groupes {0}, et a des positions d&apos;autres groupes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/found.py"/>
         <source>it moves other groups than those before</source>
         <translation>il déplace d&apos;autres groupes que les précédents</translation>
     </message>
@@ -9462,7 +9457,7 @@
         <translation>son groupe n&apos;est pas celui de ses positions</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/found.py"/>
         <source>its header names other motion groups than programs before</source>
         <translation>son en-tête nomme d&apos;autres groupes de mouvement que les programmes précédents</translation>
     </message>
@@ -10737,7 +10732,7 @@
         <translation>positionneur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <location filename="../../freecad_am/posts/fanuc/found.py"/>
         <source>positions have a track and no remark says which axis it is, or the other way round</source>
         <translation>les positions ont un rail et aucune remarque ne dit quel axe c&apos;est, ou l&apos;inverse</translation>
     </message>

@@ -48,9 +48,10 @@ HEADER = [
     r"/MN",
 ]
 SPEED = r"(?:[1-9]\d?%|(?:[1-9]\d{0,3}|[12]\d{4}|3[01]\d{3}|32000)msec|[1-9]\d{0,3}\.\dsec)"
+AHEAD = r"(?: TB(?=.{7}sec) *(?:0\.00|[1-9]?\.(?!00)\d\d)sec,DO\[[1-9]\d*\]=(?:ON|OFF))"  # where it stops alone
 INSTRUCTIONS = [
-    rf"J P\[\d+\] {SPEED} (?:FINE|CNT(?:\d\d?|100))    ;",
-    rf"L P\[\d+\] (?:{SPEED}|\d{{1,4}}\.\dmm/sec) (?:FINE|CNT(?:\d\d?|100))    ;",
+    rf"J P\[\d+\] {SPEED} (?:FINE{AHEAD}?|CNT(?:\d\d?|100))    ;",
+    rf"L P\[\d+\] (?:{SPEED}|\d{{1,4}}\.\dmm/sec) (?:FINE{AHEAD}?|CNT(?:\d\d?|100))    ;",
     r"  U(?:FRAME|TOOL)_NUM=\d+ ;",
     r"  DO\[\d+\]=(?:ON|OFF) ;",
     r"  WAIT(?=.{7}\() *\d*\.\d\d\(sec\) ;",

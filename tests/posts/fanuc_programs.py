@@ -80,3 +80,10 @@ GOLDEN_TABLE = program(
     DepositOff(),
     name="TABLE", motion="cartesian", setup="tool-on-robot", user_frame=2, tool_frame=3, deposit_output=7, blend=50,
 )  # fmt: skip
+
+
+def early(of, ahead=0.05, **more):
+    """The same with the deposit switched on the moves themselves."""
+    blocks = [dataclasses.replace(block, lead=0.0, ahead=ahead) if isinstance(block, (DepositOn, DepositOff)) else block
+              for block in of.blocks]
+    return dataclasses.replace(of, blocks=tuple(blocks), **{"name": "early", **more})

@@ -116,6 +116,7 @@ _FN = r"^ *\d+:"
 _MOVE = _FN + r"[JL] P\[\d+\][^\n]*\n"
 _DO, _WAIT, _IN, _CLEAN = (
     _FN + r"  " + word + r"[^\n]*\n" for word in (r"DO\[", r"WAIT +[.\d]+\(sec\)", r"WAIT DI\[", "CALL CLEAN"))
+_AHEAD = r" TB +\d?\.\d\dsec,DO\[\d+\]=O(?:N|FF)"
 _VALUE = r"(?:J[1-6]|[XYZWPR] )=( *-?\d*\.\d{3})"
 _GROUPED = r"(?:GP2:\r\n[^\n]*\n\tJ1=|(?<=deg,)\tJ2=)( *-?\d*\.\d{3})(?=[^\n]*\r\n\};)"
 _RECORD = r"(P\[\d+\]\{)([^}]*)(\};\s*P\[\d+\]\{)([^}]*)"
@@ -183,6 +184,12 @@ FANUC: dict[str, tuple[str, Change]] = {
     "a part dropped": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", DROP),
     "a part doubled": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", TWICE),
     "parts in another order": (r"^( *\d+:  CALL JOB\d+[^\n]*\n)( *\d+:  CALL JOB\d+[^\n]*\n)", SWAP),
+    "a trigger dropped": (_AHEAD, DROP),
+    "a trigger doubled": (_AHEAD, TWICE),
+    "a trigger at another time": (r" TB( +\d?\.\d\d)sec", moved(0.05)),
+    "a trigger behind the end": (r" (TB) ", other("TA", "DB")),
+    "a trigger on the next move": (rf"({_AHEAD})(    ;\r\n {{0,3}}\d+:[JL] [^\n;]*?)(?=    ;)", SWAP),
+    "a trigger of its own": (rf"({_AHEAD})    ;", r"    ;\r\n   0:  \1 ;"),
 }
 
 # machines with rotary axes: what both controllers have in common, and what each has of its own

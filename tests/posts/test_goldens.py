@@ -13,7 +13,16 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.posts import catalogue
-from tests.posts import test_abb, test_fanuc, test_kuka, test_nc_posts, test_staubli, test_ur, test_yaskawa
+from tests.posts import (
+    test_abb,
+    test_fanuc,
+    test_fanuc_trigger,
+    test_kuka,
+    test_nc_posts,
+    test_staubli,
+    test_ur,
+    test_yaskawa,
+)
 from tests.posts.fanuc_programs import GOLDEN_JOINT, beads
 from tests.posts.mutations import KINDS, mutated
 from tests.posts.test_matrix import OF_ROBOTS, ON_TABLES, REFUSED, SETUPS
@@ -60,8 +69,16 @@ GOLDENS = {
     **{(post, motion, TABLE): (test_nc_posts.GOLDENS[name], f"{post}/{name}", "*")
        for post in ON_TABLES for motion, name in (("joint", "joint"), ("cartesian", "tip"))},
 }  # fmt: skip
+EARLY = test_fanuc_trigger.GOLDENS
+# the same with an option
+OPTIONAL = {
+    **{("fanuc", motion, setup, "trigger"): (EARLY[names], "fanuc", names) for motion, setup, names in (
+        ("joint", TOOL, "EARLY.LS"), ("cartesian", TOOL, "EARLYTAB.LS"), ("joint", "positioner", "EARLYGRP*.LS"))},
+    ("kuka", "cartesian", TOOL, "trigger"): (KUKA["trigger"], "kuka/trigger", "*"),
+}
+ALL = GOLDENS | OPTIONAL
 EXTERNAL = {"positioner": {"rotary"}, "track": {"linear"}, BOTH: {"rotary", "linear"}}
-IDS = [" ".join(cell) for cell in GOLDENS]
+IDS = [" ".join(cell) for cell in ALL]
 OWN_FRAMES = {("ur", TOOL), ("staubli", PART), ("staubli", TOOL), ("abb", PART)}
 LEAST = 10  # kinds of damage that each text has a place for
 # of the only place in the text, where the next part says the same again
@@ -83,10 +100,10 @@ def test_all_that_is_written_has_golden_files_and_the_rest_is_refused():
     assert set(GOLDENS) | set(REFUSED) == cells and not set(GOLDENS) & set(REFUSED)
 
 
-@pytest.mark.parametrize("cell", GOLDENS, ids=IDS)
+@pytest.mark.parametrize("cell", ALL, ids=IDS)
 def test_golden_files_are_what_is_written_and_come_back_as_its_numbers(root, cell):
-    post, motion, setup = cell
-    of, folder, names = GOLDENS[cell]
+    post, motion, setup = cell[:3]
+    of, folder, names = ALL[cell]
     assert (of.motion, set(of.external_kinds)) == (motion, EXTERNAL.get(setup, set()))
     assert setup == TABLE or (of.setup == PART) == (setup == PART)
     files = golden_files(root, folder, names)
@@ -129,10 +146,10 @@ def told(read):
     return plain(read)
 
 
-@pytest.mark.parametrize("cell", GOLDENS, ids=IDS)
+@pytest.mark.parametrize("cell", ALL, ids=IDS)
 def test_damaged_golden_files_are_not_read_as_the_same(root, cell):
     post = catalogue.load(cell[0])
-    files = golden_files(root, *GOLDENS[cell][1:])
+    files = golden_files(root, *ALL[cell][1:])
     whole, passed, tried = told(post.read(files)), [], 0
     for kind, (pattern, change) in KINDS[cell[0]].items():
         damaged = mutated(files, pattern, change, np.random.default_rng(zlib.crc32(repr((cell, kind)).encode())))

@@ -22,13 +22,14 @@ _TITLE = 1000  # bytes that hold the first line
 UNITS = ("sec", "msec", "mm/sec", "%")
 _LINE = re.compile(r" *\d*:(.*?) *; *$")
 _MOTION = re.compile(
-    r" *\d*: *([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:(FINE)|CNT ?(\d+)) *; *$"
+    r" *\d*: *([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:(FINE)|CNT ?(\d+))"
+    r"(?: +(TB [^;]*?))? *; *$"
 )
 
 
 class _Instruction(NamedTuple):
     """An instruction and the number of its line; or moves that follow each other, by the first of them and the one after
-    the last."""
+    the last, and the option of the last one, if it has one."""
 
     number: int
     text: str
@@ -101,6 +102,7 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
         np.zeros(count, dtype=bool), np.full(count, np.nan),
     )
     moving, others = np.zeros(count, dtype=bool), []
+    options: dict[int, str] = {}  # of moves, by their rows
     for shape, some in alike.shapes(lines).items():
         move = _MOTION.match(shape)
         if move is None:
@@ -113,14 +115,18 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
         moves.unit[some], moves.straight[some] = UNITS.index(move[4]), move[1] == "L"
         if move[6]:
             moves.corner[some] = values[:, 2]
+        if move[7]:
+            options.update((row, lines[row][slice(*move.span(7))]) for row in some)
     before = np.cumsum(moving)  # how many moves there are up to a line
     instructions, done = [], 0
-    for row in [*sorted(row for row in others if lines[row].strip()), count]:
-        moved = int(before[row - 1]) if row else 0
+    for row in [*sorted([*options, *(row for row in others if lines[row].strip())]), count]:
+        option = options.get(row, "")
+        upto = row + bool(option)
+        moved = int(before[upto - 1]) if upto else 0
         if moved > done:
-            instructions.append(_Instruction(0, "", done, moved))
+            instructions.append(_Instruction(0, option, done, moved))
             done = moved
-        if row < count:
+        if row < count and not option:
             statement = _LINE.match(lines[row])
             if statement is None:
                 raise unreadable(f"{file} line {number + row}", Text("{!r} is not an instruction", lines[row].strip()))

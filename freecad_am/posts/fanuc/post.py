@@ -52,6 +52,7 @@ from ..refusals import (
 from . import listing as text
 from . import numbers
 from .read import read
+from .switching import at_ends
 
 __all__ = ["read", "write"]
 
@@ -62,7 +63,7 @@ CONTROLLER = Controller(external=True, positioner="2")
 PENDANT = Pendant("FANUC", ("W", "P", "R"), FIXED_XYZ)
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 NO_WEAVE = ""  # linear moves can be woven
-NO_TRIGGER = "how a TP program switches an output ahead of a place (TB) was not tried"
+NO_TRIGGER = ""  # the deposit can be switched on the move itself
 refuse_process = refuse_no_process
 LAST_WEAVE = 255  # of numbers of weave schedules
 NO_SCHEDULE: dict[str, str] = {}  # it can be told schedules in every way
@@ -201,21 +202,26 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
-    """The speed words of each block, asked for in the order of motion."""
-    first = True
+    """What the moves of each block say behind their positions, asked for in the order of motion."""
+    first, options = True, at_ends(program)
 
     def words(moves: Moves) -> Sequence[str]:
         nonlocal first
         speeds = numbers.speed_words(moves) if moves.interpolation == LINEAR_MOVE else numbers.time_words(moves)
         if first:
             speeds[0], first = _FIRST_MOVE, False
-        return speeds
+        corners = ["FINE" if stops else f"CNT{program.blend}" for stops in moves.stops.tolist()]
+        told = [f"{speed} {corner}" for speed, corner in zip(speeds, corners, strict=True)]
+        told[-1] += options.get(id(moves), "")
+        return told
 
     return words
 
 
 def _instructions(program: Program, block: Block) -> list[str]:
     output = f"  DO[{program.deposit_output}]="
+    if isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
+        return []  # a move tells it: at_ends
     if isinstance(block, DepositOn):
         on = output + "ON ;" if block.schedule is None else text.arc("Start", block.schedule)
         return [] if program.dry_run else [on, *text.wait(block.lead)]
@@ -244,7 +250,7 @@ def _file(program: Program, name: str, comment: str, head: list[str], pieces: Se
     runs = [piece for piece in pieces if isinstance(piece, Run)]
     for piece in pieces:
         if isinstance(piece, Run):
-            lines += _motion_lines(program, piece, point)
+            lines += _motion_lines(piece, point)
             point += len(piece)
         else:
             lines += piece
@@ -256,14 +262,11 @@ def _group(program: Program) -> int:
     return int(program.unit) if program.on_positioner else 1
 
 
-def _motion_lines(program: Program, run: Run, points_before: int) -> list[str]:
+def _motion_lines(run: Run, points_before: int) -> list[str]:
     """Lines through all points of a run."""
-    part, points = slice(run.start, run.stop), range(points_before + 1, points_before + 1 + len(run))
     letter = "L" if run.moves.interpolation == LINEAR_MOVE else "J"
-    corners = ["FINE" if stops else f"CNT{program.blend}" for stops in run.moves.stops[part].tolist()]
-    return [
-        f"{letter} P[{n}] {speed} {corner}    ;" for n, speed, corner in zip(points, run.words[part], corners, strict=True)
-    ]
+    words = run.words[run.start : run.stop]
+    return [f"{letter} P[{n}] {word}    ;" for n, word in enumerate(words, points_before + 1)]
 
 
 def _record_text(program: Program, runs: Sequence[Run]) -> str:

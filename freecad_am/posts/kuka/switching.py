@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from ...core.program import Block, DepositOff, DepositOn, Moves, Program
+from ...core.program import DepositOff, DepositOn, Program
+from ..parts import switching
 from . import arc
 
 TRIGGER = "TRIGGER "  # with which its line begins
@@ -15,7 +14,7 @@ def ahead_of_moves(program: Program) -> dict[int, str]:
     """The lines in front of the last one of runs of moves, by the identity of these runs."""
     if program.dry_run:
         return {}
-    return {id(moves): "\n".join(lines) for moves, block in _switching(program) if (lines := _lines(program, block))}
+    return {id(moves): "\n".join(lines) for moves, block in switching(program) if (lines := _lines(program, block))}
 
 
 def in_front(lines: str, word: str) -> str:
@@ -27,18 +26,7 @@ def in_front(lines: str, word: str) -> str:
     return f"{settings}{bar}{lines}|{move}"
 
 
-def _switching(program: Program) -> Iterator[tuple[Moves, Block]]:
-    """What switches the deposit, with the moves before it."""
-    last: Moves | None = None
-    for block in program.blocks:
-        if isinstance(block, Moves):
-            last = block if len(block) else last
-        elif isinstance(block, (DepositOn, DepositOff)) and last is not None:
-            yield last, block
-
-
-def _lines(program: Program, block: Block) -> list[str]:
-    assert isinstance(block, (DepositOn, DepositOff))
+def _lines(program: Program, block: DepositOn | DepositOff) -> list[str]:
     if block.schedule is not None:
         return arc.lighting(block.schedule) if isinstance(block, DepositOn) else arc.ending(block.schedule)
     if block.ahead is None:

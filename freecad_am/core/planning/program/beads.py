@@ -45,7 +45,9 @@ def deposited(
     blocks: list[Block] = [*before, on, *weave, moves[0]]
     for run, number in runs[1:]:  # posts may stop between runs, so that there are no more of them than schedules
         blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
-    return [*blocks, *([Weave(0)] if weave else []), DepositOff(own.lead_off, schedule, None if own.lead_off else lead)]
+    off, still = DepositOff(own.lead_off, schedule, None if own.lead_off else lead), [Weave(0)] if weave else []
+    # one that is ahead comes while the last move is still woven
+    return [*blocks, *still, off] if off.ahead is None else [*blocks, off, *still]
 
 
 def parted(phase: Roles, own: ProcessParameters) -> list[tuple[slice, int | None]]:

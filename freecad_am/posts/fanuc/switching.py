@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the last move of a run switches itself: the deposit, so long before it ends (TB, TIME BEFORE)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...core import digits
+from ...core.program import DepositOn, Program
+from ..parts import switching
+
+
+def at_ends(program: Program) -> dict[int, str]:
+    """The options of the last moves of runs, with the space before, by the identity of these runs."""
+    if program.dry_run:
+        return {}
+    output = program.deposit_output
+    return {
+        id(moves): f" {_ahead(block.ahead)},DO[{output}]={'ON' if isinstance(block, DepositOn) else 'OFF'}"
+        for moves, block in switching(program) if block.ahead is not None
+    }
+
+
+def _ahead(seconds: float) -> str:
+    """How long before, to 0.01 s, as wide as controllers write it: TB    .05sec."""
+    return f"TB{digits.joined([digits.right_aligned(np.array([round(seconds, 2)]), 2, 7)], 1)}sec"
