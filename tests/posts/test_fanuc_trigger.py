@@ -157,3 +157,17 @@ def test_parts_rests_and_dry_runs_tell_it_as_the_whole_does():
     assert said(*dry) == set() and b" TB " not in dry[3]["JOB.LS"]
     plain = build(motion, cell, BARE, ProgramParameters(post="fanuc", motion="joint", dry_run=True), "job")
     assert dry[3] == fanuc.write(plain)
+
+
+def test_what_waits_keeps_a_line_of_its_own():
+    cell, _, motion = planned("fanuc tool-on-robot")
+    parameters = ProgramParameters(post="fanuc", motion="joint", trigger=TriggerParameters(lead=0.05))
+    for process, on, off in (({"lead_on": 0.3, "lead_off": 0.0}, 0, 6), ({"lead_on": 0.0, "lead_off": 0.2}, 6, 0),
+                             ({"lead_on": 0.0, "lead_off": 0.0, "schedule": 4}, 0, 6)):
+        program = build(motion, cell, dataclasses.replace(PROCESS, **process), parameters, "job")
+        files = fanuc.write(program)
+        assert said(cell, motion, program, files) == set()
+        lines = body(files["JOB.LS"])
+        told = [sum(line.endswith(f" TB    .05sec,DO[1]={word}    ;") for line in lines) for word in ("ON", "OFF")]
+        assert told == [on, off]
+        assert [lines.count(f"  DO[1]={word} ;") for word in ("ON", "OFF")] == [6 - on, 6 - off]
