@@ -184,13 +184,16 @@ FANUC: dict[str, tuple[str, Change]] = {
     "a part dropped": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", DROP),
     "a part doubled": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", TWICE),
     "parts in another order": (r"^( *\d+:  CALL JOB\d+[^\n]*\n)( *\d+:  CALL JOB\d+[^\n]*\n)", SWAP),
+}
+# of texts that switch the deposit on the move itself
+TRIGGERS: dict[str, dict[str, tuple[str, Change]]] = {"fanuc": {
     "a trigger dropped": (_AHEAD, DROP),
     "a trigger doubled": (_AHEAD, TWICE),
     "a trigger at another time": (r" TB( +\d?\.\d\d)sec", moved(0.05)),
     "a trigger behind the end": (r" (TB) ", other("TA", "DB")),
     "a trigger on the next move": (rf"({_AHEAD})(    ;\r\n {{0,3}}\d+:[JL] [^\n;]*?)(?=    ;)", SWAP),
     "a trigger of its own": (rf"({_AHEAD})    ;", r"    ;\r\n   0:  \1 ;"),
-}
+}}
 
 # machines with rotary axes: what both controllers have in common, and what each has of its own
 _AXIS = rf"(?: [XYZABC]=?(?:DC\()?)({NUMBER})"
