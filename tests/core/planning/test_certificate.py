@@ -210,6 +210,26 @@ def test_made_up_arms_against_a_search_on_a_much_finer_lattice(seed):
     assert (value[free[0, ::parts]] <= from_each + 0.02 * least.min()).all()
 
 
+def test_sums_that_leap_at_an_edge_hide_no_lower_ones():
+    """At the last rotation before others where nothing may be, sums are thirty times those beside it, and parabolas through
+    them fall below all others: the least is still none but that of a rotation, or next to it."""
+    looked_at = 0
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        joints, _ = wavy(rng, 1, 180)
+        phi = np.arange(180) * 2.0 * np.pi / 180
+        waves = (rng.normal() * 4.0 / k * np.cos(k * phi + rng.uniform(0.0, 6.0)) for k in range(1, 6))
+        free = np.convolve(rng.random(190) < 0.06, np.ones(11), "valid") == 0
+        first = Lattice(joints, (free & np.roll(free, -1))[None], np.ones(3), np.ones(3, dtype=bool))
+        there = first.passable[0]
+        edge = there & ~np.roll(there, -1)
+        value = np.where(there, np.exp(sum(waves)) * np.where(edge, 30.0, 1.0), np.inf)
+        if edge.any():
+            looked_at += 1
+            assert least_ahead.least_of(value, first) <= value.min()
+    assert looked_at > 50
+
+
 @pytest.mark.parametrize("objective", [name for name in OBJECTIVES if name != "displacement"])
 def test_objectives_of_points_one_by_one(planned, objective):
     task, paths = planned

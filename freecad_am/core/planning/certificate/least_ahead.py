@@ -21,6 +21,7 @@ OFF, FURTHER_OFF = 2.0 / 96.0, 2.0 / 24.0
 MOST_STEPS = 9.0  # steps of the lattice, more than there are about one
 NEWTON = 3  # steps to the least of polynomials, and as often again about the rotation that is the nearest then
 APART = 3  # rotations, from which two least sums are looked at both
+FAR_ABOVE = 2.0  # times what is known to be possible
 # the powers of 1, x, .. x^4 (rows) in the polynomial that is 1 at one of -2 .. 2 (columns) and 0 at the others
 POWERS = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), 5, increasing=True))
 FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
@@ -69,7 +70,8 @@ def _least(
     inner = columns[:, 1:-1]
     low, high = (side[j][inner] for side in other.about)
     guess, to = _parabolas(total, low, high, other.passable[j][inner])
-    least = _at_best(guess, to, inner, start, other, j, value, weights)
+    known = np.where(other.passable[j][inner], total[:, 1:-1], np.inf).min(axis=1, initial=np.inf)
+    least = _at_best(guess, to, known, inner, start, other, j, value, weights)
     ragged = other.ragged[j]
     if ragged.any():  # sums go on beyond the edge of reach as they come to it
         here = total[:, 1:-1]
@@ -119,17 +121,18 @@ def _parabolas(total: Array, low: Array, high: Array, there: Mask) -> tuple[Arra
 
 
 def _at_best(
-    guess: Array, to: Array, columns: Index, start: Array, other: Lattice, j: int, value: Array, weights: Array
+    guess: Array, to: Array, known: Array, columns: Index, start: Array, other: Lattice, j: int, value: Array, weights: Array
 ) -> Array:
     """(n,) the least near the best of guesses (n, k), which are about rotations `columns` (n, k) and lie `to` from them, and
-    near the best of those that are not beside it."""
+    near all others that are better than those beside them; no more than what is `known` (n,) of a rotation itself."""
     rows, number = np.arange(len(guess)), np.arange(guess.shape[1])
     first = guess.argmin(axis=1)
-    apart = np.where(np.abs(number - first[:, None]) < APART, np.inf, guess)
-    second = apart.argmin(axis=1)
-    # a second one that is far above the first, by more than guesses are off, cannot be the least
-    worth = np.flatnonzero(apart[rows, second] < 2.0 * np.maximum(guess[rows, first], 0.0))
-    row, best = np.concatenate([rows, worth]), np.concatenate([first, second[worth]])
+    edge = np.full((len(guess), 1), np.inf)
+    beside = np.minimum(np.c_[edge, guess[:, :-1]], np.c_[guess[:, 1:], edge])
+    # one that is far above what is known, by more than guesses are off, cannot be the least
+    worth, others = np.nonzero((guess <= beside) & (guess < FAR_ABOVE * known[:, None]) & (
+        np.abs(number - first[:, None]) >= APART))
+    row, best = np.concatenate([rows, worth]), np.concatenate([first, others])
     column, step = columns[row, best], to[row, best]
     near = _near(column, start[row], other, j, value)
     finer, step, doubt = near.least(step, weights)
@@ -140,7 +143,7 @@ def _at_best(
     if len(torn):
         finer[torn] = np.maximum(finer[torn], near.of(torn).least_by_lines(weights))
     sure = np.where(np.isfinite(finer), finer, guess[row, best])
-    least = sure[: len(rows)]
+    least = np.minimum(sure[: len(rows)], known)
     np.minimum.at(least, worth, sure[len(rows) :])
     return np.where(np.isfinite(guess[rows, first]), least, np.inf)
 
