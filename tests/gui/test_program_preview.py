@@ -181,6 +181,6 @@ def test_a_new_program_is_shown_with_the_motion_that_its_controller_has(monkeypa
     """As New Job writes it: joint moves of KRL cannot keep a speed."""
     monkeypatch.setattr(suggestions.preferences, "post", lambda: preferred)
     settings = dataclasses.replace(CellParameters(), machine=machine, setup=setup)
-    proxy = SimpleNamespace(value=lambda cell: settings)
+    proxy = SimpleNamespace(parameters=lambda cell, kind: settings)
     assert suggestions.post_for(SimpleNamespace(Cell=SimpleNamespace(Proxy=proxy))) == shown
     assert suggestions.post_for(None) == suggestions.post_for(SimpleNamespace(Cell=None)) == ("", "")

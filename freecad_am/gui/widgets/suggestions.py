@@ -8,6 +8,7 @@ from typing import Any
 
 from ...core.issues import InputError
 from ...core.kinematics.machines import machine
+from ...core.parameters.cell import CellParameters
 from ...core.parameters.program import ProgramParameters
 from ...core.process.model import bead_table
 from ...objects import user_machines
@@ -81,7 +82,7 @@ def post_for(path: Any) -> tuple[str, str]:
     usual = ProgramParameters()
     wanted = preferences.post() or usual.post
     try:
-        post, motion = post_of(path.Cell.Proxy.value(path.Cell), wanted, user_machines.folders())
+        post, motion = post_of(path.Cell.Proxy.parameters(path.Cell, CellParameters), wanted, user_machines.folders())
     except InputError:
         return "", ""
     if not post:

@@ -211,9 +211,9 @@ def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
         if first:
             speeds[0], first = _FIRST_MOVE, False
         corners = ["FINE" if stops else f"CNT{program.blend}" for stops in moves.stops.tolist()]
-        told = [f"{speed} {corner}" for speed, corner in zip(speeds, corners, strict=True)]
-        told[-1] += options.get(id(moves), "")
-        return told
+        words = [f"{speed} {corner}" for speed, corner in zip(speeds, corners, strict=True)]
+        words[-1] += options.get(id(moves), "")
+        return words
 
     return words
 

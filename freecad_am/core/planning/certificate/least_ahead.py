@@ -128,9 +128,9 @@ def _at_best(
     rows, number = np.arange(len(guess)), np.arange(guess.shape[1])
     first = guess.argmin(axis=1)
     edge = np.full((len(guess), 1), np.inf)
-    beside = np.minimum(np.c_[edge, guess[:, :-1]], np.c_[guess[:, 1:], edge])
+    neighbours = np.minimum(np.c_[edge, guess[:, :-1]], np.c_[guess[:, 1:], edge])
     # one that is far above what is known, by more than guesses are off, cannot be the least
-    worth, others = np.nonzero((guess <= beside) & (guess < FAR_ABOVE * known[:, None]) & (
+    worth, others = np.nonzero((guess <= neighbours) & (guess < FAR_ABOVE * known[:, None]) & (
         np.abs(number - first[:, None]) >= APART))
     row, best = np.concatenate([rows, worth]), np.concatenate([first, others])
     column, step = columns[row, best], to[row, best]
