@@ -15,9 +15,9 @@ from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
 from ..core.planning.beads import moving_tool, steps
-from ..core.planning.program import arc_approach
 from ..core.planning.program import beads as program_beads
 from ..core.planning.program import build as programs
+from ..core.planning.program import linear_approach
 from ..core.program import ROTARY
 from ..core.program import Program as ProgramText
 from ..core.toolpath import Toolpath
@@ -160,8 +160,8 @@ def posted(job: Job) -> Posted:
         beads = [path.bead for path in planned.joint_path.beads]
         motion = moving_tool.refined_to_chord_error(motion, cell, toolpath.chord_error, beads)
     motion, _ = steps.programmed(motion, post.CONTROLLER, toolpath.chord_error, parameters.blend)
-    if arc_approach.asked(parameters, post.CONTROLLER):
-        motion = arc_approach.with_short_approaches(motion, cell)
+    if linear_approach.asked(parameters, post.CONTROLLER):
+        motion = linear_approach.with_short_approaches(motion, cell)
     waits = [layer.wait for layer in toolpath.layers]
     returns = programs.returning(toolpath, planned.joint_path.beads)
     program = programs.build(motion, cell, job.process, parameters, post.CONTROLLER, job.name, waits, returns)

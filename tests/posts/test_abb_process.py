@@ -13,7 +13,7 @@ from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters, ScheduleParameters, TriggerParameters
-from freecad_am.core.planning.program import arc_approach
+from freecad_am.core.planning.program import linear_approach
 from freecad_am.core.program import DepositOff, DepositOn, Moves, Weave
 from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
@@ -56,7 +56,7 @@ def written(kind, most=2000, dry_run=False):
         motion = dataclasses.replace(motion, wire=np.where(motion.deposit, RATIO * motion.speed, np.nan))
         told["nc"] = NcParameters(wire_output=9, wire_gain=2.5)
     if "ahead" in kind:
-        motion = arc_approach.with_short_approaches(motion, cell)
+        motion = linear_approach.with_short_approaches(motion, cell)
     parameters = ProgramParameters(post="abb", motion=way, max_points=most, dry_run=dry_run, **told)
     program = build(motion, cell, process, parameters, "job")
     return cell, motion, program, abb.write(program)

@@ -13,7 +13,7 @@ import pytest
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.parameters.bead_classes import BeadStart
 from freecad_am.core.parameters.program import ProgramParameters, ScheduleParameters
-from freecad_am.core.planning.program import arc_approach
+from freecad_am.core.planning.program import linear_approach
 from freecad_am.kdl import chain as kdl_chain
 from freecad_am.objects.program import Job, posted
 from freecad_am.posts import catalogue
@@ -33,7 +33,7 @@ NAMES = ["kuka tool-on-robot", pytest.param("kuka positioner"), pytest.param("ku
 def made(name):
     """Cell, motion, program and files of a planned job, lit by ArcTech."""
     cell, _, motion = planned(name)
-    motion = arc_approach.with_short_approaches(motion, cell)
+    motion = linear_approach.with_short_approaches(motion, cell)
     program = build(motion, cell, LIT, ARC, "job")
     return cell, motion, program, kuka.write(program)
 
@@ -128,7 +128,7 @@ def test_the_way_onto_a_bead_stays_by_the_one_that_was_looked_at():
     """The rows that are added lie on the way straight in the joints; what is told as a linear move leaves it by 0.2 mm at
     most, by PyKDL; and not cut it would leave it by more, which building and reading back refuse."""
     cell, _, whole = planned("kuka positioner")
-    motion = arc_approach.with_short_approaches(whole, cell)
+    motion = linear_approach.with_short_approaches(whole, cell)
     added = len(motion) - len(whole)
     assert added and motion.total_time == pytest.approx(whole.total_time, abs=1e-9)
     solver, looked = kdl_chain.KdlArm(cell.machine), 0
@@ -152,7 +152,7 @@ def test_the_way_onto_a_bead_stays_by_the_one_that_was_looked_at():
 
 def test_a_way_that_was_not_looked_at_is_found_by_reading_back(monkeypatch):
     cell, _, whole = planned("kuka positioner")
-    monkeypatch.setattr(arc_approach, "MOST_MM", 1.0)
+    monkeypatch.setattr(linear_approach, "MOST_MM", 1.0)
     program = build(whole, cell, LIT, ARC, "job")
     found = verify(cell, whole, program, kuka.write(program), kuka, CHORD_ERROR)
     assert {issue.code for issue in found.issues} == {"VERIFY_BETWEEN"}

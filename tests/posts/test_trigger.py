@@ -12,7 +12,7 @@ from freecad_am.core.motion import UNKNOWN
 from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.parameters.process import CoolingParameters
 from freecad_am.core.parameters.program import ProgramParameters, ScheduleParameters, TriggerParameters
-from freecad_am.core.planning.program import arc_approach
+from freecad_am.core.planning.program import linear_approach
 from freecad_am.core.program import DepositOff, DepositOn, Moves, WaitBelow
 from freecad_am.core.read_moves import Event
 from freecad_am.objects.program import refuse
@@ -101,7 +101,7 @@ def test_a_controller_of_linear_triggers_goes_straight_onto_beads_and_waits_for_
     bare = dataclasses.replace(PROCESS, lead_on=0.0, cooling=CoolingParameters(below=150.0))
     ahead = ProgramParameters(post="abb", motion="cartesian", trigger=TriggerParameters(lead=0.02))
     returns = {(1, 0), (1, 1)}
-    short = arc_approach.with_short_approaches(motion, cell)
+    short = linear_approach.with_short_approaches(motion, cell)
     blocks = build(short, cell, bare, ahead, "job", returns=returns).blocks
     waits = [k for k, block in enumerate(blocks) if isinstance(block, WaitBelow)]
     assert [(blocks[k].layer, blocks[k].bead) for k in waits] == sorted(returns)

@@ -190,7 +190,6 @@ class ProposingPanel(PreviewPanel):
 
     # ---- entries
 
-
     def _holds(self, place: str) -> Any:
         """What a field holds, None where that cannot be read."""
         with contextlib.suppress(InputError):

@@ -11,6 +11,7 @@ from PySide import QtCore
 
 from ...core.issues import AmError, InputError, has_errors
 from ...objects.fields import expressions
+from ...objects.planned.proposed_family import COARSE
 from ...objects.stage import Stage
 from ...objects.stage_parts import Outcome
 from ...objects.staleness import STALE
@@ -237,3 +238,9 @@ class PreviewPanel(StagePanel):
 def stale_lines(labels: Sequence[str]) -> list[str]:
     """What to say of inputs that were out of date when the preview was begun."""
     return [tr("{} is out of date; this is of what it was.").format(label) for label in labels]
+
+
+def coarsened(values: dict[str, Any]) -> dict[str, Any]:
+    """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
+    error = values["ChordError"]
+    return {**values, "ChordError": COARSE} if 0.0 < getattr(error, "Value", error) < COARSE else values

@@ -15,14 +15,11 @@ from freecad_am.core.types import Array
 
 from ...core.issues import Text
 from ...core.read_moves import ARC, Event, ReadMoves
+from ..packed import floats
 from .modules import Frames, Module, turned, unreadable
 from .process_data import ProcessData
 
 _DECIMALS = re.compile(r"\.(\d+)")
-
-
-def _floats() -> array[float]:
-    return array("d")
 
 
 class Move(NamedTuple):
@@ -57,11 +54,11 @@ class Run:
     linear: bytearray = field(default_factory=bytearray)
     deposit: bytearray = field(default_factory=bytearray)
     placed: bytearray = field(default_factory=bytearray)
-    time_or_speed: array[float] = field(default_factory=_floats)
-    half: array[float] = field(default_factory=_floats)
-    rounding: array[float] = field(default_factory=_floats)
-    wire: array[float] = field(default_factory=_floats)
-    wire_half: array[float] = field(default_factory=_floats)
+    time_or_speed: array[float] = field(default_factory=floats)
+    half: array[float] = field(default_factory=floats)
+    rounding: array[float] = field(default_factory=floats)
+    wire: array[float] = field(default_factory=floats)
+    wire_half: array[float] = field(default_factory=floats)
     joints: list[str] = field(default_factory=list)
     places: list[str] = field(default_factory=list)
     turns: list[str] = field(default_factory=list)

@@ -12,19 +12,16 @@ import numpy as np
 from freecad_am.core.types import Array, Index
 
 from ...core.read_moves import Configuration, Event, ReadMoves
+from ..packed import floats
 from .parsed import Listing
 from .records import unreadable
 
 _OWN = 6  # axes of the robot
 
 
-def _floats() -> array[float]:
-    return array("d")
-
-
 @dataclass
 class Run:
-    """What happened so far while the programs are followed: packed, for a list of floats takes four times the memory.
+    """What happened so far while the programs are followed.
 
     pending: records of the listing at hand that were moved to and are not among `values` yet. recorded, numbers: frames of
     the record that was looked at last, and the numbers of those selected. track: which of the axes beside the robot a remark
@@ -39,14 +36,14 @@ class Run:
     track: tuple[int, bool] = (0, False)
     digits: float = 0.0
     pending: list[Index] = field(default_factory=list)
-    duration: array[float] = field(default_factory=_floats)
-    speed: array[float] = field(default_factory=_floats)
-    share: array[float] = field(default_factory=_floats)
+    duration: array[float] = field(default_factory=floats)
+    speed: array[float] = field(default_factory=floats)
+    share: array[float] = field(default_factory=floats)
     deposit: bytearray = field(default_factory=bytearray)
     linear: bytearray = field(default_factory=bytearray)
-    blend: array[float] = field(default_factory=_floats)
-    user_frame: array[float] = field(default_factory=_floats)
-    tool_frame: array[float] = field(default_factory=_floats)
+    blend: array[float] = field(default_factory=floats)
+    user_frame: array[float] = field(default_factory=floats)
+    tool_frame: array[float] = field(default_factory=floats)
     events: list[Event] = field(default_factory=list)
     frame: dict[str, str] = field(default_factory=dict)
     recorded: tuple[str, str] = ("", "")

@@ -12,11 +12,8 @@ from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.read_moves import Event, ReadMoves
+from ..packed import floats
 from .read_arc import ArcMove
-
-
-def _floats() -> array[float]:
-    return array("d")
 
 
 @dataclass
@@ -34,11 +31,11 @@ class Run:
     values: list[Array] = field(default_factory=list)
     linear: bytearray = field(default_factory=bytearray)
     deposit: bytearray = field(default_factory=bytearray)
-    speed: array[float] = field(default_factory=_floats)
-    share: array[float] = field(default_factory=_floats)
-    rounding: array[float] = field(default_factory=_floats)
-    base: array[float] = field(default_factory=_floats)
-    tool: array[float] = field(default_factory=_floats)
+    speed: array[float] = field(default_factory=floats)
+    share: array[float] = field(default_factory=floats)
+    rounding: array[float] = field(default_factory=floats)
+    base: array[float] = field(default_factory=floats)
+    tool: array[float] = field(default_factory=floats)
     events: list[Event] = field(default_factory=list)
     followed: list[str] = field(default_factory=list)
     state: dict[str, float] = field(default_factory=dict)

@@ -43,7 +43,7 @@ from ...program import (
 )
 from ...toolpath import Toolpath
 from ..joint_path import BeadPath
-from . import arc_approach
+from . import linear_approach
 from .beads import ARC, deposited, parted
 from .remarks import frames_of, remarks_of, six_of
 
@@ -207,9 +207,9 @@ class _Blocks:
 
     def _onto(self, rows: NDArray[np.int64], arriving: bool) -> list[Block]:
         """Rapids onto a bead, the last one as a linear move where the controller needs one."""
-        if not arc_approach.asked(self.parameters, self.controller):
+        if not linear_approach.asked(self.parameters, self.controller):
             return [self._moves(rows, RAPID, arriving)]
-        arc_approach.check(self.motion, self.cell, rows, arriving, self.parameters.schedule.by == ARC)
+        linear_approach.check(self.motion, self.cell, rows, arriving, self.parameters.schedule.by == ARC)
         before = [self._moves(rows[:-1], RAPID, arriving)] if len(rows) > 1 else []
         return [*before, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
 

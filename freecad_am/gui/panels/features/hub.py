@@ -15,7 +15,6 @@ from ....core.parameters.filled import DevelopableParameters
 from ....core.strategies import size
 from ....objects.checks import deposit
 from ....objects.developable_feature import DevelopableFeature
-from ....objects.planned.proposed_family import COARSE
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.stage_parts import Link, Outcome
 from ... import recorded
@@ -25,6 +24,7 @@ from ...picking.pick_field import PickField
 from ...texts.translation import marked, sentence, tr
 from ...views.preview import Draft
 from ..pick import PickPanel
+from ..preview import coarsened
 
 SOLIDS = Link(
     "Solids", "", marked("The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."),
@@ -120,10 +120,7 @@ class HubPanel(PickPanel):
 
     def _values(self) -> dict[str, Any]:
         """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
-        found = super()._values()
-        if 0.0 < getattr(found["ChordError"], "Value", found["ChordError"]) < COARSE:
-            found["ChordError"] = COARSE
-        return found
+        return coarsened(super()._values())
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
         """Computed anew only where solids or hub are others."""

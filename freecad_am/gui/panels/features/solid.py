@@ -19,7 +19,6 @@ from ....core.layers.leaning import Leaning, leaning
 from ....core.layers.planes.stacking import STANDING, stacked
 from ....core.parameters.filled import SolidParameters
 from ....core.strategies import size
-from ....objects.planned.proposed_family import COARSE
 from ....objects.shapes.bodies import FIXTURES
 from ....objects.solid_feature import SolidFeature
 from ....objects.stage_parts import Link, Outcome
@@ -32,6 +31,7 @@ from ...texts.translation import marked, sentence, tr
 from ...views.preview import Draft
 from ...widgets.wheel import scrolls
 from ..pick import PickPanel
+from ..preview import coarsened
 
 STEEPEST = 89  # deg of the slider
 MM2_PER_CM2 = 100.0
@@ -150,10 +150,7 @@ class SolidPanel(PickPanel):
 
     def _values(self) -> dict[str, Any]:
         """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
-        found = super()._values()
-        if 0.0 < getattr(found["ChordError"], "Value", found["ChordError"]) < COARSE:
-            found["ChordError"] = COARSE
-        return found
+        return coarsened(super()._values())
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, tuple[Drawing, Leaning, int]]]:
         """Solids are read anew only where they are others."""
