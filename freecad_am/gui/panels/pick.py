@@ -67,6 +67,12 @@ class PickPanel(PreviewPanel):
 
     # ---- picking
 
+    def _worth_telling(self, inputs: dict[str, str]) -> dict[str, str]:
+        """Of a new feature the part and whatever else was picked, of one that is changed all inputs: some may be emptied."""
+        if self.obj is not None:
+            return inputs
+        return {key: text for key, text in inputs.items() if key == "source" or text not in ("None", "[]")}
+
     def _field(self, name: str) -> PickField:
         return next(field for field in self.picks if field.link.name == name)
 

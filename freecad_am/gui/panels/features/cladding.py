@@ -67,9 +67,7 @@ class CladdingPanel(PickPanel):
             "source": recorded.reference(self.faces.picks[0].obj) if self.faces.picks else "None",
             "faces": repr(self._elements()), **self.substrate.arguments(), **self.fixtures.arguments(),
         }
-        return found if self.obj is not None else {
-            key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
-        }
+        return self._worth_telling(found)
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, str]]:
         draft.check()

@@ -77,9 +77,7 @@ class CurvesPanel(PickPanel):
             "source": recorded.reference(self.curves.picks[0].obj) if self.curves.picks else "None",
             "faces": repr(self._elements()), **self.substrate.arguments(), **self.fixtures.arguments(),
         }
-        return found if self.obj is not None else {
-            key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
-        }
+        return self._worth_telling(found)
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
         draft.check()

@@ -112,9 +112,7 @@ class HubPanel(PickPanel):
             "further": f"[{further}]", "substrate": "None" if hub is None else recorded.reference(hub),
             "base_faces": repr(list(base_faces)), **self.fixtures.arguments(),
         }
-        return found if self.obj is not None else {
-            key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
-        }
+        return self._worth_telling(found)
 
     # ---- preview
 

@@ -144,9 +144,7 @@ class SolidPanel(PickPanel):
             **self.substrate.arguments(), "guide": _with_names(self.guide), "start_faces": _with_names(self.start),
             **self.fixtures.arguments(),
         }
-        return found if self.obj is not None else {
-            key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
-        }
+        return self._worth_telling(found)
 
     def _values(self) -> dict[str, Any]:
         """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
