@@ -11,6 +11,7 @@ for none to be kept (PYTHONDONTWRITEBYTECODE): compiling them takes as long as a
 from __future__ import annotations
 
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -76,10 +77,10 @@ def _took(command: list[str], folder: str) -> float:
     left = ("BENCH_INSIDE", "VIRTUAL_ENV", "PYTHONDONTWRITEBYTECODE")
     environment = {key: value for key, value in os.environ.items() if key not in left}
     environment["PYTHONPYCACHEPREFIX"] = folder
-    before = os.times()
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)  # os.times counts in hundredths of a second
     done = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL, env=environment)
-    after = os.times()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode:
         print(done.stderr, file=sys.stderr)
         raise AssertionError(f"{command[0]} ended with {done.returncode}")
-    return after.children_user + after.children_system - before.children_user - before.children_system
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
