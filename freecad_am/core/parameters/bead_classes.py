@@ -107,7 +107,7 @@ class BeadClass:
 
     def own_values(self) -> dict[str, float]:
         """What it has of its own, by name, in inner units."""
-        return {name: value for name, value in dataclasses.asdict(self).items() if value is not None}
+        return {name: value for name, value in vars(self).items() if value is not None}
 
     def __str__(self) -> str:
         fields = {one.name: f.spec_of(one).kind for one in dataclasses.fields(self)}

@@ -10,7 +10,7 @@ import dataclasses
 import math
 import re
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import FreeCAD as App
@@ -52,12 +52,12 @@ class Row:
     form: str
     default: Any
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Its name as a macro keyword: seam_angle, rotation_range_low."""
         return "_".join(ENDS[step] if isinstance(step, int) else step for step in self.path)
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Its name as a property: SeamAngle, RotationRangeLow."""
         return property_name(self.key)
