@@ -31,7 +31,6 @@ from freecad_am.core.strategies.families import family_of
 from freecad_am.core.toolpath import Toolpath
 from freecad_am.core.types import Array
 
-from . import predicted_figures, scan_figures
 from .asked import Feature
 
 VERSION = 1
@@ -64,8 +63,8 @@ def build(
         "on_part": None if toolpath.on_part is None else dict(
             zip(("places", "worst_mm", "allowed_mm"), (int(toolpath.on_part[0]), *toolpath.on_part[1:]), strict=True)
         ),
-        "scan": None if toolpath.fitted is None else scan_figures.as_dict(toolpath.fitted),
-        "predicted_shape": None if toolpath.predicted is None else predicted_figures.as_dict(toolpath.predicted),
+        "scan": _scan(toolpath),
+        "predicted_shape": _predicted_shape(toolpath),
         "joints": None,
         "preflight": [],
         "comparison": [],
@@ -149,6 +148,24 @@ def spread(spacing: Sequence[Array]) -> dict[str, float | None]:
         return {"min": None, "mean": None, "max": None}
     values = np.concatenate(spacing)
     return {"min": float(values.min()), "mean": float(values.mean()), "max": float(values.max())}
+
+
+def _scan(toolpath: Toolpath) -> dict[str, Any] | None:
+    """Of the scan that layers were fitted to, which few jobs have."""
+    if toolpath.fitted is None:
+        return None
+    from . import scan_figures
+
+    return scan_figures.as_dict(toolpath.fitted)
+
+
+def _predicted_shape(toolpath: Toolpath) -> dict[str, Any] | None:
+    """Of the deposit that is predicted for a machining allowance, which few jobs have."""
+    if toolpath.predicted is None:
+        return None
+    from . import predicted_figures
+
+    return predicted_figures.as_dict(toolpath.predicted)
 
 
 def _process(process: ProcessParameters, toolpath: Toolpath) -> dict[str, Any]:

@@ -18,7 +18,6 @@ import Part
 from ...core.geometry.located import located
 from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import InputError
-from . import obj_polygons, three_mf
 from .apart import apart
 
 READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -76,6 +75,8 @@ def placed_mesh(mesh: Any, placement: Any) -> Any:
 
 
 def _mesh(file: Path, where: str, scale: float) -> Any:
+    from . import obj_polygons, three_mf  # few parts are meshes
+
     mesh = Mesh.Mesh()
     if file.suffix.lower() == ".3mf":
         points, corners = three_mf.triangles(file)

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from freecad_am.core.types import Array
 
 from ...core.collision.inside import inside_of
-from ...core.geometry.mesh.repair import repaired
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
@@ -100,6 +99,8 @@ def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Ar
 
 def _off_pieces(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
     """The same, each piece of the mesh mended and looked at by itself."""
+    from ...core.geometry.mesh.repair import repaired  # few parts are meshes
+
     try:
         pieces = repaired(vertices, triangles.astype(np.intp), "", np.inf, True).solids
     except InputError:  # the side of the nearest triangle is all there is

@@ -23,7 +23,7 @@ from .beads.chord_error import refined_to_chord_error
 from .beads.overlap import run_on
 from .beads.retreat import go_back
 from .beads.speeds import corners_slowed, rings_slowed, too_fast
-from .certificate import bound, closing
+from .certificate import closing
 from .external import rule as external_rule
 from .external import track
 from .external.level import ways
@@ -135,6 +135,8 @@ def _in_branches(
     )
     optimality = None
     if parameters.certificate and not has_errors(issues):
+        from .certificate import bound  # few jobs ask for it
+
         optimality, notes = bound.summed(task, paths, lambda share: progress(share, "bounding the objective"))
         issues = [*issues, *notes]
     return JointPath(*_choices(task), cell.limits.name, tuple(paths), tuple(issues), comparisons, optimality, level)

@@ -14,7 +14,6 @@ from ..process.deposit import balance as deposit_balance
 from ..process.deposit import layer_heights, on_part, spacing, support
 from ..process.deposit.balance import MM3, Balance
 from ..process.model import wire, wire_taken
-from ..process.shape import compare
 from ..toolpath import Toolpath
 from ..types import Array
 from .promise import PERCENT, Place, Promise, issue_place, of_codes
@@ -108,6 +107,8 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
     found = toolpath.predicted
     if found is None:
         return ()
+    from ..process.shape import compare  # few jobs have one
+
     how = Text("how far a deposit of cubes of {:.3g} mm, filled bead by bead with what the wire feeds, reaches beyond {} "
                "places of the part's faces, along their normals", found.edge, found.places)
     inside = Promise(

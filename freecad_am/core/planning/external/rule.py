@@ -15,7 +15,6 @@ from ..joint_path import BeadPath
 from ..task import Task, condition_margin
 from .courses import on_face
 from .level import allowed_by_layer, axes_figures
-from .optimised import optimised
 
 Found = tuple[list[BeadPath], list[Issue]]
 METHOD = "layer-by-layer"
@@ -47,6 +46,8 @@ def bettered(
 
     level: what was found with it; planned: its beads before points were added and turns counted on, which `finish` does.
     """
+    from .optimised import optimised  # few jobs have external axes
+
     paths = list(planned)
     tried = optimised(task, paths, lambda tool: on_face(task.cell, tool), allowed_by_layer(toolpath), report)
     found = finish(tried)
