@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import FreeCAD as App
@@ -71,6 +71,13 @@ def one_step(doc: Any, name: str) -> Iterator[None]:
     try:
         yield
     except BaseException:
-        doc.abortTransaction()
+        _end_step(doc.abortTransaction, abort=True)
         raise
-    doc.commitTransaction()
+    _end_step(doc.commitTransaction, abort=False)
+
+
+def _end_step(end: Callable[[], None], abort: bool) -> None:
+    """End a step of one's own. FreeCAD leaves one open in which nothing was changed, and counts what comes next to it."""
+    end()
+    if App.getActiveTransaction():
+        App.closeActiveTransaction(abort)

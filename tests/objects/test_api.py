@@ -80,6 +80,21 @@ def test_a_failed_change_changes_nothing(job):
     assert (job.feature.ChordError.Value, job.feature.Status) == (0.01, "up to date")
 
 
+def test_a_step_in_which_nothing_changed_is_not_left_open(job):
+    """FreeCAD ends none that no document has begun; the next step then was taken for a part of it, and not taken back."""
+    job.doc.UndoMode = 1
+    for refused in (0, 0, 1e-6, 1e-6):
+        with pytest.raises(InputError):
+            api.change(job.feature, layer_height=refused)
+        assert App.getActiveTransaction() is None and job.doc.UndoCount == 0
+        assert (job.feature.LayerHeight.Value, job.feature.Status) == (10.0, "up to date")
+    api.change(job.feature)
+    assert App.getActiveTransaction() is None
+    api.change(job.feature, layer_height=20)
+    api.change(job.feature, layer_height=12)
+    assert job.doc.UndoNames == ["Edit Feature", "Edit Feature"]
+
+
 def test_missing_inputs_are_told(doc, part):
     for make in (lambda: api.make_feature(doc, None), lambda: api.make_toolpath(doc, None),
                  lambda: api.make_joint_path(doc, None, None), lambda: api.make_program(doc, None)):
