@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..geometry import frames
 from ..types import Array
 
-# poses done together: what they need stays in the processor's cache
-PIECE = 1024
+# poses done together: what they need stays in the processor's cache, and a call is not longer than its work
+PIECE = 4096
 
 
 class JointFrames(NamedTuple):
@@ -80,20 +80,31 @@ class Chain:
         angles = np.asarray(q, float)
         lead = angles.shape[:-1]
         by_joint = self._by_joint(angles)
-        count = by_joint.shape[1]
-        directions, origins = np.empty((self.axes, 3, count)), np.empty((self.axes, 3, count))
-        flange = _upright(count)
-        for start in range(0, count, PIECE):
-            piece = slice(start, start + PIECE)
-            self._run_piece(by_joint[:, piece], (directions[:, :, piece], origins[:, :, piece]), flange[piece])
-        if self._is_mixed:
-            place = np.argsort(self.order)
-            directions, origins = directions[place], origins[place]
+        flange = _upright(by_joint.shape[1])
+        directions, origins = self._axes(by_joint, flange)
         return JointFrames(
             directions.transpose(2, 0, 1).reshape(lead + (self.axes, 3)),
             origins.transpose(2, 0, 1).reshape(lead + (self.axes, 3)),
             flange.reshape(lead + (4, 4)),
         )
+
+    def axes_at(self, q: ArrayLike) -> tuple[Array, Array]:
+        """The directions and origins of `frames` alone, each (axes, 3, n), for joint values `q` (n, axes)."""
+        return self._axes(self._by_joint(np.asarray(q, float)), None)
+
+    def _axes(self, by_joint: Array, flange: Array | None) -> tuple[Array, Array]:
+        """Directions and origins (axes, 3, n) in the order of the values; flange poses (n, 4, 4) are filled in where there
+        are any."""
+        count = by_joint.shape[1]
+        directions, origins = np.empty((self.axes, 3, count)), np.empty((self.axes, 3, count))
+        for start in range(0, count, PIECE):
+            piece = slice(start, start + PIECE)
+            axes = directions[:, :, piece], origins[:, :, piece]
+            self._run_piece(by_joint[:, piece], axes, None if flange is None else flange[piece])
+        if self._is_mixed:
+            place = np.argsort(self.order)
+            directions, origins = directions[place], origins[place]
+        return directions, origins
 
     def seen(self, q: ArrayLike, point: Array) -> Array:
         """A `point` (3,) of base_link as the flange sees it, (..., 3) mm, for joint values `q` (..., axes), rad and mm."""
@@ -157,8 +168,9 @@ class Chain:
         back = frames.inverse(np.concatenate((self.origins, self.flange[None])))[::-1]
         return Chain(back[:-1], -self.directions[::-1], back[-1], self.sliding, self.order[::-1].copy())
 
-    def _run_piece(self, angles: Array, axes: tuple[Array, Array] | None, flange: Array) -> None:
-        """Fill in flange poses (n, 4, 4), and where wanted directions and origins (axes, 3, n), of angles (axes, n)."""
+    def _run_piece(self, angles: Array, axes: tuple[Array, Array] | None, flange: Array | None) -> None:
+        """Fill in directions and origins (axes, 3, n), and flange poses (n, 4, 4), those that are wanted, of angles
+        (axes, n)."""
         sines, cosines = np.sin(angles), np.cos(angles)
         count = angles.shape[1]
         # one row per column of the rotation, each holding x, y, z of all poses; the first link is the same in all
@@ -174,6 +186,8 @@ class Chain:
                 position = position + (columns[2].reshape(3, count) * angles[joint]).ravel()
             else:
                 _turn(columns.reshape(3, 3, count), sines[joint], cosines[joint])
+        if flange is None:
+            return
         columns, position = _advance(columns, position, self._links[-1])
         flange[:, :3, :3] = columns.reshape(3, 3, count).T
         flange[:, :3, 3] = position.reshape(3, count).T

@@ -19,7 +19,10 @@ from ..types import Array
 from . import eigen
 from .chain import Chain
 
-PIECE = 1024
+# poses done together: what they need stays in the processor's cache, and a call is not longer than its work
+PIECE = 4096
+# the same of poses whose eigenvalues are found together: in other company they have other last bits
+TOGETHER = 1024
 
 
 def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
@@ -34,9 +37,8 @@ def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
     result = np.empty((6, chain.axes, count))
     for start in range(0, count, PIECE):
         piece = slice(start, start + PIECE)
-        at = chain.frames(angles[piece])
-        # (axes, 3, n) in memory
-        direction, arm = at.directions.transpose(1, 2, 0), points[:, piece] - at.origins.transpose(1, 2, 0)
+        direction, origin = chain.axes_at(angles[piece])
+        arm = np.subtract(points[:, piece], origin, out=origin)
         for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
             np.multiply(direction[:, following], arm[:, last], out=result[row, :, piece])
             result[row, :, piece] -= direction[:, last] * arm[:, following]
@@ -66,7 +68,7 @@ def condition_bound(jacobians: ArrayLike, length: float) -> Array:
     The condition is at most 6 times the bound, for arms of the usual proportions 1 to 2.5 times. 0 where the last
     three axes have no common inverse: at the wrist's singularity.
     """
-    return _in_pieces(_frobenius, jacobians, length)
+    return _in_pieces(_frobenius, jacobians, length, PIECE)
 
 
 def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
@@ -126,20 +128,23 @@ def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -
     return _in_pieces(of_piece, jacobians, length, with_slice=True)
 
 
-def _in_pieces(function: Callable[..., Array], jacobians: ArrayLike, length: float, with_slice: bool = False) -> Array:
-    """`function` of scaled Jacobians (6, axes, m), piece by piece, so that they stay in the processor's cache."""
+def _in_pieces(
+    function: Callable[..., Array], jacobians: ArrayLike, length: float, size: int = TOGETHER, with_slice: bool = False
+) -> Array:
+    """`function` of scaled Jacobians (6, axes, m), in pieces of that size, so that they stay in the processor's cache."""
     matrices = np.moveaxis(np.asarray(jacobians, float), 0, -1)
     result = np.empty(matrices.shape[2])
-    for start in range(0, len(result), PIECE):
-        piece = slice(start, min(start + PIECE, len(result)))
+    for start in range(0, len(result), size):
+        piece = slice(start, min(start + size, len(result)))
         scaled = np.array(matrices[:, :, piece], order="C")
         scaled[:3] *= 1.0 / length
-        unknown = np.isnan(np.einsum("ijn->n", scaled))
-        if unknown.any():
+        unknown = np.isnan(scaled).any(axis=(0, 1)) if np.isnan(scaled.max()) else None
+        if unknown is not None:
             # LAPACK takes no NaN: anything stands in for it
             scaled[:, :, unknown] = np.eye(scaled.shape[0], scaled.shape[1])[:, :, None]
         result[piece] = function(scaled, piece) if with_slice else function(scaled)
-        result[piece][unknown] = np.nan
+        if unknown is not None:
+            result[piece][unknown] = np.nan
     return result
 
 
