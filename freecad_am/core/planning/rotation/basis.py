@@ -21,11 +21,10 @@ def changes(task: Task, points: Points, degree: int) -> Array:
     They are Chebyshev polynomials over the bead's parameter, so that all are of the size of a rotation; the column that
     would part the ends of a closed bead is zero.
     """
-    low, high = points.ends
-    result = np.zeros((points.beads, degree + 1, degree + 1))
     joined = task.joined & points.closed
-    for bead in range(points.beads):
-        result[bead] = _chebyshev(low[bead], high[bead], degree)
+    # most beads have their ends where others have them
+    ends, of_bead = np.unique(np.stack(points.ends, axis=1), axis=0, return_inverse=True)
+    result = np.stack([_chebyshev(low, high, degree) for low, high in ends])[of_bead]
     if degree > 0:
         result[joined, :, 3::2] -= result[joined, :, 1:2]
         result[joined, :, 1] = 0.0
