@@ -94,6 +94,10 @@ class Points:
         smallest: Array = np.minimum.reduceat(values, self.first, axis=-1)
         return smallest
 
+    def spread(self, values: Array) -> Array:
+        """(..., T, axes) what there is of each bead (..., B, axes) at its points, axis by axis in memory."""
+        return np.swapaxes(np.swapaxes(values, -1, -2)[..., self.bead], -1, -2)
+
     def total(self, values: Array) -> Array:
         """(..., B) the sum of the values (..., T) within each bead."""
         total: Array = np.add.reduceat(values, self.first, axis=-1)
@@ -160,13 +164,13 @@ def steps(joints: Array, points: Points) -> Array:
         long &= ~points.sliding
     if long.any():
         step[long] = shortest(step[long])
-    step[..., points.starts, :] = 0.0
+    step[..., points.first, :] = 0.0
     return step
 
 
 def unwrapped(joints: Array, points: Points) -> Array:
     """(..., T, axes) joint values counted on from the first point of each bead."""
-    rising = np.cumsum(steps(joints, points), axis=-2)
-    offset = joints[..., points.first, :] - rising[..., points.first, :]
-    result: Array = rising + offset[..., points.bead, :]
-    return result
+    rising = steps(joints, points)
+    np.cumsum(rising, axis=-2, out=rising)
+    rising += points.spread(joints[..., points.first, :] - rising[..., points.first, :])
+    return rising

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,11 @@ from ..geometry.angles import TURN
 from ..kinematics import jacobian as jac
 from ..kinematics.cell import Cell
 from ..kinematics.inverse.serial_arm import SerialArm
-from ..kinematics.limits import Limits
 from ..kinematics.pose_frames import PoseFrames
 from ..parameters.joints import JointParameters
 from ..types import Array
 from .arm.kept import ArmKept
+from .limit_rows import LimitRows, limit_rows
 from .points import Points, in_pieces, unwrapped
 from .reserve import RESERVE
 from .turns import configurations as following
@@ -29,57 +29,8 @@ from .turns.directed import Lock
 CONTINUOUS_STROKE = 1e6 * TURN
 CONDITION_FLOOR = 0.02
 CONDITION_SHARE = 0.25
-UNREACHABLE = -np.inf
 # a margin that counts as none: optima lean on limits, which the reserve keeps off the true ones
 FITS = -1e-6
-
-
-@dataclass(frozen=True)
-class LimitRows:
-    """The limits as m rows lower <= matrix q <= upper, endless axes left out. Angles in rad."""
-
-    matrix: Array
-    lower: Array
-    upper: Array
-    labels: tuple[str, ...]
-
-    @cached_property
-    def mean(self) -> Array:
-        """(m,) middle of each range."""
-        return 0.5 * (self.lower + self.upper)
-
-    @cached_property
-    def half(self) -> Array:
-        """(m,) half of each range."""
-        return 0.5 * (self.upper - self.lower)
-
-    @cached_property
-    def plain(self) -> bool:
-        """True when every row is one axis alone."""
-        return bool((np.count_nonzero(self.matrix, axis=1) == 1).all())
-
-    def offset(self, joints: Array) -> Array:
-        """(..., m) distance from the middle as a share of half the range; the limit is at +-1."""
-        share: Array = (joints @ self.matrix.T - self.mean) / self.half
-        return share
-
-    def margin(self, joints: Array) -> Array:
-        """(...) the smallest margin of all rows, 1 in the middle and 0 at a limit; -inf where joints are NaN."""
-        away = np.abs(self.offset(joints))
-        worst: Array = reduce(np.maximum, (away[..., row] for row in range(away.shape[-1])))  # max(axis=-1), sooner
-        return np.where(np.isnan(worst), UNREACHABLE, 1.0 - worst)
-
-
-def limit_rows(limits: Limits, reserve: float = 0.0) -> LimitRows:
-    """The rows of a limit set, single axes first, then what couples several; `reserve` (rad) narrower on both sides."""
-    axes = len(limits.lower)
-    finite = np.isfinite(limits.lower) & np.isfinite(limits.upper)
-    return LimitRows(
-        matrix=np.vstack([np.eye(axes)[finite], limits.coefficients.reshape(-1, axes)]),
-        lower=np.concatenate([limits.lower[finite], limits.coupled_lower]) + reserve,
-        upper=np.concatenate([limits.upper[finite], limits.coupled_upper]) - reserve,
-        labels=tuple(np.array(limits.labels)[np.concatenate([finite, np.ones(len(limits.coupled_lower), bool)])]),
-    )
 
 
 @dataclass(frozen=True)
@@ -160,7 +111,7 @@ class Task:
         """
         if phi.ndim == 1 and not self.arm.followed:
             return self._raw_joints_of_all(points, phi)
-        flange = points.frames.at(phi)
+        flange = points.frames.at(phi) if self.arm.followed else points.frames.by_entry(phi)
         if self.arm.followed and before is not None:
             joints = following.from_before(self.arm, flange, self.branch, self._own(before))
         elif self.arm.followed:
@@ -174,7 +125,7 @@ class Task:
         """The same of one phi (T,) for all points: their poses together would take much memory."""
         joints = np.empty((self.cell.machine.chain.axes, len(points))).T
         for some in in_pieces(len(points)):
-            own = self.arm.inverse_branch(points.frames.of(some).at(phi[some]), self.branch)
+            own = self.arm.inverse_branch(points.frames.of(some).by_entry(phi[some]), self.branch)
             joints[some] = own if points.external is None else with_external(own, points.external[some])
         return joints
 
@@ -197,16 +148,22 @@ class Task:
 
     def joints(self, points: Points, phi: Array) -> Array:
         """(..., T, axes) joint values counted on within each bead, in the turn that suits the limits best."""
-        return self.in_range(unwrapped(self.raw_joints(points, phi), points), points)
+        found = self.in_range(unwrapped(self.raw_joints(points, phi), points), points)
+        # of what is planned row by row: what is summed up over the axes is so in the order of memory
+        return np.ascontiguousarray(found) if phi.ndim == 1 else found
 
     def in_range(self, joints: Array, points: Points) -> Array:
         """The same joints, each limited axis of each bead moved by the whole turns that centre its range."""
-        low = np.minimum.reduceat(joints, points.first, axis=-2)
-        high = np.maximum.reduceat(joints, points.first, axis=-2)
-        turns = np.where(self.unturned, 0.0, np.round((self.middle - 0.5 * (low + high)) / TURN)) * TURN
+        every = tuple(range(joints.ndim - 1))
+        away = np.maximum(joints.max(axis=every) - self.middle, self.middle - joints.min(axis=every))
+        some = np.flatnonzero(~self.unturned & ~(away <= 0.5 * TURN))  # most axes never get so far
+        low = np.minimum.reduceat(joints[..., some], points.first, axis=-2)
+        high = np.maximum.reduceat(joints[..., some], points.first, axis=-2)
+        turns = np.round((self.middle[some] - 0.5 * (low + high)) / TURN) * TURN
         if not np.nan_to_num(turns).any():
             return joints
-        moved: Array = joints + turns[..., points.bead, :]
+        moved = joints.copy(order="K")
+        moved[..., some] += points.spread(turns)
         return moved
 
     def jacobians(self, points: Points, phi: Array, joints: Array) -> Iterator[tuple[slice, Array]]:

@@ -51,12 +51,12 @@ class CalibratedArm:
 
     def inverse(self, poses: ArrayLike) -> Array:
         """Joint angles (8, n, 6) of all configurations for flange poses (n, 4, 4), in [-pi, pi]; NaN where not reached."""
-        given = np.asarray(poses, float)
+        given = np.ascontiguousarray(poses, float)
         return np.stack([self._brought(given, words) for words in range(8)])
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
         """Joint angles (n, 6) of one configuration; else as `inverse`."""
-        given = np.asarray(poses, float)
+        given = np.ascontiguousarray(poses, float)
         return self._brought(given, branch)
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:

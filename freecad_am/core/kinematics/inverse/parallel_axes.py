@@ -101,7 +101,7 @@ class ParallelAxesArm:
         return bent
 
     def _solved(self, poses: ArrayLike, branches: tuple[int, ...]) -> Array:
-        given = np.asarray(poses, float)
+        given = np.ascontiguousarray(poses, float)
         count = len(given)
         tip = frames.inverse(self.tip)
         result = np.empty((len(branches), 6, count))

@@ -20,10 +20,11 @@ from ...kinematics.links.rounds import NONE
 from ...toolpath import Bead
 from ...types import Array, Mask
 from ..joint_path import BeadPath
+from ..limit_rows import UNREACHABLE
 from ..points import Points, gather
 from ..rotation.refine import Refined
 from ..rotation.search import Found
-from ..task import FITS, UNREACHABLE, Task, condition_margin
+from ..task import FITS, Task, condition_margin
 from .kept import ArmKept, Place, clearance_issue
 from .refined import refined_clear
 

@@ -24,8 +24,9 @@ from ...kinematics.links.contact import ArmContact
 from ...toolpath import Bead
 from ...types import Array, Index, Mask
 from ..findings import ROUNDING
+from ..limit_rows import UNREACHABLE, LimitRows
 from ..points import Points
-from ..task import UNREACHABLE, LimitRows, Task, with_external
+from ..task import Task, with_external
 
 RZ, ROTATION = "rz", "rotation"
 ROWS, MAX_COLUMNS = 181, 300

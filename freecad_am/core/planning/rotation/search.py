@@ -17,8 +17,9 @@ from ...geometry.ties import first_least, first_most
 from ...kinematics import jacobian as jac
 from ...types import Array
 from .. import criteria
-from ..points import Points, steps
-from ..task import UNREACHABLE, Task, condition_margin
+from ..limit_rows import UNREACHABLE
+from ..points import Points, in_pieces, steps
+from ..task import Task, condition_margin
 
 POINTS_PER_BEAD = 10
 OFFSETS = 24
@@ -27,8 +28,8 @@ SLOPES = np.linspace(-2.0, 2.0, 13)
 CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
 # of candidates with the same objective the one that moves the joints less is taken
 TIE = 1e-6
-# poses handled at once, so that a long job does not fill the memory
-CHUNK = 200_000
+# poses handled at once, so that they stay in the processor's cache and a long job does not fill the memory
+CHUNK = 30_000
 # sigma_min / sigma_max lies between the bound 1 / kappa_F and its 6-fold: kappa_2 <= kappa_F <= 6 kappa_2
 BOUND_SPREAD = 6.0
 
@@ -150,10 +151,13 @@ def _screened_condition_margin(
     task: Task, points: Points, phi: Array, joints: Array, index: NDArray[np.int64], thresholds: Array
 ) -> Array:
     """Condition margins of chosen poses: exact near the threshold, by the bound where that settles the sign."""
-    matrix = task.jacobian_at(points.frames.of(index), phi, joints)
-    length = task.parameters.characteristic_length
-    bound = jac.condition_bound(matrix, length)
-    threshold = thresholds[index]
-    undecided = (bound < threshold) & (BOUND_SPREAD * bound >= threshold)
-    bound[undecided] = jac.condition(matrix[undecided], length)
-    return condition_margin(bound, threshold)
+    length, threshold = task.parameters.characteristic_length, thresholds[index]
+    condition, undecided = np.empty(len(index)), np.empty(len(index), dtype=bool)
+    matrices: list[Array] = []
+    for some in in_pieces(len(index)):
+        matrix = task.jacobian_at(points.frames.of(index[some]), phi[some], joints[some])
+        bound = condition[some] = jac.condition_bound(matrix, length)
+        near = undecided[some] = (bound < threshold[some]) & (BOUND_SPREAD * bound >= threshold[some])
+        matrices.append(matrix[near])
+    condition[undecided] = jac.condition(np.concatenate(matrices), length)
+    return condition_margin(condition, threshold)
