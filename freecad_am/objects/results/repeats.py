@@ -236,5 +236,8 @@ def _length(words: Words, source: int, place: int) -> int:
 def _alike(one: Words, other: Words) -> int:
     """How many of the first words are the same."""
     size = min(len(one), len(other))
+    if not size:
+        return 0
     differ = one[:size] != other[:size]
-    return int(np.argmax(differ)) if differ.any() else size
+    first = int(differ.argmax())  # 0 too where none differs
+    return first if differ[first] else size

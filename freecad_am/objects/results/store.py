@@ -32,7 +32,7 @@ from .store_bytes import bytes_of, floats_of, older_bytes
 
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
 Place = tuple[str | int, ...]
-_DTYPES = ("float64", "int64", "bool")
+_DTYPES = (np.dtype("float64"), np.dtype("int64"), np.dtype("bool"))
 # of files that are much alike: hash chains of which but the first place is looked at find them in half the time that the
 # library's own presets take, and better
 _FILTERS = [{
@@ -141,6 +141,13 @@ def _mark(key: str) -> float:
     return float(zlib.crc32(key.encode()))
 
 
+@functools.cache
+def _kind_of(dataclass: type[Any]) -> tuple[str, tuple[str, ...]]:
+    """What a dataclass is called in the text, and the fields that it is made of."""
+    names = tuple(field.name for field in dataclasses.fields(dataclass) if field.init)
+    return f"{dataclass.__module__.removeprefix(_PACKAGE)}:{dataclass.__qualname__}", names
+
+
 class _Packer:
     def __init__(self) -> None:
         self.kinds: dict[Any, int] = {}  # the table of arrays of each kind
@@ -172,20 +179,18 @@ class _Packer:
         if isinstance(value, dict):
             return {"d": [[key, self.tree(entry, (*place, ""))] for key, entry in value.items()]}
         if dataclasses.is_dataclass(value) and not isinstance(value, type):
-            kind = type(value)
-            names = [field.name for field in dataclasses.fields(value) if field.init]
-            values = {name: self.tree(getattr(value, name), (*place, name)) for name in names}
-            return {"c": f"{kind.__module__.removeprefix(_PACKAGE)}:{kind.__qualname__}", "v": values}
+            kind, names = _kind_of(type(value))
+            return {"c": kind, "v": {name: self.tree(getattr(value, name), (*place, name)) for name in names}}
         raise TypeError(f"{type(value).__name__} cannot be stored")
 
     def put(self, value: NDArray[Any], place: Place) -> list[int]:
         """The table that an array becomes part of, from which row on, and how many rows. TypeError for what is none, and
         for whole numbers that a float cannot tell apart."""
-        if not value.ndim or str(value.dtype) not in _DTYPES:
+        if not value.ndim or value.dtype not in _DTYPES:
             raise TypeError(f"an array of {value.dtype} with {value.ndim} dimensions cannot be stored")
         if value.dtype == np.int64 and value.size and not -_WHOLE <= value.min() <= value.max() <= _WHOLE:
             raise TypeError(f"whole numbers beyond {_WHOLE} cannot be stored")
-        kind = (place, _DTYPES.index(str(value.dtype)), value.shape[1:])
+        kind = (place, _DTYPES.index(value.dtype), value.shape[1:])
         number = self.kinds.setdefault(kind, len(self.tables))
         if number == len(self.tables):
             self.tables.append([])
