@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.columns import lengths, unit_rows
+from ...geometry.columns import columns, crosses, lengths, unit_rows
 from ...geometry.curves.outline import derivatives
 from ...types import Array, Index, Mask
 
@@ -87,7 +87,7 @@ def _nearest_of_all(points: Array, curve: Curve, bow: Array) -> tuple[Index, Ind
     start, along, at = curve.start - centre, curve.end - curve.start, points - centre
     length = (along * along).sum(axis=1)
     forward = at @ along.T - (start * along).sum(axis=1)
-    share = np.clip(forward / np.maximum(length, 1e-300), 0.0, 1.0)
+    share = _between(forward / np.maximum(length, 1e-300), 0.0, 1.0)
     squared = (at * at).sum(axis=1)[:, None] - 2.0 * at @ start.T + (start * start).sum(axis=1)
     squared += share * (share * length - 2.0 * forward)
     nearest, row = squared.argmin(axis=1), np.arange(len(points))
@@ -116,10 +116,11 @@ def _nearest_chords(
     points: Array, which: Index, segment: Index, curve: Curve, bow: Array
 ) -> tuple[Index, Index, Mask]:
     """The same as `_nearest_of_all`, of pairs (k,) of a point, rising, and a segment."""
-    along = curve.end[segment] - curve.start[segment]
-    offset = points[which] - curve.start[segment]
-    offset -= _share(offset, along)[:, None] * along
-    apart = lengths(offset)
+    start = columns(curve.start)[:, segment]
+    along = columns(curve.end)[:, segment] - start
+    offset = columns(points)[:, which] - start
+    offset -= _share(offset, along) * along
+    apart = _size(offset)
     begins = np.flatnonzero(np.diff(which, prepend=-1))
     of = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(which))))
     least = np.minimum.reduceat(apart, begins)
@@ -131,31 +132,47 @@ def _nearest_chords(
 
 
 def _share(offset: Array, along: Array) -> Array:
-    squared = np.einsum("ij,ij->i", along, along)
-    share: Array = np.clip(np.einsum("ij,ij->i", offset, along) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
-    return share
+    """(k,) where the foot of points `offset` (3, k) from the start of segments `along` (3, k) is, as a share of these."""
+    squared = _dot(along, along)
+    return _between(_dot(offset, along) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
+
+
+def _dot(one: Array, other: Array) -> Array:
+    """(k,) scalar products of vectors (3, k), added up in the order in which einsum does it of rows."""
+    product = one * other
+    found: Array = product[0] + product[2]
+    found += product[1]
+    return found
+
+
+def _size(vectors: Array) -> Array:
+    """(k,) lengths of vectors (3, k)."""
+    return lengths(vectors.T)
+
+
+def _between(values: Array, low: Array | float, high: Array | float) -> Array:
+    """As np.clip, which takes many times as long for a few."""
+    held: Array = np.minimum(np.maximum(values, low), high)
+    return held
 
 
 def _to_cubic(points: Array, which: Index, segment: Index, own: Mask, curve: Curve) -> Array:
     """(n,) the least distance to the cubics of the segments (k,) paired with the points numbered `which`, by Newton's steps
     from the foot on the chord. Only a point's own segment, its chord the nearest, serves past its ends."""
-    points = points[which]
-    p, q = curve.start[segment], curve.end[segment]
-    a, b = curve.start_slope[segment], curve.end_slope[segment]
+    # axis by axis: rows of three take several times as long
+    at = columns(points)[:, which]
+    p, q, a, b = (columns(of)[:, segment] for of in (curve.start, curve.end, curve.start_slope, curve.end_slope))
     low, high = np.where(own, curve.low[segment], 0.0), np.where(own, curve.high[segment], 1.0)
     d = q - p
     square, cube = 3.0 * d - 2.0 * a - b, a + b - 2.0 * d
-    u = _share(points - p, d)
+    u = _share(at - p, d)
     for _ in range(3):
-        v = u[:, None]
-        away = p + v * (a + v * (square + v * cube)) - points
-        slope = a + v * (2.0 * square + 3.0 * v * cube)
-        bend = 2.0 * square + 6.0 * v * cube
-        rate = np.einsum("ij,ij->i", slope, slope) + np.einsum("ij,ij->i", away, bend)
-        step = np.einsum("ij,ij->i", away, slope) / np.where(rate > 0.0, rate, np.inf)
-        u = np.clip(u - step, low, high)
-    v = u[:, None]
-    apart = lengths(p + v * (a + v * (square + v * cube)) - points)
+        away = p + u * (a + u * (square + u * cube)) - at
+        slope = a + u * (2.0 * square + 3.0 * u * cube)
+        bend = 2.0 * square + 6.0 * u * cube
+        rate = _dot(slope, slope) + _dot(away, bend)
+        u = _between(u - _dot(away, slope) / np.where(rate > 0.0, rate, np.inf), low, high)
+    apart = _size(p + u * (a + u * (square + u * cube)) - at)
     found: Array = np.minimum.reduceat(apart, np.flatnonzero(np.diff(which, prepend=-1)))
     return found
 
@@ -171,13 +188,13 @@ def columns_of(points: Array, closed: bool, tangents: Array | None = None) -> tu
         smooth[[0, -1]] &= closed
         return _arcs(points, tangents[:-1, 1], tangents[1:, 0], smooth[:-1], smooth[1:])
     chord = step / np.where(length > 0.0, length, 1.0)[:, None]
-    before, after = np.roll(chord, 1, axis=0), chord
+    before, after = _before(chord), chord
     smooth = ~_corners(before, after, closed)  # at the start of each segment
     smooth[0] &= closed
     # the tangent of the parabola through three points: the nearer neighbour counts more
-    tangent = unit_rows(before * length[:, None] + after * np.roll(length, 1)[:, None])
-    at_start, at_end = tangent, np.roll(tangent, -1, axis=0)
-    smooth_end = np.roll(smooth, -1)
+    tangent = unit_rows(before * length[:, None] + after * _before(length)[:, None])
+    at_start, at_end = tangent, _after(tangent)
+    smooth_end = _after(smooth)
     # where the curve ends or has a corner, the arc through both points that has the tangent of the other end
     start = np.where(smooth[:, None], at_start, np.where(smooth_end[:, None], _mirrored(at_end, chord), chord))
     end = np.where(smooth_end[:, None], at_end, np.where(smooth[:, None], _mirrored(at_start, chord), chord))
@@ -196,12 +213,22 @@ def _arcs(
 
 def _corners(before: Array, after: Array, closed: bool) -> NDArray[np.bool_]:
     """(n,) whether the path of segments with the unit directions (n, 3) has a corner at the start of each of them."""
-    turn = np.arctan2(lengths(np.cross(before, after)), np.einsum("ij,ij->i", before, after))
+    turn = np.arctan2(lengths(crosses(before, after)), np.einsum("ij,ij->i", before, after))
     if not closed:
         turn[0] = 0.0
-    adjacent = np.maximum(np.roll(turn, 1), np.roll(turn, -1))
+    adjacent = np.maximum(_before(turn), _after(turn))
     corners: NDArray[np.bool_] = (turn >= CORNER) | ((turn > SLIGHT) & (turn > SUDDEN * adjacent))
     return corners
+
+
+def _before(rows: NDArray[Any]) -> NDArray[Any]:
+    """The row before each, round again; np.roll takes many times as long for a few."""
+    return np.concatenate((rows[-1:], rows[:-1]))
+
+
+def _after(rows: NDArray[Any]) -> NDArray[Any]:
+    """The row after each, round again."""
+    return np.concatenate((rows[1:], rows[:1]))
 
 
 def _mirrored(tangent: Array, chord: Array) -> Array:
