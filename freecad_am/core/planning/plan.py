@@ -191,7 +191,7 @@ def _ranked(
     ranks = []
     for branch in among:
         task = dataclasses.replace(asked, branch=branch)
-        found = search.everywhere(task, points, task.thresholds(points))
+        found = search.everywhere(task, points, task.thresholds(points), best_alone=task.kept is None)
         within = 0
         if task.kept is not None:
             within = int((found.margin.max(axis=0) >= 0.0).sum())

@@ -84,6 +84,26 @@ def test_no_candidate_of_a_much_finer_grid_is_better(sliced, cell_of):
         assert here <= best * 1.02
 
 
+@pytest.mark.parametrize("min_condition", ["auto", 0.25])
+def test_the_best_candidates_are_the_same_where_nothing_else_is_asked_for(sliced, cell_of, min_condition):
+    toolpath = sliced("sphere", 5.0)
+    beads, cell, kept = [bead for _, _, bead in toolpath], cell_of(toolpath), []
+    points = gather(beads, cell, search.POINTS_PER_BEAD)
+    for branch in range(8):
+        task = Task(cell, branch, JointParameters(min_condition=min_condition))
+        thresholds, each = task.thresholds(points), np.arange(points.beads)
+        every = search.everywhere(task, points, thresholds)
+        alone = search.everywhere(task, points, thresholds, best_alone=True)
+        best = every.best()
+        assert np.array_equal(alone.best(), best)
+        assert np.array_equal(alone.objective[best, each], every.objective[best, each])
+        assert np.allclose(alone.margin[best, each], every.margin[best, each], rtol=0.0, atol=1e-12)
+        serves = (every.margin >= 0.0).any(axis=0)
+        assert np.array_equal((alone.margin >= 0.0).any(axis=0), serves)
+        kept.append(serves.mean())
+    assert max(kept) == 1.0 if min_condition == "auto" else max(kept) < 1.0
+
+
 def test_the_condition_is_kept_at_all_points_and_between(sliced, cell_of):
     toolpath = sliced("sphere", 5.0)
     cell = cell_of(toolpath)

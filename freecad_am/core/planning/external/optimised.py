@@ -104,7 +104,7 @@ def _here(
     """Of each bead with its external axes shifted by (B, k): these, the best coefficients, objective and margin there."""
     assert points.external is not None
     values = points.external + shifts[points.bead]
-    found = search.everywhere(task, moved(points, task.cell, values), thresholds)
+    found = search.everywhere(task, moved(points, task.cell, values), thresholds, best_alone=True)
     best, each = found.best(), np.arange(points.beads)
     margin = found.margin[best, each]
     if task.cell.external is not None and task.cell.external.turning:

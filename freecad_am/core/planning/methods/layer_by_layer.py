@@ -55,7 +55,8 @@ def _searched(
     coarse, full = gather(beads, task.cell, search.POINTS_PER_BEAD), gather(beads, task.cell)
     coarse_threshold, threshold = task.thresholds(coarse), task.thresholds(full)
     progress(0.1, "searching rotations")
-    found = search.everywhere(task, coarse, coarse_threshold)
+    joined = task.joined & full.closed
+    found = search.everywhere(task, coarse, coarse_threshold, best_alone=task.kept is None and not joined.any())
     if task.kept is not None:
         progress(0.2, "keeping the arm clear")
         looked = gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
@@ -66,7 +67,6 @@ def _searched(
     hopeless = [int(k) for k in np.flatnonzero(found.margin[best, each] < 0.0)]
     roomy = fit.for_beads(task, [beads[k] for k in hopeless], [places[k] for k in hopeless])
     helped = {k: paths for k, paths in zip(hopeless, roomy) if paths is not None}
-    joined = task.joined & full.closed
     starts = _with_other_turns(start, found) if joined.any() else start[None]
     starts[1:, ~joined] = np.nan
     progress(0.4, "refining layers")

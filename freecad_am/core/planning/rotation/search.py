@@ -30,6 +30,8 @@ CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
 TIE = 1e-6
 # poses handled at once, so that they stay in the processor's cache and a long job does not fill the memory
 CHUNK = 30_000
+# candidates of a bead that are looked at one after the other where only the best is asked for, before all are
+FIRST_LOOK = 4
 # sigma_min / sigma_max lies between the bound 1 / kappa_F and its 6-fold: kappa_2 <= kappa_F <= 6 kappa_2
 BOUND_SPREAD = 6.0
 
@@ -59,11 +61,13 @@ class Found:
 
 
 def everywhere(
-    task: Task, points: Points, thresholds: Array, slopes: Array | None = None, offsets: int = OFFSETS
+    task: Task, points: Points, thresholds: Array, slopes: Array | None = None, offsets: int = OFFSETS,
+    best_alone: bool = False,
 ) -> Found:
     """Candidates over the whole range of offset (one turn) and slope, for every bead of the points.
 
-    Of closed beads that have to join up those of slopes that do not make whole turns are out of the question.
+    Of closed beads that have to join up those of slopes that do not make whole turns are out of the question. best_alone:
+    nothing is asked for but the best of each bead; where one serves, conditions of worse ones are not looked at.
     """
     joined = task.joined & points.closed
     if slopes is None:
@@ -76,17 +80,31 @@ def everywhere(
     coefficients[:, :, 0] = offset_grid[:, None]
     if degree > 0:
         coefficients[:, :, 1] = slope_grid[:, None]
-    found = judge(task, points, thresholds, coefficients)
+    found = judge(task, points, thresholds, coefficients, conditions=not best_alone)
     apart = np.abs(slope_grid - np.round(slope_grid)) > 1e-9
     found.margin[np.ix_(apart, joined)] = UNREACHABLE
-    return found
+    return _with_conditions_of_best(task, points, thresholds, found) if best_alone else found
 
 
-def judge(task: Task, points: Points, thresholds: Array, coefficients: Array) -> Found:
-    """Objective and margin of given candidates (C, B, degree + 1)."""
+def _with_conditions_of_best(task: Task, points: Points, thresholds: Array, found: Found) -> Found:
+    """Candidates judged by limits alone, with the condition of the best one of each bead, and of those better but for it."""
+    each, known = np.arange(points.beads), found.margin < 0.0
+    for _ in range(FIRST_LOOK):
+        best = found.best()
+        new = ~known[best, each]
+        if not new.any():
+            return found
+        looked = judge(task, points, thresholds, found.coefficients[None, best, each]).margin[0]
+        found.margin[best[new], each[new]], known[best[new], each[new]] = looked[new], True
+    whole = judge(task, points, thresholds, found.coefficients)
+    return Found(found.coefficients, found.objective, np.where(known, found.margin, whole.margin))
+
+
+def judge(task: Task, points: Points, thresholds: Array, coefficients: Array, conditions: bool = True) -> Found:
+    """Objective and margin of given candidates (C, B, degree + 1), that of limits alone without `conditions`."""
     size = max(1, CHUNK // len(points))
     parts = [
-        _judge(task, points, thresholds, coefficients[start : start + size])
+        _judge(task, points, thresholds, coefficients[start : start + size], conditions)
         for start in range(0, len(coefficients), size)
     ]
     return Found(
@@ -96,7 +114,9 @@ def judge(task: Task, points: Points, thresholds: Array, coefficients: Array) ->
     )
 
 
-def _judge(task: Task, points: Points, thresholds: Array, coefficients: Array) -> tuple[Array, Array]:
+def _judge(
+    task: Task, points: Points, thresholds: Array, coefficients: Array, conditions: bool
+) -> tuple[Array, Array]:
     value = np.zeros((len(coefficients), len(points)))
     for power in range(coefficients.shape[2] - 1, -1, -1):
         value = value * points.parameter + coefficients[:, points.bead, power]
@@ -105,6 +125,9 @@ def _judge(task: Task, points: Points, thresholds: Array, coefficients: Array) -
     limit = points.worst(task.rows.margin(joints))
     margin = np.minimum(limit, _range_margin(task, points, phi))
     objective = _objective(task, points, phi, joints)
+    objective[np.isnan(objective)] = np.inf
+    if not conditions:
+        return objective, margin
     open_beads = (margin >= 0.0)[:, points.bead]
     condition = np.full(len(coefficients) * len(points), UNREACHABLE)
     chosen = np.flatnonzero(open_beads.ravel())
@@ -114,7 +137,7 @@ def _judge(task: Task, points: Points, thresholds: Array, coefficients: Array) -
         )
     worst = points.worst(condition.reshape(phi.shape))
     margin = np.where(margin >= 0.0, np.minimum(margin, worst), margin)
-    return np.where(np.isnan(objective), np.inf, objective), margin
+    return objective, margin
 
 
 def _range_margin(task: Task, points: Points, phi: Array) -> Array | float:

@@ -40,7 +40,7 @@ def for_beads(task: Task, beads: Sequence[Bead], places: Sequence[Place]) -> lis
     coarse = gather([beads[k] for k in usable], task.cell, search.POINTS_PER_BEAD)
     threshold = task.thresholds(coarse)
     # only with slopes of whole turns can a seam be moved after the planning
-    found = search.everywhere(free, coarse, threshold, search.CLOSING_SLOPES, OFFSETS)
+    found = search.everywhere(free, coarse, threshold, search.CLOSING_SLOPES, OFFSETS, best_alone=True)
     best, each = found.best(), np.arange(len(usable))
     resolved = ties.resolve(free, coarse, threshold, found.coefficients[best, each])
     for number, k in enumerate(usable):
@@ -77,7 +77,7 @@ def _would_fit_continuous(task: Task, path: BeadPath) -> bool:
         return True
     free = dataclasses.replace(task, cell=_last_continuous(task.cell))
     coarse = gather([path.bead], task.cell, search.POINTS_PER_BEAD)
-    return bool((search.everywhere(free, coarse, task.thresholds(coarse)).margin >= 0.0).any())
+    return bool((search.everywhere(free, coarse, task.thresholds(coarse), best_alone=True).margin >= 0.0).any())
 
 
 def _fitted(task: Task, free: Task, bead: Bead, place: Place, coefficients: Array) -> list[BeadPath] | None:
@@ -103,7 +103,7 @@ def _piece(task: Task, bead: Bead, place: Place, coefficients: Array) -> BeadPat
     if path.margin >= FITS:
         return path
     coarse, full = gather([bead], task.cell, search.POINTS_PER_BEAD), gather([bead], task.cell)
-    found = search.everywhere(task, coarse, task.thresholds(coarse))
+    found = search.everywhere(task, coarse, task.thresholds(coarse), best_alone=True)
     threshold = task.thresholds(full)
     refined = refine.refine(task, full, threshold, found.coefficients[None, found.best()[0]])
     return judged(task, [bead], [place], full, threshold, refined.coefficients, refined)[0]
