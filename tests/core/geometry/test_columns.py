@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lengths told column by column are those of numpy's functions, to the last bit: the same job has the same bytes."""
+"""What is told of vectors column by column is what numpy tells, to the last bit: the same job has the same bytes."""
 
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.columns import lengths, sides
+from freecad_am.core.geometry.columns import crosses, lengths, sides
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 20_000])
@@ -15,3 +15,9 @@ def test_lengths_are_those_of_numpy_to_the_last_bit(count):
     for following in (np.roll(corners, -1, axis=1) - corners, corners - np.roll(corners, -1, axis=1)):
         assert np.array_equal(sides(corners), np.linalg.norm(following, axis=2))
     assert np.array_equal(sides(corners[::2]), np.linalg.norm((np.roll(corners, -1, axis=1) - corners)[::2], axis=2))
+
+
+@pytest.mark.parametrize("count", [0, 1, 3, 20_000])
+def test_cross_products_are_those_of_numpy_to_the_last_bit(count):
+    one, other = np.random.default_rng(count).normal(size=(2, count, 3))
+    assert np.array_equal(crosses(one, other), np.cross(one, other))

@@ -8,14 +8,15 @@ true condition only for what the bound leaves open.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.ties import first_least, first_most
 from ...kinematics import jacobian as jac
-from ...types import Array
+from ...types import Array, Mask
 from .. import criteria
 from ..limit_rows import UNREACHABLE
 from ..points import Points, in_pieces, steps
@@ -30,8 +31,8 @@ CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
 TIE = 1e-6
 # poses handled at once, so that they stay in the processor's cache and a long job does not fill the memory
 CHUNK = 30_000
-# candidates of a bead that are looked at one after the other where only the best is asked for, before all are
-FIRST_LOOK = 4
+# times that conditions are looked at, the last time all that are not known of beads of which more are asked for
+LOOKS = 5
 # sigma_min / sigma_max lies between the bound 1 / kappa_F and its 6-fold: kappa_2 <= kappa_F <= 6 kappa_2
 BOUND_SPREAD = 6.0
 
@@ -55,9 +56,17 @@ class Found:
 
     def best(self) -> NDArray[np.int64]:
         """(B,) index of the candidate with the least objective among the feasible, else of the largest margin."""
-        feasible = self.margin >= 0.0
+        return self._best(self.margin)
+
+    def is_best(self, margin: Array) -> Mask:
+        """(C, B) which candidates are the best ones if their margins are these, (C, B)."""
+        found: Mask = np.arange(len(margin))[:, None] == self._best(margin)
+        return found
+
+    def _best(self, margin: Array) -> NDArray[np.int64]:
+        feasible = margin >= 0.0
         ranked = first_least(np.where(feasible, self.objective, np.inf), axis=0)
-        return np.asarray(np.where(feasible.any(axis=0), ranked, first_most(self.margin, axis=0)), dtype=np.int64)
+        return np.asarray(np.where(feasible.any(axis=0), ranked, first_most(margin, axis=0)), dtype=np.int64)
 
 
 def everywhere(
@@ -83,21 +92,28 @@ def everywhere(
     found = judge(task, points, thresholds, coefficients, conditions=not best_alone)
     apart = np.abs(slope_grid - np.round(slope_grid)) > 1e-9
     found.margin[np.ix_(apart, joined)] = UNREACHABLE
-    return _with_conditions_of_best(task, points, thresholds, found) if best_alone else found
+    if best_alone:
+        found = replace(found, margin=with_conditions(task, points, thresholds, found, found.is_best))
+    return found
 
 
-def _with_conditions_of_best(task: Task, points: Points, thresholds: Array, found: Found) -> Found:
-    """Candidates judged by limits alone, with the condition of the best one of each bead, and of those better but for it."""
-    each, known = np.arange(points.beads), found.margin < 0.0
-    for _ in range(FIRST_LOOK):
-        best = found.best()
-        new = ~known[best, each]
+def with_conditions(
+    task: Task, points: Points, thresholds: Array, found: Found, asked: Callable[[Array], Mask]
+) -> Array:
+    """(C, B) margins of candidates that were judged by limits alone, with their condition, which only takes from it, where
+    that matters: whatever of the margins is `asked` for, (C, B), until all of that is known."""
+    margin, known, each = found.margin.copy(), found.margin < 0.0, np.arange(points.beads)
+    for look in range(LOOKS):
+        new = asked(margin) & ~known
         if not new.any():
-            return found
-        looked = judge(task, points, thresholds, found.coefficients[None, best, each]).margin[0]
-        found.margin[best[new], each[new]], known[best[new], each[new]] = looked[new], True
-    whole = judge(task, points, thresholds, found.coefficients)
-    return Found(found.coefficients, found.objective, np.where(known, found.margin, whole.margin))
+            break
+        if look == LOOKS - 1:
+            new = ~known & new.any(axis=0)
+        some = np.argsort(~new, axis=0, kind="stable")[: new.sum(axis=0).max()]
+        looked = judge(task, points, thresholds, found.coefficients[some, each]).margin
+        margin[some, each] = np.where(known[some, each], margin[some, each], looked)
+        known[some, each] = True
+    return margin
 
 
 def judge(task: Task, points: Points, thresholds: Array, coefficients: Array, conditions: bool = True) -> Found:

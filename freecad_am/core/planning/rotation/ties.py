@@ -8,12 +8,14 @@ where several come equally close, the one with the least motion from the bead be
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...geometry.angles import TURN, shortest
 from ...geometry.ties import alike, first_least, first_most
-from ...types import Array
+from ...types import Array, Mask
 from ..points import Points
 from ..task import Task
 from . import search
@@ -33,12 +35,12 @@ def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) 
     """
     here = search.judge(task, points, thresholds, coefficients[None])
     coarse = _moved(coefficients, np.broadcast_to(np.arange(COARSE)[:, None] * (TURN / COARSE), (COARSE, points.beads)))
-    rough = search.judge(task, points, thresholds, coarse)
+    rough = search.judge(task, points, thresholds, coarse, conditions=False)
     flat = as_good(task, rough.objective, here.objective)
-    margin = np.where(flat, rough.margin, -np.inf)
     if not flat[1:].any():
         return coefficients
-    around = _peaks(margin) * (TURN / COARSE)
+    rough = replace(rough, margin=np.where(flat, rough.margin, -np.inf))
+    around = _peaks(search.with_conditions(task, points, thresholds, rough, _are_peaks)) * (TURN / COARSE)
     offsets = (around[:, None] + np.linspace(-1.0, 1.0, FINE)[:, None] * (TURN / COARSE)).reshape(-1, points.beads)
     near = search.judge(task, points, thresholds, _moved(coefficients, offsets))
     flat = as_good(task, near.objective, here.objective)
@@ -52,6 +54,12 @@ def as_good(task: Task, objective: ArrayLike, best: Array) -> NDArray[np.bool_]:
     """Whether objectives count as equal to the best ones."""
     good: NDArray[np.bool_] = np.asarray(objective) <= best * (1.0 + FLAT) + task.parameters.tolerance
     return good
+
+
+def _are_peaks(margin: Array) -> Mask:
+    """(C, B) which candidates are `_peaks`."""
+    found: Mask = (np.arange(COARSE)[:, None] == _peaks(margin)[:, None]).any(axis=0)
+    return found
 
 
 def _peaks(margin: Array) -> Array:
