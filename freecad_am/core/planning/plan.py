@@ -19,7 +19,7 @@ from . import comparison
 from .arm import clear as arm_clear
 from .arm.kept import ArmKept, Cylinders, of_job
 from .beads import phases
-from .beads.chord_error import refined_to_chord_error
+from .beads.chord_error import all_refined
 from .beads.overlap import run_on
 from .beads.retreat import go_back
 from .beads.speeds import corners_slowed, rings_slowed, too_fast
@@ -238,7 +238,7 @@ def _finished(
     task: Task, toolpath: Toolpath, places: Sequence[Place], paths: Sequence[BeadPath]
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with the points that straight motion asks for, turns counted on, and what is wrong with them."""
-    straight = closing.where_asked(task, [_as_run(task, path) for path in paths])
+    straight = closing.where_asked(task, _as_run(task, paths))
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])
     paths, missed = as_held(task.cell, paths, task.lock, task.parameters.max_residual)
     phased = [phases.phased(task.cell, path, task.condition_at) for path in paths]
@@ -254,12 +254,12 @@ def _finished(
     return paths, issues
 
 
-def _as_run(task: Task, path: BeadPath) -> tuple[BeadPath, list[Issue]]:
-    """The path longer where its bead goes back or runs on, with the points that straight motion asks for."""
+def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[Issue]]]:
+    """The paths longer where their beads go back or run on, with the points that straight motion asks for."""
     if not task.cell.machine.free:  # whose beads are looked at as they are run: axes have room for all of it, or for none
-        return path, []
-    longer = run_on(task, go_back(task, path, task.retreat), task.overlap)
-    return refined_to_chord_error(task, longer, task.chord_error)
+        return [(path, []) for path in paths]
+    longer = [run_on(task, go_back(task, path, task.retreat), task.overlap) for path in paths]
+    return all_refined(task, longer, task.chord_error)
 
 
 def _slowed(cell: Cell, paths: Sequence[BeadPath], toolpath: Toolpath) -> tuple[list[BeadPath], list[Issue]]:

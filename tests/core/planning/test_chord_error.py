@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.planning.beads import chord_error
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.toolpath import Bead
 
@@ -53,6 +54,16 @@ def test_added_points_are_on_the_sphere_and_in_the_plane_of_their_layer(sliced, 
         assert np.abs(np.linalg.norm(path.bead.points, axis=1) - 45.0).max() < 1e-3
         assert np.ptp(path.bead.points[:, 2]) < 1e-9
     assert added > 100
+
+
+def test_beads_that_are_looked_at_together_get_the_points_that_they_get_alone(sliced, cell_of, monkeypatch):
+    toolpath, found = sliced("sphere", 5.0), []
+    for together in (1, 200, 4096):
+        monkeypatch.setattr(chord_error, "TOGETHER", together)
+        planned = plan_joints(toolpath, cell_of(toolpath, limits="maker"), JointParameters())
+        found.append([path.joints for path in planned.beads])
+    for other in found[1:]:
+        assert all(np.array_equal(one, again) for one, again in zip(found[0], other, strict=True))
 
 
 def test_an_overlap_ends_on_the_sphere(sliced, cell_of):

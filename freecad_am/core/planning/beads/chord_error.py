@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ BETWEEN = np.array([
     [np.prod([(x - node) / (own - node) for node in (0.0, *INSIDE, 1.0) if node != own]) for own in INSIDE] for x in MORE
 ])
 ROUNDS = 8
+TOGETHER = 4096  # points of beads that are looked at together, about
 # rounding room: beads of revolution use their chord error up by themselves, mm
 ROUNDING = 1e-6
 
@@ -45,14 +47,39 @@ def refined_to_chord_error(task: Task, path: BeadPath, chord_error: float) -> tu
     )]
 
 
+def all_refined(task: Task, paths: Sequence[BeadPath], chord_error: float) -> list[tuple[BeadPath, list[Issue]]]:
+    """`refined_to_chord_error` of each path. Most need no more points, which is seen of several beads together: calls take
+    longer than the work on one."""
+    reachable = [k for k, path in enumerate(paths) if path.reachable]
+    ends = np.cumsum([len(paths[k].bead) for k in reachable])
+    bent: set[int] = set()
+    for together in np.split(np.array(reachable), np.flatnonzero(np.diff(ends // TOGETHER)) + 1):
+        some = [paths[k] for k in together.tolist()]
+        if not some:
+            continue
+        last = np.cumsum([len(path.bead) for path in some]) - 1
+        points, joints = (np.concatenate(rows) for rows in zip(*((path.bead.points, path.joints) for path in some)))
+        segments = np.delete(np.arange(len(points)), last)
+        off = _deviation(task, points, joints, segments, chord_error) > chord_error + ROUNDING
+        bent.update(together[np.searchsorted(last, segments[off])].tolist())
+    return [
+        refined_to_chord_error(task, path, chord_error) if k in bent else (path, []) for k, path in enumerate(paths)
+    ]
+
+
 def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Array:
     """(n - 1,) how far the nozzle's tip leaves each segment of the bead when the joints run straight, mm."""
-    seen = _looked_at(task, bead, joints, np.arange(len(joints) - 1), INSIDE)
+    return _deviation(task, bead.points, joints, np.arange(len(joints) - 1), chord_error)
+
+
+def _deviation(task: Task, points: Array, joints: Array, segments: NDArray[np.intp], chord_error: float) -> Array:
+    """(k,) the same of the segments (k,) that begin at those of the points (n, 3) with their joints (n, axes)."""
+    seen = _looked_at(task, points, joints, segments, INSIDE)
     away: Array = np.maximum.reduce(seen)
     # nearly all leave it evenly, most in the middle: between what was seen it is no more
     near = np.flatnonzero((away > 0.5 * chord_error) & (np.maximum.reduce(BETWEEN @ seen) > away))
     if len(near):
-        away[near] = np.maximum.reduce([away[near], *_looked_at(task, bead, joints, near, MORE)])
+        away[near] = np.maximum.reduce([away[near], *_looked_at(task, points, joints, segments[near], MORE)])
     return away
 
 
@@ -67,11 +94,11 @@ def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
     return angle
 
 
-def _looked_at(task: Task, bead: Bead, joints: Array, segments: NDArray[np.intp], shares: Array) -> Array:
-    """The same of the segments (k,), at shares (s,) of their length: (s, k) mm."""
+def _looked_at(task: Task, points: Array, joints: Array, segments: NDArray[np.intp], shares: Array) -> Array:
+    """The same at shares (s,) of their length: (s, k) mm."""
     start, way = joints[segments], joints[segments + 1] - joints[segments]
-    away = task.cell.tip_at(start[:, None] + way[:, None] * shares[:, None]) - bead.points[segments, None]
-    along = bead.points[segments + 1] - bead.points[segments]
+    away = task.cell.tip_at(start[:, None] + way[:, None] * shares[:, None]) - points[segments, None]
+    along = points[segments + 1] - points[segments]
     length = np.maximum(np.einsum("ni,ni->n", along, along), 1e-18)
     share = np.clip(np.einsum("nki,ni->nk", away, along) / length[:, None], 0.0, 1.0)
     away -= share[..., None] * along[:, None]
