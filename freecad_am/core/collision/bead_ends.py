@@ -10,6 +10,8 @@ wherever the move leads.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -24,6 +26,7 @@ from .tolerances import ABOVE_FACES, CHORD
 # length of the pieces the deposit is looked at as, mm, near nozzles and near links
 GRAIN, LINK_GRAIN = 1.5, 5.0
 HALVINGS = 6  # of a nozzle's length: to a hundredth of it
+REMEMBERED = 25_000  # points of beads whose ends are known at most: of longer ones they take too much memory
 
 
 class Bead(Protocol):
@@ -88,10 +91,11 @@ class _Ends(NamedTuple):
 
 
 class BeadEnds:
-    """The nozzle of a size on rapids between beads, whose deposit is `deposit`."""
+    """The nozzle of a size on rapids between beads, and the deposit that these are."""
 
-    def __init__(self, beads: Beads, deposit: Obstacles, size: Size) -> None:
+    def __init__(self, beads: Beads, size: Size) -> None:
         self._size = size
+        self.deposit = deposit = beads.solid()
         starts = np.flatnonzero(beads.first)
         ends = np.append(starts[1:], len(beads.points)) - 1
         rows, when = np.concatenate([ends, starts]), np.concatenate([ends + 1, starts])
@@ -102,6 +106,12 @@ class BeadEnds:
             point[when[some]], height[when[some]] = beads.points[rows[some]], heights[some]
             found.append(_Ends(point, height))
         self._ends = found
+
+    @classmethod
+    def of(cls, beads: Beads, size: Size) -> BeadEnds:
+        """Those of the beads, made once for the rapids that are planned and for the look at what came of it."""
+        made = _made if len(beads.points) <= REMEMBERED else _made.__wrapped__
+        return made(_Asked(beads, size))
 
     def nozzle(self, tip: Array, deposited: Index) -> Nozzle:
         """The nozzle with tips (k, 3), where so many points (k,) are there: the last of these is left, the one after it come
@@ -114,6 +124,29 @@ class BeadEnds:
             away = np.linalg.norm(tip - end.point[deposited], axis=1)
             bodies, deposit = np.fmax(bodies, about - away), np.fmax(deposit, end.height[deposited] - away)
         return Nozzle(travelling(*self._size, bodies).bodies, travelling(*self._size, deposit).deposit)
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What ends of beads follow from; the same numbers are the same question."""
+
+    beads: Beads
+    size: Size
+
+    @cached_property
+    def _numbers(self) -> tuple[bytes, ...]:
+        return tuple(column.tobytes() for column in (*self.beads, np.array(self.size)))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Asked) and self._numbers == other._numbers
+
+    def __hash__(self) -> int:
+        return hash(self._numbers)
+
+
+@lru_cache(maxsize=1)
+def _made(asked: _Asked) -> BeadEnds:
+    return BeadEnds(asked.beads, asked.size)
 
 
 def standing_heights(deposit: Obstacles, size: Size, tip: Array, axis: Array, height: Array, moment: Index) -> Array:

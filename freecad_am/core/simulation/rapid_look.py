@@ -59,12 +59,10 @@ def looked_at(
     move = np.repeat(np.arange(len(rows)), count)
     share = (np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
 
-    columns = Beads.of(beads, width, height)
-    deposit = columns.solid()
-    ends = BeadEnds(columns, deposit, size)
+    ends = BeadEnds.of(Beads.of(beads, width, height), size)
     platform = [disc(cell.platform_diameter, cell.mount)] if cell.platform_diameter > 0.0 else []
     reach = float(np.hypot(size.length, size.radius + size.slope * size.length))
-    around = scene([*bodies, *platform, *cell.in_part()], np.concatenate(corners), reach, deposit) if len(rows) else None
+    around = scene([*bodies, *platform, *cell.in_part()], np.concatenate(corners), reach, ends.deposit) if len(rows) else None
     deposited = np.cumsum(motion.deposit)[rows]
     met = np.zeros(len(rows), dtype=bool)
     for some in _pieces(len(move)):

@@ -72,10 +72,10 @@ class RapidObstacles:
         self.cell = cell
         platform = [disc(cell.platform_diameter, cell.mount, "the platform")] if cell.platform_diameter > 0.0 else []
         self.bodies = (*bodies, *platform, *cell.in_part())
-        self.deposited = deposit.solid()
         nozzle = cell.nozzle
         self._size = Size(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length)
-        self._ends = BeadEnds(deposit, self.deposited, self._size)
+        self._ends = BeadEnds.of(deposit, self._size)
+        self.deposited = self._ends.deposit
         self._box = np.array([[np.inf] * 3, [-np.inf] * 3])
         self._bodies = scene((), deposit.points, 0.0).bodies
 
