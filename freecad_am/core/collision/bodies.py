@@ -50,9 +50,9 @@ class Bodies:
         low = np.broadcast_to(solid.low, len(tip))[:, None]
         ends = [tip + height * axis for height in (low, solid.high)]
         for body in self.solids:
-            boxed = [((end > body.low) & (end < body.high)).all(axis=1) for end in ends]
-            rows = np.flatnonzero(~found & boxed[0] & boxed[1])
-            found[rows] = body.holds(0.5 * (ends[0][rows] + ends[1][rows]))
+            rows = np.flatnonzero(~found & body.may_hold(ends[0]) & body.may_hold(ends[1]))
+            if len(rows):
+                found[rows] = body.holds(0.5 * (ends[0][rows] + ends[1][rows]))
         return found
 
 

@@ -45,9 +45,16 @@ class Inside:
     def holds(self, points: Array) -> Mask:
         """Whether points (n, 3) are inside; on the surface itself it may be either."""
         found = np.zeros(len(points), dtype=bool)
-        some = np.flatnonzero(((points > self.low) & (points < self.high)).all(axis=1))
+        some = np.flatnonzero(self.may_hold(points))
         for part in np.split(some, np.arange(QUERIES, len(some), QUERIES)):
             found[part] = self._held(points[part] @ self._frame.T)
+        return found
+
+    def may_hold(self, points: Array) -> Mask:
+        """Whether points (n, 3) are in the box about it; axis by axis, in a fraction of the time of a reduction."""
+        found: Mask = np.ones(len(points), dtype=bool)
+        for at, low, high in zip(points.T, self.low, self.high):
+            found &= (at > low) & (at < high)
         return found
 
     def _held(self, seen: Array) -> Mask:

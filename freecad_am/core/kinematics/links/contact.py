@@ -37,6 +37,7 @@ from ...collision.obstacles import Obstacles
 from ...collision.scene import Scene
 from ...collision.tolerances import ABOUT_FACES
 from ...geometry import frames
+from ...geometry.columns import dots
 from ...geometry.cylinders import Cylinder, about, row
 from ...geometry.obstacles import Body, disc
 from ...parameters.external import ROBOT
@@ -224,17 +225,18 @@ class ArmContact:
     def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
         links, seen_from = self.seen(joints)
         link, what = np.full(len(joints), NONE, dtype=np.int64), np.full(len(joints), NONE, dtype=np.int64)
+        looked_at = sorted({number for group in self.groups for number in group.links})
+        middles = {k: links[:, k, :3, :3] @ self.balls[k][0] + links[:, k, :3, 3] for k in looked_at}
         for place, group in enumerate(self.groups):
             frame = seen_from[group.seen_from]
             centre = frame[:, :3, :3] @ group.centre + frame[:, :3, 3]
+            back = frames.inverse(frame)
             for number in group.links:
-                middle, size = self.balls[number]
-                away = links[:, number, :3, :3] @ middle + links[:, number, :3, 3] - centre
-                within = size + group.radius + ABOUT_FACES
-                rows = np.flatnonzero((link == NONE) & (np.einsum("ij,ij->i", away, away) < within**2))
+                away = middles[number] - centre
+                within = self.balls[number][1] + group.radius + ABOUT_FACES
+                rows = np.flatnonzero((link == NONE) & (dots(away, away) < within**2))
                 if len(rows):
-                    seen = frames.inverse(frame[rows]) @ links[rows, number]
-                    met = rows[_meets(group, self.solids[number], seen, moment[rows])]
+                    met = rows[_meets(group, self.solids[number], back[rows] @ links[rows, number], moment[rows])]
                     link[met], what[met] = number, place
         left = np.flatnonzero(link == NONE)
         outer, inner = self.own.touches(links[left])
@@ -245,18 +247,17 @@ class ArmContact:
 def _meets(group: Group, solids: Sequence[Solid], seen: Array, moment: Index) -> Mask:
     """(k,) whether solids of a link, whose frame is seen as (k, 4, 4), meet a group."""
     met = np.zeros(len(seen), dtype=bool)
+    turn, origin = seen[:, :3, :3], seen[:, :3, 3]
     for one in solids:
-        left = np.flatnonzero(~met)
-        turn = seen[left, :3, :3]
-        tip = turn @ one.tip + seen[left, :3, 3]
-        axis = turn @ one.axis
+        tip, axis = turn @ one.tip + origin, turn @ one.axis
         # only those that come near the ball are looked at closely
         low, high = float(np.min(one.solid.low)), one.solid.high
-        along = np.clip(np.einsum("ij,ij->i", group.centre - tip, axis), low, high)
-        off = tip + along[:, None] * axis - group.centre
+        off = tip - group.centre
+        along = np.minimum(np.maximum(-dots(off, axis), low), high)
+        off += along[:, None] * axis
         within = group.radius + one.solid.radius + one.solid.slope * high + ABOUT_FACES
-        near = np.flatnonzero(np.einsum("ij,ij->i", off, off) < within**2)
-        met[left[near]] = group.scene.touched(one.solid, tip[near], axis[near], moment[left[near]])
+        near = np.flatnonzero(~met & (dots(off, off) < within**2))
+        met[near] = group.scene.touched(one.solid, tip[near], axis[near], moment[near])
     return met
 
 

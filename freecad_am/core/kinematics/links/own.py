@@ -16,6 +16,7 @@ import numpy as np
 
 from ...collision.cylinders_apart import PlacedCylinders, nearer
 from ...collision.tolerances import ABOUT_FACES
+from ...geometry.columns import lengths
 from ...geometry.cylinders import Cylinder
 from ...geometry.spread import spread
 from ...types import Array, Index, Mask
@@ -48,24 +49,42 @@ class OwnLinks:
         """Of frames (k, links, 4, 4), the first of them the robot's own from the base on: the outer (k,) and the inner (k,)
         of two links that touch, the pair nearest to the base; NONE in both where none does."""
         outer, inner = np.full((2, len(links)), NONE, dtype=np.int64)
+        middles = self._middles(links)
         for one, other in self.pairs:
-            left = np.flatnonzero(outer == NONE)
-            met = left[self._touch(one, other, links[left])]
-            outer[met], inner[met] = one, other
+            near = self._near(one, other, middles)
+            near = near[outer[near] == NONE]
+            if len(near):
+                met = near[self._touch(one, other, links[near, one], links[near, other])]
+                outer[met], inner[met] = one, other
         return outer, inner
 
-    def _touch(self, outer: int, inner: int, links: Array) -> Mask:
-        """(k,) whether two links touch."""
-        touch = np.zeros(len(links), dtype=bool)
-        a, b = links[:, outer], links[:, inner]
-        near = np.flatnonzero(_apart(a, b, self.balls[outer], self.balls[inner]) < self.gap)
-        if len(near):
-            a, b = a[near], b[near]
-            others = [placed(other, b) for other in self.solids[inner]]
-            for one in (placed(one, a) for one in self.solids[outer]):
-                for other in others:
-                    rows = np.flatnonzero(~touch[near])
-                    touch[near[rows]] = nearer(one.of(rows), other.of(rows), self.gap)
+    def often(self, pair: tuple[int, int], links: Array, middles: Sequence[Array], share: float) -> bool:
+        """Whether two links touch with more than a share of frames. Most are near each other with fewer: then that is known
+        without a closer look."""
+        near, most = self._near(*pair, middles), share * len(links)
+        return len(near) > most and bool(
+            np.count_nonzero(self._touch(*pair, *(links[near, number] for number in pair))) > most)
+
+    def _middles(self, links: Array) -> list[Array]:
+        """(k, 3) where the middles of the balls are, of each link."""
+        return [links[:, k, :3, :3] @ middle + links[:, k, :3, 3] for k, (middle, _) in enumerate(self.balls)]
+
+    def _near(self, outer: int, inner: int, middles: Sequence[Array]) -> Index:
+        """With which frames the balls of two links are nearer than the links may be."""
+        away = lengths(middles[outer] - middles[inner])
+        return np.flatnonzero(away - self.balls[outer][1] - self.balls[inner][1] < self.gap)
+
+    def _touch(self, outer: int, inner: int, a: Array, b: Array) -> Mask:
+        """(k,) whether two links touch, with frames (k, 4, 4) of each."""
+        touch = np.zeros(len(a), dtype=bool)
+        others = [placed(other, b) for other in self.solids[inner]]
+        for one in (placed(one, a) for one in self.solids[outer]):
+            for other in others:
+                rows = np.flatnonzero(~touch)
+                if len(rows) == len(touch):
+                    touch = nearer(one, other, self.gap)
+                else:
+                    touch[rows] = nearer(one.of(rows), other.of(rows), self.gap)
         return touch
 
 
@@ -98,9 +117,15 @@ def _found(asked: _Asked) -> OwnLinks:
     gap = asked.clearance + 2.0 * ABOUT_FACES
     found = OwnLinks(solids, tuple(about_link(link) for link in solids), gap, ())
     links = asked.chain.links(positions(asked.limits, asked.chain.axes))
+    if not len(links):
+        return OwnLinks(solids, found.balls, gap, tuple(every))
     # most pairs are seen by a few positions to be far below that share
-    often = [pair for pair in every if len(links) and found._touch(*pair, links[::EVERY]).mean() > 0.5 * LEFT_OUT]
-    usual = {pair for pair in often if found._touch(*pair, links).mean() > LEFT_OUT}
+    middles = found._middles(links)
+    some = [middle[::EVERY] for middle in middles]
+    usual = {
+        pair for pair in every if found.often(pair, links[::EVERY], some, 0.5 * LEFT_OUT)
+        and found.often(pair, links, middles, LEFT_OUT)
+    }
     return OwnLinks(solids, found.balls, gap, tuple(pair for pair in every if pair not in usual))
 
 
@@ -125,12 +150,6 @@ def positions(limits: Limits, axes: int) -> Array:
     found = low + spread(POSITIONS, axes) * (high - low)
     coupled = found @ limits.coefficients[:, :axes].T
     return np.asarray(found[((coupled >= limits.coupled_lower) & (coupled <= limits.coupled_upper)).all(axis=1)])
-
-
-def _apart(one: Array, other: Array, ball: tuple[Array, float], second: tuple[Array, float]) -> Array:
-    """(k,) mm between balls, each a centre in a frame (k, 4, 4) and a radius."""
-    away = one[:, :3, :3] @ ball[0] + one[:, :3, 3] - other[:, :3, :3] @ second[0] - other[:, :3, 3]
-    return np.asarray(np.linalg.norm(away, axis=1) - ball[1] - second[1])
 
 
 def placed(solid: Solid, frame: Array) -> PlacedCylinders:

@@ -41,22 +41,20 @@ def turned(outline: ArrayLike, start: ArrayLike, end: ArrayLike, tone: str = BOD
     shape = np.column_stack([shape[:, 0], shape[:, 1] * length])
     angle = np.linspace(0.0, 2.0 * np.pi, sides + 1)
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
-    points: list[Array] = []
-    normals: list[Array] = []
-    triangles: list[NDArray[np.int64]] = []
-    for (r0, z0), (r1, z1) in zip(shape[:-1], shape[1:]):
-        run, rise = r1 - r0, z1 - z0
-        size = float(np.hypot(run, rise))
-        if size < 1e-9:
-            continue
-        count = len(ring)
-        base = count * len(points)
-        points += [np.column_stack([r * ring, np.full(count, z)]) for r, z in ((r0, z0), (r1, z1))]
-        normals += 2 * [np.column_stack([rise / size * ring, np.full(count, -run / size)])]
-        i = np.arange(count - 1) + base
-        triangles += [np.column_stack([i, i + 1, i + count]), np.column_stack([i + 1, i + count + 1, i + count])]
+    run, rise = np.diff(shape, axis=0).T
+    size = np.hypot(run, rise)
+    kept = np.flatnonzero(size >= 1e-9)
+    run, rise, size = run[kept], rise[kept], size[kept]
+    ends = np.stack([shape[kept], shape[kept + 1]], axis=1)
+    # of each stretch a ring at its start and one at its end
+    count = len(ring)
+    points, normals = np.empty((2, len(kept), 2, count, 3))
+    points[..., :2], points[..., 2] = ends[:, :, None, :1] * ring, ends[:, :, None, 1]
+    normals[..., :2], normals[..., 2] = (rise / size)[:, None, None, None] * ring, (-run / size)[:, None, None]
+    i = np.arange(count - 1) + 2 * count * np.arange(len(kept))[:, None]
+    triangles = np.stack([np.stack([i, i + 1, i + count], axis=2), np.stack([i + 1, i + count + 1, i + count], axis=2)], axis=1)
     pose = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), (last - first) / length), first)
-    return Solid(np.concatenate(points), np.concatenate(normals), np.concatenate(triangles), tone).moved(pose)
+    return Solid(points.reshape(-1, 3), normals.reshape(-1, 3), triangles.reshape(-1, 3), tone).moved(pose)
 
 
 def cylinder(start: ArrayLike, end: ArrayLike, radius: float, tone: str = BODY, bevel: float = 0.12) -> Solid:
