@@ -55,7 +55,7 @@ class _Pairs:
 
 def nearer(one: PlacedCylinders, other: PlacedCylinders, gap: float) -> Mask:
     """(k,) whether two cylinders are nearer to each other than `gap` mm, which is more than nothing, or meet."""
-    apart = _between_axes(one, other)
+    apart = axes_apart(one, other)
     found: Mask = apart < gap  # the axes themselves are in the cylinders
     left = np.flatnonzero(~found & (apart < gap + one.radius + other.radius))
     if len(left):
@@ -72,6 +72,20 @@ def nearer(one: PlacedCylinders, other: PlacedCylinders, gap: float) -> Mask:
     return found
 
 
+def axes_apart(one: PlacedCylinders, other: PlacedCylinders) -> Array:
+    """(k,) mm between the axes of cylinders, from end to end."""
+    off = one.start - other.start
+    lean, first, second = dots(one.axis, other.axis), dots(one.axis, off), dots(other.axis, off)
+    square = 1.0 - lean * lean
+    crossing = square > PARALLEL
+    along = np.where(crossing, (lean * second - first) / np.where(crossing, square, 1.0), 0.0)
+    along = np.minimum(np.maximum(along, 0.0), one.length)  # np.clip takes many times that for a few
+    there = np.minimum(np.maximum(lean * along + second, 0.0), other.length)
+    along = np.minimum(np.maximum(lean * there - first, 0.0), one.length)
+    away: Array = lengths(off + along[:, None] * one.axis - there[:, None] * other.axis)
+    return away
+
+
 def nearest(one: PlacedCylinders, other: PlacedCylinders) -> tuple[Array, Array]:
     """The places (k, 3) where the second cylinders are nearest to the first ones, and the ways (k, 3) from there to these;
     none where the two meet."""
@@ -79,17 +93,3 @@ def nearest(one: PlacedCylinders, other: PlacedCylinders) -> tuple[Array, Array]
     middle = adjacent.cylinders.start + 0.5 * other.length * other.axis
     there, way = separation.ways(one.solid, one.axis, adjacent, middle)
     return one.start + there, way
-
-
-def _between_axes(one: PlacedCylinders, other: PlacedCylinders) -> Array:
-    """(k,) mm between the axes of cylinders, from end to end."""
-    off = one.start - other.start
-    lean, first, second = dots(one.axis, other.axis), dots(one.axis, off), dots(other.axis, off)
-    square = 1.0 - lean * lean
-    crossing = square > PARALLEL
-    along = np.where(crossing, (lean * second - first) / np.where(crossing, square, 1.0), 0.0)
-    along = np.clip(along, 0.0, one.length)
-    there = np.clip(lean * along + second, 0.0, other.length)
-    along = np.clip(lean * there - first, 0.0, one.length)
-    away: Array = lengths(off + along[:, None] * one.axis - there[:, None] * other.axis)
-    return away

@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..geometry.columns import dots
+from ..geometry.columns import columns, dots
 from ..types import Array, Index, Mask
 from .frustum import Frustum
 from .tolerances import CONVERGED, ROUNDING
@@ -21,6 +21,12 @@ from .tolerances import CONVERGED, ROUNDING
 # the two edges that they lie between
 _EACH, _SIDE, _FACE = np.arange(3), np.arange(1, 4), np.arange(4, 7)
 _FIRST, _SECOND = np.array([0, 0, 1]), np.array([1, 2, 2])
+# products of edges that are asked for: squares, then those of two
+_ONE, _OTHER = np.concatenate([_EACH, _FIRST]), np.concatenate([_EACH, _SECOND])
+# of cross products of the two other edges: the components (of 9) that are multiplied, first those that are added
+_NEXT, _AFTER = np.array([[1], [2], [0]]), np.array([[2], [0], [1]])
+_CROSS = np.array([3 * one + part.ravel() for one, part in (
+    (_NEXT, _NEXT), (_AFTER, _AFTER), (_NEXT, _AFTER), (_AFTER, _NEXT))])
 # of four points, by which of them have a share (the sum of their codes), three: those that have first, and then one of them
 _CODE = np.array([1, 2, 4, 8])
 _KEPT = np.array([(*having, *having[:1] * 3, 0, 0, 0)[:3] for having in (
@@ -140,6 +146,7 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
     nearer = largest(np.einsum("kcj,kj->kc", away, place)) / np.where(gap > 0.0, gap, 1.0)
     left = np.flatnonzero(~met[query] & (gap - nearer < np.maximum(deep, CONVERGED) + ROUNDING))
     left = left[np.lexsort(((gap - deep)[left], query[left]))]
+    place[left] = _from_corners(solid.rows(left), axis[left], points[left], place[left])
     first = np.diff(query[left], prepend=-1) != 0
     for some in (left[first], left[~first]) if len(left) > BATCH else (left,):
         now = some[~met[query[some]]]
@@ -155,6 +162,18 @@ def from_middles(solid: Frustum, axis: Array, points: Array) -> Array:
     return ways
 
 
+def _from_corners(solid: Frustum, axis: Array, points: Array, place: Array) -> Array:
+    """Ways (k, 3) from hulls of points (k, c, 3) to solids to start from: those from the nearest points where they are shorter
+    than `place`, (k, 3) other ones. From there `bounds` takes half of the steps."""
+    rows, own = np.arange(len(points)), np.repeat(np.arange(len(points)), points.shape[1])
+    corners = points.reshape(-1, 3)
+    ways = (solid.rows(own).nearest(corners, axis[own]) - corners).reshape(points.shape)
+    square = np.einsum("kcj,kcj->kc", ways, ways)
+    nearest = square.argmin(axis=1)
+    shorter = square[rows, nearest] < dots(place, place)
+    return np.where(shorter[:, None], ways[rows, nearest], place)
+
+
 def middles(points: Array) -> Array:
     """(k, 3) the means of points (k, c, 3): column by column many times as fast as along an axis of so few."""
     middle = points[:, 0].copy()
@@ -168,15 +187,6 @@ def largest(values: Array) -> Array:
     """(k,) the largest of values (k, c), column by column as well."""
     found: Array = np.maximum.reduce([values[:, column] for column in range(values.shape[1])])
     return found
-
-
-def _cross(one: Array, other: Array) -> Array:
-    """As np.cross of rows (k, 3), which takes four times as long for a few."""
-    product = np.empty_like(one)
-    product[:, 0] = one[:, 1] * other[:, 2] - one[:, 2] * other[:, 1]
-    product[:, 1] = one[:, 2] * other[:, 0] - one[:, 0] * other[:, 2]
-    product[:, 2] = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
-    return product
 
 
 def _of_two(one: Array, newest: Array) -> tuple[Array, Array]:
@@ -195,33 +205,31 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     """The point (k, 3) nearest to the origin of the hulls of three points (k, 3, 3), of which some may be one, and a fourth
     (k, 3) that has a share in it; and the up to three points (k, 3, 3) that have. Columns beside the three of a point are
     taken by the same shares."""
-    edges, at = simplex - newest[:, None], newest[:, :3]
-    edge = edges[:, :, :3]
-    square, pull = np.einsum("kim,kim->ik", edge, edge), -np.einsum("km,kim->ik", at, edge)
-    own = dots(at, at)
-    # of all corners, sides and faces that hold the newest point at once: most calls are about a handful of simplices
+    edges, at = simplex - newest[:, None], columns(newest[:, :3])
+    # by edges, components, rows: of all corners, sides and faces that hold the newest point at once, for most calls are about
+    # a handful of simplices
+    edge = np.ascontiguousarray(edges[:, :, :3].transpose(1, 2, 0))
+    squares = _summed(edge.take(_ONE, axis=0) * edge.take(_OTHER, axis=0))
+    square, b, pull, own = squares[:3], squares[3:], -_summed(edge * at), _summed((at * at)[None])[0]
     shares, value = np.zeros((7, 3, len(newest))), np.empty((7, len(newest)))
     value[0] = own
     with np.errstate(divide="ignore", invalid="ignore"):
         part = np.minimum(np.maximum(np.where(square > 0.0, pull / square, 0.0), 0.0), 1.0)  # np.clip takes many times that
         shares[_SIDE, _EACH] = part
-        value[_SIDE] = own - 2.0 * part * pull + part * part * square
-        a, c, pull_a, pull_c = square[_FIRST], square[_SECOND], pull[_FIRST], pull[_SECOND]
-        b = np.array([dots(edge[:, i], edge[:, j]) for i, j in zip(_FIRST, _SECOND)])
+        value[1:4] = own - 2.0 * part * pull + part * part * square
+        a, c, pull_a, pull_c = (each.take(some, axis=0) for each in (square, pull) for some in (_FIRST, _SECOND))
         wide = a * c - b * b
         one, two = (pull_a * c - pull_c * b) / wide, (pull_c * a - pull_a * b) / wide
         holds = (wide > 1e-12 * a * c) & (one > 0.0) & (two > 0.0) & (one + two < 1.0)
         shares[_FACE, _FIRST], shares[_FACE, _SECOND] = one, two
-        value[_FACE] = np.where(holds, own - one * pull_a - two * pull_c, np.inf)
-        normal = _cross(edge[:, 1], edge[:, 2])
-        volume = dots(edge[:, 0], normal)
-        parts = [
-            -dots(at, normal) / volume, -dots(at, _cross(edge[:, 2], edge[:, 0])) / volume,
-            -dots(at, _cross(edge[:, 0], edge[:, 1])) / volume,
-        ]
-        inside = (np.abs(volume) > 1e-12 * np.sqrt(square[0] * square[1] * square[2])) & (sum(parts) < 1.0)
-        for each in parts:
-            inside &= each > 0.0
+        value[4:] = np.where(holds, own - one * pull_a - two * pull_c, np.inf)
+        # normals of the faces opposite to each edge: the cross products of the two after it
+        one_way, other_way, back, other_back = edge.reshape(9, -1).take(_CROSS, axis=0)
+        normal = one_way * other_way - back * other_back
+        volume = _summed((edge[0] * normal[0])[None])[0]
+        parts = -_summed(normal * at) / volume
+        inside = (np.abs(volume) > 1e-12 * np.sqrt(square[0] * square[1] * square[2])) & (parts[0] + parts[1] + parts[2] < 1.0)
+        inside &= (parts > 0.0).all(axis=0)
     rows = np.arange(len(newest))
     share = shares[value.argmin(axis=0), :, rows]
     place = newest + np.einsum("ki,kij->kj", share, edges)
@@ -230,3 +238,10 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     weight = np.concatenate([share, 1.0 - share.sum(axis=1, keepdims=True)], axis=1)
     order = _KEPT[(weight > 0.0) @ _CODE]
     return place, kept.reshape(-1, kept.shape[2]).take(4 * rows[:, None] + order, axis=0)
+
+
+def _summed(products: Array) -> Array:
+    """(m, k) sums of the components of products (m, 3, k), added up in the order of `dots`."""
+    total: Array = products[:, 0] + products[:, 2]
+    total += products[:, 1]
+    return total

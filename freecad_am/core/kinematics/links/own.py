@@ -14,7 +14,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ...collision.cylinders_apart import PlacedCylinders, nearer
+from ...collision.cylinders_apart import PlacedCylinders, axes_apart, nearer
 from ...collision.tolerances import ABOUT_FACES
 from ...geometry.columns import lengths
 from ...geometry.cylinders import Cylinder
@@ -59,11 +59,14 @@ class OwnLinks:
         return outer, inner
 
     def often(self, pair: tuple[int, int], links: Array, middles: Sequence[Array], share: float) -> bool:
-        """Whether two links touch with more than a share of frames. Most are near each other with fewer: then that is known
-        without a closer look."""
-        near, most = self._near(*pair, middles), share * len(links)
-        return len(near) > most and bool(
-            np.count_nonzero(self._touch(*pair, *(links[near, number] for number in pair))) > most)
+        """Whether two links touch with more than a share of frames. Most are near each other with fewer, by their balls or by
+        the axes of their cylinders: then that is known without a closer look."""
+        most, rows = share * len(links), self._near(*pair, middles)
+        for look in (self._close, self._touch):
+            if len(rows) <= most:
+                return False
+            rows = rows[look(*pair, *(links[rows, number] for number in pair))]
+        return len(rows) > most
 
     def _middles(self, links: Array) -> list[Array]:
         """(k, 3) where the middles of the balls are, of each link."""
@@ -73,6 +76,15 @@ class OwnLinks:
         """With which frames the balls of two links are nearer than the links may be."""
         away = lengths(middles[outer] - middles[inner])
         return np.flatnonzero(away - self.balls[outer][1] - self.balls[inner][1] < self.gap)
+
+    def _close(self, outer: int, inner: int, a: Array, b: Array) -> Mask:
+        """(k,) whether axes of cylinders of two links, with frames (k, 4, 4) of each, are as near as these are wide."""
+        close = np.zeros(len(a), dtype=bool)
+        others = [placed(other, b) for other in self.solids[inner]]
+        for one in (placed(one, a) for one in self.solids[outer]):
+            for other in others:
+                close |= axes_apart(one, other) < self.gap + one.radius + other.radius
+        return close
 
     def _touch(self, outer: int, inner: int, a: Array, b: Array) -> Mask:
         """(k,) whether two links touch, with frames (k, 4, 4) of each."""
