@@ -77,23 +77,24 @@ def tilted_back(build: Array, angle: Array) -> Array:
 
 def least_tilt_back(
     build: Array, low: Array, good: Callable[[NDArray[np.intp], Array], NDArray[np.bool_]], within: float = 1e-14,
-    about: Array | None = None,
+    about: Array | None = None, free: NDArray[np.bool_] | None = None,
 ) -> Array:
     """Smallest tilt-back (n,) rad, `low` (n,) or more, at which each row is good, to `within` rad; NaN where none is up to
     the axis.
 
     good(rows (k,), angles (k,)) -> (k,) bool tells whether the rows are good when tilted back by the angles. about: (n, 2)
-    angles between which it is looked for first, NaN where nowhere.
+    angles between which it is looked for first, NaN where nowhere. free: (n,) rows that are known to be good at `low`.
     """
     angle = low.copy()
-    rows = np.flatnonzero(~good(np.arange(len(build)), low))
+    rows = np.arange(len(build)) if free is None else np.flatnonzero(~free)
     top = np.maximum(from_vertical(build[rows]), low[rows])
     bad, fine = low[rows].copy(), np.full(len(rows), np.nan)
+    tried = low[rows, None]
     if about is not None:
-        likely = np.flatnonzero(np.isfinite(about[rows, 0]))
-        tried = np.clip(about[rows[likely]], low[rows[likely], None], top[likely, None])
-        _narrow(rows, likely, tried, good, bad, fine)
-        bad[np.isnan(fine)] = low[rows[np.isnan(fine)]]
+        likely = np.where(np.isfinite(about[rows]), np.clip(about[rows], tried, top[:, None]), tried)
+        tried = np.concatenate([tried, likely], axis=1)
+    _narrow(rows, np.arange(len(rows)), tried, good, bad, fine)
+    bad[np.isnan(fine)] = low[rows[np.isnan(fine)]]
     for first in range(0, SCAN, AT_ONCE):
         open_ = np.flatnonzero(np.isnan(fine))
         if len(open_) == 0:

@@ -55,6 +55,8 @@ def together(looks: Sequence[Looked]) -> Looked | None:
 
 def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters) -> list[Issue]:
     """An error where the nozzle would touch bodies while depositing, for toolpaths that are not tilted away from them."""
+    if not bodies:
+        return []
     beads = [bead for _, _, bead in toolpath]
     points, tool = np.concatenate([bead.points for bead in beads]), np.concatenate([bead.tool for bead in beads])
     around = nozzle_of(nozzle).bodies

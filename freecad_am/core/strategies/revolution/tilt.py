@@ -22,6 +22,7 @@ from ...parameters.cell import NozzleParameters
 from ...parameters.strategy import RevolutionParameters
 from ...slicing.directions import revolution as directions
 from ...types import Array, Index
+from .cases import Cases
 from .clearance import CHORD, CONVERGED, Clearance, Deposit, Tips, around, of_nozzle
 from .platform import Platform
 
@@ -31,27 +32,6 @@ SWEEPS = 40  # over all beads, at most
 FREE_SWEEPS = 6  # after which no direction goes back
 FURTHER = 8  # times that directions are tilted back further where others, or points between, need it
 STEEP, SLIGHT = np.radians(10.0), np.radians(1.0)  # by how much
-
-
-@dataclass(frozen=True)
-class Cases:
-    """One row per case to be judged: bead (k,), build direction (k, 3), running sense (k,). chained: all are along one bead,
-    on which directions run evenly from one to the next."""
-
-    bead: Index
-    build: Array
-    rising: NDArray[np.bool_]
-    chained: bool = False
-
-    def together(self, angle: Array) -> Array:
-        """The largest tilt-back (k,) of each bead's cases, or of each and its neighbours, so that those between are never
-        too small; NaN where one of them has none."""
-        if self.chained:
-            larger: Array = np.maximum(angle, np.maximum(np.r_[angle[1:], 0.0], np.r_[0.0, angle[:-1]]))
-            return larger
-        first = np.diff(self.bead, prepend=-1) > 0
-        worst: Array = np.maximum.reduceat(angle, np.flatnonzero(first))[np.cumsum(first) - 1]
-        return worst
 
 
 @dataclass(frozen=True)
@@ -239,6 +219,7 @@ class Tilting:
         still = CONVERGED / clearance.nozzle.reach
         angle = np.maximum(low, np.where(np.isnan(start), most, start))
         about, change = np.full((len(low), 2), np.nan), np.full(len(low), np.inf)
+        free = np.zeros(len(low), dtype=bool)
         among: Scene | None = None
         for sweep in range(SWEEPS):
             back = np.interp(deposit.case, number, angle)
@@ -249,7 +230,7 @@ class Tilting:
                 return clearance.clear(among, some, tool)
 
             within = float(np.clip(0.1 * change.max(), 0.1 * still, COARSE))
-            found = directions.least_tilt_back(cases.build, low, good, within, about)
+            found = directions.least_tilt_back(cases.build, low, good, within, about, free)
             needed = cases.together(found)
             stuck = np.isnan(needed)
             now = np.where(stuck, most, needed)
@@ -259,6 +240,8 @@ class Tilting:
             if change.max() <= still:
                 break
             angle = now
+            # what needs no tilt and comes before all that changes needs none again
+            free = (found == low) & cases.before(change > 0.0)
             about = found[:, None] + np.outer(2.0 * change + within, [-1.0, 1.0])
         return np.where(stuck, np.nan, now)
 
