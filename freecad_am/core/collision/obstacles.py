@@ -22,12 +22,11 @@ NONE = -1  # no obstacle
 
 
 class _Level(NamedTuple):
-    """Nodes (n,) of the tree: boxes by their centres and half sizes (n, 3), both also by columns (3, n), with a rounding
-    about them, and the earliest moments."""
+    """Nodes (n,) of the tree: boxes by their centres and half sizes, by columns (3, n), with a rounding about them, and the
+    earliest moments."""
 
     centre: Array
     half: Array
-    columns: tuple[Array, Array]
     rounding: Array
     since: Index
     lines: own_layer.Lines | None
@@ -58,35 +57,38 @@ class Obstacles:
         self.foot = None if foot is None else foot[order]
         self._sample = np.ascontiguousarray(self.corners[:, 0])
         self._sizes = tree.sizes(len(corners))
-        each = [self.corners[:, k] for k in range(corners.shape[1])]
-        low, high = (np.array(bound.reduce(each)) for bound in (np.minimum, np.maximum))
-        self._levels = self._boxes(low, high)
+        by_column = np.ascontiguousarray(self.corners.transpose(1, 2, 0))
+        self._levels = self._boxes(np.minimum.reduce(by_column), np.maximum.reduce(by_column))
         if corners.shape[1] == 3:
             normal = doubled_areas(self.corners)
             size = lengths(normal)
             self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
 
     def _boxes(self, low: Array, high: Array) -> list[_Level]:
-        """The levels of the tree over obstacles with the boxes low and high (m, 3), each from the one below it."""
-        rounding, since = np.zeros(len(low)) if self.radius is None else self.radius, self.since
+        """The levels of the tree over obstacles with the boxes low and high (3, m), each from the one below it."""
+        rounding, since = np.zeros(len(self.since)) if self.radius is None else self.radius, self.since
         lines = None if self.line is None or self.foot is None else own_layer.of_lines(self.line, self.foot)
         found = []
         for size in self._sizes:
             if size > 1:
-                starts = np.arange(0, len(low), tree.BRANCH)
+                starts = np.arange(0, len(since), tree.BRANCH)
                 lines = None if lines is None else lines.joined(starts)
-                low, high = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
+                low, high = np.minimum.reduceat(low, starts, axis=1), np.maximum.reduceat(high, starts, axis=1)
                 rounding, since = np.maximum.reduceat(rounding, starts), np.minimum.reduceat(since, starts)
-            centre, half = 0.5 * (low + high), 0.5 * (high - low)
-            found.append(_Level(centre, half, (columns(centre), columns(half)), rounding, since, lines))
+            found.append(_Level(0.5 * (low + high), 0.5 * (high - low), rounding, since, lines))
         return found
+
+    @cached_property
+    def _rows(self) -> list[tuple[Array, Array]]:
+        """Centres and half sizes (n, 3) of the boxes of each level row by row, which distances are looked for by."""
+        return [(np.ascontiguousarray(level.centre.T), np.ascontiguousarray(level.half.T)) for level in self._levels]
 
     @cached_property
     def _radii(self) -> list[Array]:
         """Of balls about the same centres as the boxes of each level, which distances alone are looked for by."""
         found = []
-        for size, level in zip(self._sizes, self._levels):
-            apart = self.corners - level.centre[np.arange(len(self.corners)) // size][:, None]
+        for size, (centre, _) in zip(self._sizes, self._rows):
+            apart = self.corners - centre[np.arange(len(self.corners)) // size][:, None]
             away = np.sqrt(separation.largest(np.einsum("ijk,ijk->ij", apart, apart)))
             if self.radius is not None:
                 away += self.radius
@@ -128,7 +130,7 @@ class Obstacles:
             level = self._levels[depth]
             left = np.flatnonzero((level.since.take(node) < moment.take(query)) & ~found.take(query))
             query, node = query.take(left), node.take(left)
-            centre, half = (each.take(node, axis=1) for each in level.columns)
+            centre, half = level.centre.take(node, axis=1), level.half.take(node, axis=1)
             centre -= tips.take(query, axis=1)
             round_ = level.rounding.take(node)
             close = np.flatnonzero(solid.rows(query).near_box(centre, axes.take(query, axis=1), half, round_))
@@ -226,15 +228,15 @@ class Obstacles:
         top = len(self._levels[-1].since)
         query, node = _each_with_each(len(tip), top)
         for depth in range(len(self._levels) - 1, -1, -1):
-            level = self._levels[depth]
+            level, (centre, half) = self._levels[depth], self._rows[depth]
             kept: list[tuple[Index, Index, Array]] = [(query[:0], node[:0], np.zeros(0))]
             for q, n in tree.parts(query, node):
                 there = level.since[n] < moment[q]
                 q, n = q[there], n[there]
-                offset = level.centre[n] - tip[q]
+                offset = centre[n] - tip[q]
                 apart = offset - solid.rows(q).nearest(offset, axis[q])
                 gap = np.sqrt(dots(apart, apart))
-                wide = dots(np.abs(apart), level.half[n]) / np.where(gap > 0.0, gap, 1.0)
+                wide = dots(np.abs(apart), half[n]) / np.where(gap > 0.0, gap, 1.0)
                 least = gap - np.minimum(wide + level.rounding[n], self._radii[depth][n])
                 near = least < best[q]
                 q, n, least = q[near], n[near], least[near]

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..geometry.columns import columns
 from ..types import Array, Index
 
 BRANCH = 8
@@ -20,6 +21,7 @@ def packed(points: Array) -> Index:
     order = np.arange(len(points))
     if not len(points):
         return order
+    by_axis = columns(points)
     last = BRANCH * BRANCH
     waiting = [(0, len(points), BRANCH ** int(np.log(len(points)) / np.log(BRANCH) + 1))]
     while waiting:
@@ -29,15 +31,16 @@ def packed(points: Array) -> Index:
         while ball >= high - low:
             ball //= BRANCH
         mine = order[low:high]
-        some = points[mine]
+        some = by_axis.take(mine, axis=1)
         cut = -(-(high - low) // ball) // 2 * ball
-        longest = (np.maximum.reduce(some) - np.minimum.reduce(some)).argmax()  # np.ptp takes twice as long for a few
-        order[low:high] = mine[some[:, longest].argpartition(cut)]
+        # np.ptp takes twice as long for a few
+        longest = (np.maximum.reduce(some, axis=1) - np.minimum.reduce(some, axis=1)).argmax()
+        order[low:high] = mine[some[longest].argpartition(cut)]
         waiting += [(low, low + cut, ball), (low + cut, high, ball)]
-    some, starts = points[order], np.arange(0, len(points), last)
-    longest = (np.maximum.reduceat(some, starts) - np.minimum.reduceat(some, starts)).argmax(axis=1)
+    some, starts = by_axis.take(order, axis=1), np.arange(0, len(points), last)
+    longest = (np.maximum.reduceat(some, starts, axis=1) - np.minimum.reduceat(some, starts, axis=1)).argmax(axis=0)
     node = np.arange(len(points)) // last
-    found: Index = order[np.lexsort((some[np.arange(len(points)), longest[node]], node))]
+    found: Index = order[np.lexsort((some[longest[node], np.arange(len(points))], node))]
     return found
 
 
