@@ -68,20 +68,21 @@ class Frustum:
         x = dots(offset, axis)
         across = offset - x[:, None] * axis
         side = np.sqrt(dots(across, across))
-        low = np.broadcast_to(np.asarray(self.low, dtype=float), x.shape)
+        low: float | Array = self.low
         least, most = self.radius + self.slope * low, self.radius + self.slope * self.high
         inside = (x >= low) & (x <= self.high) & (side <= self.radius + self.slope * x)
-        # in the half plane of height and distance from the axis: on the side, the lower disc, the upper disc
+        # in the half plane of height and distance from the axis: on the side, or else on the lower or the upper disc
         tall, wide = self.high - low, most - least
-        along = np.clip(((x - low) * tall + (side - least) * wide) / (tall * tall + wide * wide), 0.0, 1.0)
-        places = [
-            (low + along * tall, least + along * wide),
-            (low, np.minimum(side, least)), (np.full(x.shape, self.high), np.minimum(side, most)),
-        ]
-        away = np.stack([(x - height) ** 2 + (side - out) ** 2 for height, out in places])
-        which = away.argmin(axis=0)
-        height = np.where(inside, x, np.choose(which, [place[0] for place in places]))
-        out = np.where(inside, side, np.choose(which, [place[1] for place in places]))
+        along = ((x - low) * tall + (side - least) * wide) / (tall * tall + wide * wide)
+        along = np.minimum(np.maximum(along, 0.0), 1.0)  # np.clip takes many times that for a few
+        height, out = low + along * tall, least + along * wide
+        away = np.square(x - height) + np.square(side - out)
+        for disc, size in ((low, least), (self.high, most)):
+            on_disc = np.minimum(side, size)
+            there = np.square(x - disc) + np.square(side - on_disc)
+            nearer = there < away
+            height, out, away = np.where(nearer, disc, height), np.where(nearer, on_disc, out), np.minimum(there, away)
+        height, out = np.where(inside, x, height), np.where(inside, side, out)
         found: Array = height[:, None] * axis + (out / np.where(side > 0.0, side, 1.0))[:, None] * across
         return found
 

@@ -124,6 +124,7 @@ class Obstacles:
         waiting = [(len(self._levels) - 1, *_each_with_each(len(tip), top))]
         ready: list[tuple[Index, Index]] = []
         tips, axes = columns(tip), columns(axis)
+        layered = bool((own < NEVER).any())
         lying = self.line is not None and len(tip) * SLABS > len(self.corners)
         while waiting:
             depth, query, node = waiting.pop()
@@ -134,13 +135,17 @@ class Obstacles:
             centre -= tips.take(query, axis=1)
             round_ = level.rounding.take(node)
             close = np.flatnonzero(solid.rows(query).near_box(centre, axes.take(query, axis=1), half, round_))
+            if not len(close):
+                continue
             query, node = query.take(close), node.take(close)
-            if level.lines is not None:
+            if level.lines is not None and layered:
                 left = own_layer.matter(level.lines, level.since, solid, query, node, tips, axes, own)
                 query, node = query.take(left), node.take(left)
-            found[query[self._sampled(solid, query, node * self._sizes[depth], tip, axis, moment, own)]] = True
-            left = np.flatnonzero(~found.take(query))
-            query, node = query.take(left), node.take(left)
+            if depth == 1:
+                # before all single ones are looked at: most that meet any hold the first corner of one
+                found[query[self._sampled(solid, query, node * tree.BRANCH, tip, axis, moment, own)]] = True
+                left = np.flatnonzero(~found.take(query))
+                query, node = query.take(left), node.take(left)
             if depth == 1 and lying:
                 left = slabs.near(self._slabs, solid.rows(query), node, tip.take(query, axis=0), axis.take(query, axis=0))
                 query, node = query.take(left), node.take(left)

@@ -185,7 +185,9 @@ def middles(points: Array) -> Array:
 
 def largest(values: Array) -> Array:
     """(k,) the largest of values (k, c), column by column as well."""
-    found: Array = np.maximum.reduce([values[:, column] for column in range(values.shape[1])])
+    found = values[:, 0]
+    for column in range(1, values.shape[1]):
+        found = np.maximum(found, values[:, column])
     return found
 
 

@@ -53,8 +53,8 @@ def near(slabs: Slabs, solid: Frustum, node: Index, tip: Array, axis: Array) -> 
     centre = slabs.centre.take(node, axis=0) - tip
     way = solid.nearest(centre, axis) - centre
     gap = lengths(way)
-    towards = np.abs(np.einsum("kij,kj->ki", slabs.sides.take(node, axis=0), way)).sum(axis=1)
-    return np.flatnonzero(gap * (gap - slabs.rounding.take(node) - ROUNDING) <= towards)
+    first, second, third = np.abs(np.einsum("kij,kj->ik", slabs.sides.take(node, axis=0), way))
+    return np.flatnonzero(gap * (gap - slabs.rounding.take(node) - ROUNDING) <= first + second + third)
 
 
 def _directions(ways: Array, otherwise: Array) -> Array:
