@@ -60,6 +60,8 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float, piece: float 
     """The triangles of bodies no farther than `reach` (mm) from the box about the points `around` (n, 3), and the inside of
     those that are closed; a body with an opening counts by its triangles alone. piece: mm, the longest edge of a triangle
     once it is cut up."""
+    if not bodies:
+        return Bodies(Obstacles(np.zeros((0, 3, 3))), ())
     low, high = around.min(axis=0) - reach, around.max(axis=0) + reach
     corners = np.concatenate([np.zeros((0, 3, 3)), *(body.corners() for body in bodies)])
     whole = len(corners)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..types import Array
+from .columns import lengths
 
 PIECES = 8  # a shape is cut into at most so many
 LEAST_LENGTH = 0.5  # pieces are no shorter than this share of the shape's width
@@ -34,7 +35,7 @@ class Cylinder:
         axis = (self.end - self.start) / self.length
         offset = points - self.start
         along = offset @ axis
-        away = np.linalg.norm(offset - along[:, None] * axis, axis=1)
+        away = lengths(offset - along[:, None] * axis)
         held: NDArray[np.bool_] = (
             (along >= -_ROUNDING) & (along <= self.length + _ROUNDING) & (away <= self.radius + _ROUNDING)
         )
@@ -53,7 +54,7 @@ def about(points: Array) -> Cylinder:
         across = np.stack([directions[k - 1], directions[k - 2]])
         flat = offset @ across.T
         centre = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
-        radius = float(np.linalg.norm(flat - centre, axis=1).max())
+        radius = float(lengths(flat - centre).max())
         foot = middle + centre @ across
         found.append(((high - low) * radius**2, Cylinder(foot + low * axis, foot + high * axis, radius)))
     return min(found, key=lambda one: one[0])[1]

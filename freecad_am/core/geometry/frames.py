@@ -31,6 +31,19 @@ def inverse(poses: ArrayLike) -> Array:
     return pose(turned, -(turned @ poses[..., :3, 3:])[..., 0])
 
 
+def at(poses: Array, point: Array) -> Array:
+    """(k, 3) where a point (3,) of poses (k, 4, 4) is: in one product over the rows of all, in a third of the time of k of
+    them, and so another in the last digit."""
+    rows = np.ascontiguousarray(poses).reshape(-1, 4)
+    return np.asarray((rows @ np.append(point, 1.0)).reshape(-1, 4)[:, :3])
+
+
+def turned(poses: Array, vector: Array) -> Array:
+    """(k, 3) a vector (3,) of poses (k, 4, 4), as `at` has points."""
+    rows = np.ascontiguousarray(poses).reshape(-1, 4)
+    return np.asarray((rows @ np.append(vector, 0.0)).reshape(-1, 4)[:, :3])
+
+
 def about_x(angle: ArrayLike) -> Array:
     """The rotation (..., 3, 3) by `angle` (...) about X."""
     return rotation_about((1.0, 0.0, 0.0), angle)

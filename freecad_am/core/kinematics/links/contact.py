@@ -226,10 +226,10 @@ class ArmContact:
         links, seen_from = self.seen(joints)
         link, what = np.full(len(joints), NONE, dtype=np.int64), np.full(len(joints), NONE, dtype=np.int64)
         looked_at = sorted({number for group in self.groups for number in group.links})
-        middles = {k: links[:, k, :3, :3] @ self.balls[k][0] + links[:, k, :3, 3] for k in looked_at}
+        middles = {k: frames.at(links[:, k], self.balls[k][0]) for k in looked_at}
         for place, group in enumerate(self.groups):
             frame = seen_from[group.seen_from]
-            centre = frame[:, :3, :3] @ group.centre + frame[:, :3, 3]
+            centre = frames.at(frame, group.centre)
             back = frames.inverse(frame)
             for number in group.links:
                 away = middles[number] - centre
@@ -247,9 +247,8 @@ class ArmContact:
 def _meets(group: Group, solids: Sequence[Solid], seen: Array, moment: Index) -> Mask:
     """(k,) whether solids of a link, whose frame is seen as (k, 4, 4), meet a group."""
     met = np.zeros(len(seen), dtype=bool)
-    turn, origin = seen[:, :3, :3], seen[:, :3, 3]
     for one in solids:
-        tip, axis = turn @ one.tip + origin, turn @ one.axis
+        tip, axis = frames.at(seen, one.tip), frames.turned(seen, one.axis)
         # only those that come near the ball are looked at closely
         low, high = float(np.min(one.solid.low)), one.solid.high
         off = tip - group.centre

@@ -16,6 +16,7 @@ import numpy as np
 
 from ...collision.cylinders_apart import PlacedCylinders, axes_apart, nearer
 from ...collision.tolerances import ABOUT_FACES
+from ...geometry import frames
 from ...geometry.columns import lengths
 from ...geometry.cylinders import Cylinder
 from ...geometry.spread import spread
@@ -70,7 +71,7 @@ class OwnLinks:
 
     def _middles(self, links: Array) -> list[Array]:
         """(k, 3) where the middles of the balls are, of each link."""
-        return [links[:, k, :3, :3] @ middle + links[:, k, :3, 3] for k, (middle, _) in enumerate(self.balls)]
+        return [frames.at(links[:, k], middle) for k, (middle, _) in enumerate(self.balls)]
 
     def _near(self, outer: int, inner: int, middles: Sequence[Array]) -> Index:
         """With which frames the balls of two links are nearer than the links may be."""
