@@ -33,26 +33,14 @@ def of_beads(
     which each point is laid, rising; by default its number. grain: mm, pieces are joined as long as they are not longer than
     this. beside: mm, pieces of the layer being laid are next to the tip no farther from it than they are wide, or than this.
     short: pieces are short against what is asked about them. like: the deposit of the same points before, with other
-    directions: finding an order of its pieces takes most of the time.
+    directions alone: the same pieces with other corners.
     A piece is there from the moment of the point at its end. Where no bead has a width, or a height, they are lines.
     """
     n = len(points)
     first = np.zeros(n, dtype=bool)
     first[starts] = True
     first[:1] = True
-    kept = np.arange(n)
-    if grain > 0.0 and n:
-        last = np.append(first[1:], True)
-        way = np.diff(points, axis=0, prepend=points[:1])
-        size = lengths(way)
-        step = np.where(first, 0.0, size)
-        way /= np.maximum(size, 1e-12)[:, None]
-        # what is turned at a point is the difference to the way on from it
-        turn = np.where(first | last, 0.0, lengths(np.diff(way, axis=0, append=way[-1:])))
-        kept = np.flatnonzero(
-            first | last | (np.diff(np.floor(np.cumsum(step) / grain), prepend=0.0) > 0.0)
-            | (np.diff(np.floor(np.cumsum(turn) / BENT), prepend=0.0) > 0.0)
-        )
+    kept = _joined(points, first, grain) if grain > 0.0 and n else np.arange(n)
     moment = np.arange(n) if moments is None else moments
     wide, tall = (np.broadcast_to(np.asarray(each, dtype=float), n)[kept] for each in (width, height))
     points, build, moment, first = points[kept], build[kept], moment[kept], first[kept]
@@ -80,11 +68,28 @@ def of_beads(
     hull = np.stack(corners, axis=1)
     turned = np.flatnonzero((end[:-1] == begin[1:]) & (np.einsum("ij,ij->i", along[:-1], along[1:]) < CORNER))
     wedge = np.concatenate([hull[turned][:, 2:], hull[turned + 1][:, :2]], axis=1)
+    pieces = np.concatenate([hull, wedge])
+    if like is not None:
+        return like.moved(pieces)
     return Obstacles(
-        np.concatenate([hull, wedge]), np.concatenate([since, since[turned + 1]]),
+        pieces, np.concatenate([since, since[turned + 1]]),
         np.concatenate([round_, np.maximum(round_[turned], round_[turned + 1])]),
         np.concatenate([line, line[turned + 1]]), np.maximum(np.concatenate([wide, wide[turned]]), foot), short,
-        None if like is None else like.order,
+    )
+
+
+def _joined(points: Array, first: Mask, grain: float) -> Index:
+    """Which points (n, 3) are left where pieces are joined up to `grain` mm; first: (n,) those at which beads begin."""
+    last = np.append(first[1:], True)
+    way = np.diff(points, axis=0, prepend=points[:1])
+    size = lengths(way)
+    step = np.where(first, 0.0, size)
+    way /= np.maximum(size, 1e-12)[:, None]
+    # what is turned at a point is the difference to the way on from it
+    turn = np.where(first | last, 0.0, lengths(np.diff(way, axis=0, append=way[-1:])))
+    return np.flatnonzero(
+        first | last | (np.diff(np.floor(np.cumsum(step) / grain), prepend=0.0) > 0.0)
+        | (np.diff(np.floor(np.cumsum(turn) / BENT), prepend=0.0) > 0.0)
     )
 
 

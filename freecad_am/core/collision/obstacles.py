@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 from functools import cached_property
 from typing import NamedTuple
 
@@ -22,11 +23,8 @@ NONE = -1  # no obstacle
 
 
 class _Level(NamedTuple):
-    """Nodes (n,) of the tree: boxes by their centres and half sizes, by columns (3, n), with a rounding about them, and the
-    earliest moments."""
+    """Nodes (n,) of the tree: the rounding about their boxes, and the earliest moments."""
 
-    centre: Array
-    half: Array
     rounding: Array
     since: Index
     lines: own_layer.Lines | None
@@ -38,50 +36,64 @@ class Obstacles:
 
     since: (m,) the moment from which each is there; none, then always. line: (m, 2, 3) the segments along which the pieces
     of beads are laid, which they count as where they are of the layer being laid, no farther from the tip than `foot`
-    (m,) mm. chained: they are short, and those that follow each other mostly touch. order: (m,) that of others which lay
-    nearly where these do.
+    (m,) mm. chained: they are short, and those that follow each other mostly touch.
     """
 
     def __init__(
         self, corners: Array, since: Index | None = None, radius: Array | None = None, line: Array | None = None,
-        foot: Array | None = None, chained: bool = False, order: Index | None = None,
+        foot: Array | None = None, chained: bool = False,
     ) -> None:
-        if order is None:
-            middles = separation.middles(corners)
-            order = tree.chained(middles) if chained else tree.packed(middles)
-        self.order = order
-        self.corners = corners[order]
+        middles = separation.middles(corners)
+        self.order = order = tree.chained(middles) if chained else tree.packed(middles)
         self.since = np.full(len(corners), ALWAYS, dtype=np.intp) if since is None else since[order]
         self.radius = None if radius is None else radius[order]
         self.line = None if line is None else line[order]
         self.foot = None if foot is None else foot[order]
-        self._sample = np.ascontiguousarray(self.corners[:, 0])
         self._sizes = tree.sizes(len(corners))
+        self._levels = self._of_nodes()
+        self._lay(corners)
+
+    def moved(self, corners: Array) -> Obstacles:
+        """The same with other corners (m, c, 3) that lie nearly where theirs do: to find an order of these takes most of the
+        time."""
+        other = copy.copy(self)
+        for name in ("_rows", "_radii", "_slabs"):
+            other.__dict__.pop(name, None)
+        other._lay(corners)
+        return other
+
+    def _lay(self, corners: Array) -> None:
+        """Have the corners in order, and the boxes about them: of each level centres and half sizes by columns (3, n)."""
+        self.corners = corners[self.order]
+        self._sample = np.ascontiguousarray(self.corners[:, 0])
         by_column = np.ascontiguousarray(self.corners.transpose(1, 2, 0))
-        self._levels = self._boxes(np.minimum.reduce(by_column), np.maximum.reduce(by_column))
+        low, high = np.minimum.reduce(by_column), np.maximum.reduce(by_column)
+        self._boxes = [(0.5 * (low + high), 0.5 * (high - low))]
+        for level in self._levels[:-1]:
+            starts = np.arange(0, len(level.since), tree.BRANCH)
+            low, high = np.minimum.reduceat(low, starts, axis=1), np.maximum.reduceat(high, starts, axis=1)
+            self._boxes.append((0.5 * (low + high), 0.5 * (high - low)))
         if corners.shape[1] == 3:
             normal = doubled_areas(self.corners)
             size = lengths(normal)
             self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
 
-    def _boxes(self, low: Array, high: Array) -> list[_Level]:
-        """The levels of the tree over obstacles with the boxes low and high (3, m), each from the one below it."""
+    def _of_nodes(self) -> list[_Level]:
+        """The levels of the tree, each from the one below it."""
         rounding, since = np.zeros(len(self.since)) if self.radius is None else self.radius, self.since
         lines = None if self.line is None or self.foot is None else own_layer.of_lines(self.line, self.foot)
-        found = []
-        for size in self._sizes:
-            if size > 1:
-                starts = np.arange(0, len(since), tree.BRANCH)
-                lines = None if lines is None else lines.joined(starts)
-                low, high = np.minimum.reduceat(low, starts, axis=1), np.maximum.reduceat(high, starts, axis=1)
-                rounding, since = np.maximum.reduceat(rounding, starts), np.minimum.reduceat(since, starts)
-            found.append(_Level(0.5 * (low + high), 0.5 * (high - low), rounding, since, lines))
+        found = [_Level(rounding, since, lines)]
+        for _ in self._sizes[1:]:
+            starts = np.arange(0, len(since), tree.BRANCH)
+            lines = None if lines is None else lines.joined(starts)
+            rounding, since = np.maximum.reduceat(rounding, starts), np.minimum.reduceat(since, starts)
+            found.append(_Level(rounding, since, lines))
         return found
 
     @cached_property
     def _rows(self) -> list[tuple[Array, Array]]:
         """Centres and half sizes (n, 3) of the boxes of each level row by row, which distances are looked for by."""
-        return [(np.ascontiguousarray(level.centre.T), np.ascontiguousarray(level.half.T)) for level in self._levels]
+        return [(np.ascontiguousarray(centre.T), np.ascontiguousarray(half.T)) for centre, half in self._boxes]
 
     @cached_property
     def _radii(self) -> list[Array]:
@@ -120,8 +132,7 @@ class Obstacles:
 
     def _touched(self, solid: Frustum, tip: Array, axis: Array, moment: Index, own: Index) -> Mask:
         found = np.zeros(len(tip), dtype=bool)
-        top = len(self._levels[-1].since)
-        waiting = [(len(self._levels) - 1, *_each_with_each(len(tip), top))]
+        waiting = [(len(self._levels) - 1, *tree.each_with_each(len(tip), len(self._levels[-1].since)))]
         ready: list[tuple[Index, Index]] = []
         tips, axes = columns(tip), columns(axis)
         layered = bool((own < NEVER).any())
@@ -131,7 +142,7 @@ class Obstacles:
             level = self._levels[depth]
             left = np.flatnonzero((level.since.take(node) < moment.take(query)) & ~found.take(query))
             query, node = query.take(left), node.take(left)
-            centre, half = level.centre.take(node, axis=1), level.half.take(node, axis=1)
+            centre, half = (column.take(node, axis=1) for column in self._boxes[depth])
             centre -= tips.take(query, axis=1)
             round_ = level.rounding.take(node)
             close = np.flatnonzero(solid.rows(query).near_box(centre, axes.take(query, axis=1), half, round_))
@@ -145,17 +156,16 @@ class Obstacles:
                 # before all single ones are looked at: most that meet any hold the first corner of one
                 found[query[self._sampled(solid, query, node * tree.BRANCH, tip, axis, moment, own)]] = True
                 left = np.flatnonzero(~found.take(query))
-                query, node = query.take(left), node.take(left)
-            if depth == 1 and lying:
-                left = slabs.near(self._slabs, solid.rows(query), node, tip.take(query, axis=0), axis.take(query, axis=0))
+                if lying:
+                    q, n = query.take(left), node.take(left)
+                    left = left[slabs.near(self._slabs, solid.rows(q), n, tip.take(q, axis=0), axis.take(q, axis=0))]
                 query, node = query.take(left), node.take(left)
             if depth:
                 query, node = tree.below(query, node, len(self._levels[depth - 1].since))
                 waiting += [(depth - 1, *some) for some in tree.parts(query, node)]
                 continue
-            # single ones are looked at when there are many: that costs less each
             ready.append((query, node))
-            if sum(len(query) for query, _ in ready) > tree.PAIRS:
+            if sum(len(query) for query, _ in ready) > tree.PAIRS:  # many: that costs less each
                 self._look(solid, tip, axis, own, ready, found)
                 ready = []
         self._look(solid, tip, axis, own, ready, found)
@@ -202,7 +212,7 @@ class Obstacles:
         rows = np.flatnonzero(high > solid.low)
         node = node.take(rows)
         line = self.line.take(node, axis=0) - tip.take(rows, axis=0)[:, None]
-        as_line = (self.since.take(node) >= own.take(rows)) & (_from_origin(line) < self.foot.take(node))
+        as_line = (self.since.take(node) >= own.take(rows)) & (separation.from_origin(line) < self.foot.take(node))
         lines, line = rows[as_line], line[as_line]
         meets[lines] = solid.rows(lines).meets_segments(line[:, 0], line[:, 1], axis[lines])
         rows, node = rows[~as_line], node[~as_line]
@@ -231,7 +241,7 @@ class Obstacles:
         low, best = np.full((2, len(tip)), reach)  # bounds of the least distance yet
         which = np.full(len(tip), NONE, dtype=np.intp)
         top = len(self._levels[-1].since)
-        query, node = _each_with_each(len(tip), top)
+        query, node = tree.each_with_each(len(tip), top)
         for depth in range(len(self._levels) - 1, -1, -1):
             level, (centre, half) = self._levels[depth], self._rows[depth]
             kept: list[tuple[Index, Index, Array]] = [(query[:0], node[:0], np.zeros(0))]
@@ -286,19 +296,3 @@ def _lower(best: Array, which: Index, query: Index, node: Index, most: Array) ->
     np.minimum.at(best, query, most)
     has = most <= best[query]
     which[query[has]] = node[has]
-
-
-def _each_with_each(queries: int, nodes: int) -> tuple[Index, Index]:
-    """All pairs of so many queries and nodes: np.repeat takes many times as long."""
-    query, node = np.empty((2, queries, nodes), dtype=np.intp)
-    query[:], node[:] = np.arange(queries)[:, None], np.arange(nodes)
-    return query.ravel(), node.ravel()
-
-
-def _from_origin(segment: Array) -> Array:
-    """Distances (k,) mm of segments (k, 2, 3) from the origin."""
-    start, along = segment[:, 0], segment[:, 1] - segment[:, 0]
-    square = dots(along, along)
-    share = np.clip(-dots(start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
-    away: Array = lengths(start + share[:, None] * along)
-    return away

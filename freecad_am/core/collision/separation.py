@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..geometry.columns import columns, dots
+from ..geometry.columns import columns, dots, lengths
 from ..types import Array, Index, Mask
 from .frustum import Frustum
 from .tolerances import CONVERGED, ROUNDING
@@ -163,8 +163,8 @@ def from_middles(solid: Frustum, axis: Array, points: Array) -> Array:
 
 
 def _from_corners(solid: Frustum, axis: Array, points: Array, place: Array) -> Array:
-    """Ways (k, 3) from hulls of points (k, c, 3) to solids to start from: those from the nearest points where they are shorter
-    than `place`, (k, 3) other ones. From there `bounds` takes half of the steps."""
+    """Ways (k, 3) from hulls of points (k, c, 3) to solids, to start from: those from the nearest points where they are
+    shorter than others, `place` (k, 3). From there `bounds` takes half of the steps."""
     rows, own = np.arange(len(points)), np.repeat(np.arange(len(points)), points.shape[1])
     corners = points.reshape(-1, 3)
     ways = (solid.rows(own).nearest(corners, axis[own]) - corners).reshape(points.shape)
@@ -172,6 +172,15 @@ def _from_corners(solid: Frustum, axis: Array, points: Array, place: Array) -> A
     nearest = square.argmin(axis=1)
     shorter = square[rows, nearest] < dots(place, place)
     return np.where(shorter[:, None], ways[rows, nearest], place)
+
+
+def from_origin(segment: Array) -> Array:
+    """Distances (k,) mm of segments (k, 2, 3) from the origin."""
+    start, along = segment[:, 0], segment[:, 1] - segment[:, 0]
+    square = dots(along, along)
+    share = np.clip(-dots(start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    away: Array = lengths(start + share[:, None] * along)
+    return away
 
 
 def middles(points: Array) -> Array:
@@ -185,7 +194,7 @@ def middles(points: Array) -> Array:
 
 def largest(values: Array) -> Array:
     """(k,) the largest of values (k, c), column by column as well."""
-    found = values[:, 0]
+    found: Array = values[:, 0]
     for column in range(1, values.shape[1]):
         found = np.maximum(found, values[:, column])
     return found
@@ -208,8 +217,8 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     (k, 3) that has a share in it; and the up to three points (k, 3, 3) that have. Columns beside the three of a point are
     taken by the same shares."""
     edges, at = simplex - newest[:, None], columns(newest[:, :3])
-    # by edges, components, rows: of all corners, sides and faces that hold the newest point at once, for most calls are about
-    # a handful of simplices
+    # by edges, components, rows; all corners, sides and faces that hold the newest point at once: most calls are about a
+    # handful of simplices
     edge = np.ascontiguousarray(edges[:, :, :3].transpose(1, 2, 0))
     squares = _summed(edge.take(_ONE, axis=0) * edge.take(_OTHER, axis=0))
     square, b, pull, own = squares[:3], squares[3:], -_summed(edge * at), _summed((at * at)[None])[0]
@@ -230,8 +239,8 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
         normal = one_way * other_way - back * other_back
         volume = _summed((edge[0] * normal[0])[None])[0]
         parts = -_summed(normal * at) / volume
-        inside = (np.abs(volume) > 1e-12 * np.sqrt(square[0] * square[1] * square[2])) & (parts[0] + parts[1] + parts[2] < 1.0)
-        inside &= (parts > 0.0).all(axis=0)
+        inside = np.abs(volume) > 1e-12 * np.sqrt(square[0] * square[1] * square[2])
+        inside &= (parts > 0.0).all(axis=0) & (parts[0] + parts[1] + parts[2] < 1.0)
     rows = np.arange(len(newest))
     share = shares[value.argmin(axis=0), :, rows]
     place = newest + np.einsum("ki,kij->kj", share, edges)

@@ -62,6 +62,13 @@ def sizes(count: int) -> list[int]:
     return found
 
 
+def each_with_each(queries: int, nodes: int) -> tuple[Index, Index]:
+    """All pairs of so many queries and nodes: np.repeat takes many times as long."""
+    query, node = np.empty((2, queries, nodes), dtype=np.intp)
+    query[:], node[:] = np.arange(queries)[:, None], np.arange(nodes)
+    return query.ravel(), node.ravel()
+
+
 def below(query: Index, node: Index, count: int) -> tuple[Index, Index]:
     """Queries and nodes of the next level down, of which there are `count`."""
     node = (node[:, None] * BRANCH + np.arange(BRANCH)).ravel()

@@ -62,7 +62,8 @@ def looked_at(
     ends = BeadEnds.of(Beads.of(beads, width, height), size)
     platform = [disc(cell.platform_diameter, cell.mount)] if cell.platform_diameter > 0.0 else []
     reach = float(np.hypot(size.length, size.radius + size.slope * size.length))
-    around = scene([*bodies, *platform, *cell.in_part()], np.concatenate(corners), reach, ends.deposit) if len(rows) else None
+    stands = [*bodies, *platform, *cell.in_part()]
+    around = scene(stands, np.concatenate(corners), reach, ends.deposit) if len(rows) else None
     deposited = np.cumsum(motion.deposit)[rows]
     met = np.zeros(len(rows), dtype=bool)
     for some in _pieces(len(move)):

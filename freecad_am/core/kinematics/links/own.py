@@ -60,7 +60,7 @@ class OwnLinks:
         return outer, inner
 
     def often(self, pair: tuple[int, int], links: Array, middles: Sequence[Array], share: float) -> bool:
-        """Whether two links touch with more than a share of frames. Most are near each other with fewer, by their balls or by
+        """Whether two links touch with more than a share of frames. Most are near each other with fewer, by their balls or
         the axes of their cylinders: then that is known without a closer look."""
         most, rows = share * len(links), self._near(*pair, middles)
         for look in (self._close, self._touch):

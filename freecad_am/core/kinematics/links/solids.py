@@ -52,7 +52,8 @@ def turned(outline: ArrayLike, start: ArrayLike, end: ArrayLike, tone: str = BOD
     points[..., :2], points[..., 2] = ends[:, :, None, :1] * ring, ends[:, :, None, 1]
     normals[..., :2], normals[..., 2] = (rise / size)[:, None, None, None] * ring, (-run / size)[:, None, None]
     i = np.arange(count - 1) + 2 * count * np.arange(len(kept))[:, None]
-    triangles = np.stack([np.stack([i, i + 1, i + count], axis=2), np.stack([i + 1, i + count + 1, i + count], axis=2)], axis=1)
+    halves = [(i, i + 1, i + count), (i + 1, i + count + 1, i + count)]
+    triangles = np.stack([np.stack(half, axis=2) for half in halves], axis=1)
     pose = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), (last - first) / length), first)
     return Solid(points.reshape(-1, 3), normals.reshape(-1, 3), triangles.reshape(-1, 3), tone).moved(pose)
 
