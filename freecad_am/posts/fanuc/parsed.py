@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -58,6 +59,11 @@ class Listing:
     instructions: list[_Instruction]
     moves: _Moves
     records: Records
+
+    @cached_property
+    def same_frames(self) -> bool:
+        """Whether all positions are seen in the same frames."""
+        return len(set(self.records.frames)) == 1
 
     def rows(self, points: Index) -> Index:
         """Which positions those numbered (k,) are, -1 where there is none."""

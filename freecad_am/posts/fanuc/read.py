@@ -144,7 +144,7 @@ def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
         _refuse(listing, some.start + int(np.argmax(wrong)), run)
     run.cartesian = cartesian
     frames = listing.records.frames
-    alike = frames.count(frames[0]) == len(frames)
+    alike = listing.same_frames
     selected = frames if alike else [frames[row] for row in rows]
     changes = [0] if alike else [k for k in range(len(rows)) if k == 0 or selected[k] != selected[k - 1]]
     for first, end in zip(changes, [*changes[1:], len(rows)]):

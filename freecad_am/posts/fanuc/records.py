@@ -134,11 +134,10 @@ def _joint_records(text: str) -> Records | None:
         point[some], values[some] = numbers[:, 0], numbers[:, 8:14]
         decimals = min(decimals, *(len(found[group].partition(".")[2]) for group in _VALUES))
         (a, b), (c, d) = (found.span(group) for group in _FRAMES_OF)
-        if len(some) == len(records) and (numbers[:, 14:] == numbers[0, 14:]).all():
-            frames = [(mine[0][a:b], mine[0][c:d])] * len(records)
-            continue
-        for row, record in zip(some, mine):
-            frames[row] = record[a:b], record[c:d]
+        alone = (numbers[:, 14:] == numbers[0, 14:]).all()  # in the same frames
+        seen = [(record[a:b], record[c:d]) for record in (mine[:1] if alone else mine)]
+        for row, of_record in zip(some, seen * len(mine) if alone else seen):
+            frames[row] = of_record
     return Records(point, values, [()] * len(records), frames, 0.5 * 10.0**-decimals, False)
 
 
