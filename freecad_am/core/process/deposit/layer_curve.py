@@ -9,7 +9,8 @@ has them, else those of parabolas.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, fields
 from itertools import chain
 from typing import Any
 
@@ -27,6 +28,7 @@ SMOOTH = 1e-3  # rad; where the tangents of a bead are known, a corner is a poin
 _ALL = 15_000  # pairs of points and segments that are looked at one by one: of more a tree finds the near ones sooner
 _CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
 _TIE = 1e-9  # mm; where two chords meet both are the nearest: rounding does not choose between them
+_TOGETHER = 4096  # points whose cubics are looked at together, about
 _FIRST_TRIED = 5  # segments that are tried first
 _BEYOND = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
 
@@ -52,25 +54,57 @@ def distance(points: Array, curve: Curve) -> Array:
     the nearest, as far as it bows from its chord, the foot is moved along the cubic: beside a corner that is not always the
     one with the nearest chord.
     """
+    return _together([(points, curve)])[0]
+
+
+def distances(asked: Iterable[tuple[Array, Curve]]) -> Iterator[Array]:
+    """`distance` of points to a curve, one after the other; several of them together, for of a few points calls take longer
+    than the work."""
+    some: list[tuple[Array, Curve]] = []
+    for one in asked:
+        some.append(one)
+        if sum(len(points) for points, _ in some) >= _TOGETHER:
+            yield from _together(some)
+            some = []
+    if some:
+        yield from _together(some)
+
+
+def _together(asked: Sequence[tuple[Array, Curve]]) -> list[Array]:
+    points = np.concatenate([points for points, _ in asked])
+    curve = Curve(*(np.concatenate([getattr(curve, field.name) for _, curve in asked]) for field in fields(Curve)))
+    first = np.cumsum([0, *(len(points) for points, _ in asked)])
+    before = np.cumsum([0, *(len(curve.start) for _, curve in asked)])
+    pairs = [
+        (which + first[k], segment + before[k], own)
+        for k, one in enumerate(asked) for which, segment, own in _near(*one)
+    ]
+    which, segment, own = (np.concatenate(column) for column in zip(*pairs, strict=True))
+    return np.split(_to_cubic(points, which, segment, own, curve), first[1:-1])
+
+
+def _near(points: Array, curve: Curve) -> Iterator[tuple[Index, Index, Mask]]:
+    """Pairs (k,) of a point and a segment that may be nearest to it, those of each point together, and whether its chord
+    is."""
     bow = _bow(curve)
     if len(points) * len(curve.start) <= _ALL:
-        return _to_cubic(points, *_nearest_of_all(points, curve, bow), curve)
+        yield _nearest_of_all(points, curve, bow)
+        return
     from scipy.spatial import cKDTree  # slow to import, and the beads of most jobs are short
 
     reach = 0.5 * float(lengths(curve.end - curve.start).max()) + 2.0 * float(bow.max())
     middles = cKDTree(0.5 * (curve.start + curve.end))
     apart, near = middles.query(points, _FIRST_TRIED)
     radius: Array = (apart[:, 0] + reach) * (1.0 + 1e-9)
-    found = np.empty(len(points))
     # where all that may be nearest are among those few, as nearly everywhere, no others need be looked for
     few = apart[:, -1] > radius
     which, column = np.nonzero((apart <= radius[:, None]) & few[:, None])
-    found[few] = _to_cubic(points, *_nearest_chords(points, which, near[which, column], curve, bow), curve)
+    if few.any():
+        yield _nearest_chords(points, which, near[which, column], curve, bow)
     rest = np.flatnonzero(~few)
     for some in np.array_split(rest, _parts(middles, points[rest], radius[rest])) if len(rest) else ():
-        pairs = _within(middles, points[some], radius[some])
-        found[some] = _to_cubic(points[some], *_nearest_chords(points[some], *pairs, curve, bow), curve)
-    return found
+        which, segment = _within(middles, points[some], radius[some])
+        yield _nearest_chords(points, some[which], segment, curve, bow)
 
 
 def _bow(curve: Curve) -> Array:
@@ -157,8 +191,8 @@ def _between(values: Array, low: Array | float, high: Array | float) -> Array:
 
 
 def _to_cubic(points: Array, which: Index, segment: Index, own: Mask, curve: Curve) -> Array:
-    """(n,) the least distance to the cubics of the segments (k,) paired with the points numbered `which`, by Newton's steps
-    from the foot on the chord. Only a point's own segment, its chord the nearest, serves past its ends."""
+    """(n,) the least distance of points to the cubics of the segments (k,) paired with those numbered `which`, by Newton's
+    steps from the foot on the chord. Only a point's own segment, its chord the nearest, serves past its ends."""
     # axis by axis: rows of three take several times as long
     at = columns(points)[:, which]
     p, q, a, b = (columns(of)[:, segment] for of in (curve.start, curve.end, curve.start_slope, curve.end_slope))
@@ -173,7 +207,8 @@ def _to_cubic(points: Array, which: Index, segment: Index, own: Mask, curve: Cur
         rate = _dot(slope, slope) + _dot(away, bend)
         u = _between(u - _dot(away, slope) / np.where(rate > 0.0, rate, np.inf), low, high)
     apart = _size(p + u * (a + u * (square + u * cube)) - at)
-    found: Array = np.minimum.reduceat(apart, np.flatnonzero(np.diff(which, prepend=-1)))
+    found, begins = np.empty(len(points)), np.flatnonzero(np.diff(which, prepend=-1))
+    found[which[begins]] = np.minimum.reduceat(apart, begins)
     return found
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array
-from .layer_curve import Curve, columns_of, distance
+from .layer_curve import Curve, columns_of, distance, distances
 
 LEVEL = 1e-6  # mm; a layer whose points differ no more in height is a plane
 
@@ -38,10 +38,10 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
     above = [
         [] if layer.first else [bead.points for bead in layer.beads if not bead.closing] for layer in toolpath.layers[1:]
     ]
-    return tuple(
-        distance(np.concatenate(points), curve_of(below))
+    return tuple(distances(
+        (np.concatenate(points), curve_of(below))
         for below, points in zip(toolpath.layers, above, strict=False) if points
-    )
+    ))
 
 
 def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
