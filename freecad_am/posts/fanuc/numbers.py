@@ -49,10 +49,11 @@ def time_words(moves: Moves) -> list[str]:
         )
     # beyond the 1 ms that each move takes at least: what has accrued, never falling, never more than the whole
     spare = np.minimum(np.maximum.accumulate(np.maximum(ends - np.arange(1, n + 1), 0)), max(int(ends[-1]) - n, 0))
-    milliseconds = (1 + np.diff(spare, prepend=0)).tolist()
+    milliseconds = 1 + spare
+    milliseconds[1:] -= spare[:-1]
     return [
         f"{second:.1f}sec" if is_long else f"{whole}msec"
-        for second, is_long, whole in zip(seconds.tolist(), long.tolist(), milliseconds, strict=True)
+        for second, is_long, whole in zip(seconds.tolist(), long.tolist(), milliseconds.tolist(), strict=True)
     ]
 
 
