@@ -19,7 +19,7 @@ from ..parameters.joints import JointParameters
 from ..types import Array
 from .arm.kept import ArmKept
 from .limit_rows import LimitRows, limit_rows
-from .points import Points, in_pieces, unwrapped
+from .points import Points, in_pieces, unwrapped, unwrapped_by_turns
 from .reserve import RESERVE
 from .turns import configurations as following
 from .turns.directed import Lock
@@ -148,7 +148,10 @@ class Task:
 
     def joints(self, points: Points, phi: Array) -> Array:
         """(..., T, axes) joint values counted on within each bead, in the turn that suits the limits best."""
-        found = self.in_range(unwrapped(self.raw_joints(points, phi), points), points)
+        raw = self.raw_joints(points, phi)
+        if phi.ndim > 1 and not np.isnan(raw.max()):
+            return self.in_range(unwrapped_by_turns(raw, points), points)
+        found = self.in_range(unwrapped(raw, points), points)
         # of what is planned row by row: what is summed up over the axes is so in the order of memory
         return np.ascontiguousarray(found) if phi.ndim == 1 else found
 

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Joints counted on along beads."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.angles import TURN
+from freecad_am.core.planning.points import UNPOSED, Points, unwrapped, unwrapped_by_turns
+
+
+def points_of(counts, sliding=None):
+    first, total = np.cumsum([0, *counts[:-1]]), sum(counts)
+    return Points(
+        np.zeros((total, 3)), np.zeros((total, 3)), np.zeros(total), first, np.repeat(np.arange(len(counts)), counts),
+        np.zeros(len(counts), dtype=bool), UNPOSED, None, sliding,
+    )
+
+
+@pytest.mark.parametrize("counts", [[1], [2, 1, 7], [40, 3, 300, 25]])
+@pytest.mark.parametrize("sliding", [None, np.array([False, False, True])])
+def test_by_whole_turns_joints_are_those_of_steps(counts, sliding):
+    rng = np.random.default_rng(len(counts))
+    points = points_of(counts, sliding)
+    way = np.cumsum(rng.uniform(-2.0, 3.0, (4, len(points), 3)), axis=1)
+    way[..., 1] *= 0.02  # which stays within half a turn
+    given = way - TURN * np.round(way / TURN)
+    if sliding is not None:
+        given[..., 2] = 100.0 * way[..., 2]
+    for joints in (given, np.moveaxis(np.ascontiguousarray(np.moveaxis(given, -1, 0)), 0, -1)):
+        found = unwrapped_by_turns(joints, points)
+        assert np.abs(found - unwrapped(joints, points)).max() < 1e-9
+        assert np.array_equal(found[:, points.first], given[:, points.first])
+    if len(counts) > 2:
+        assert np.abs(found - given).max() > TURN
