@@ -128,6 +128,28 @@ def test_a_program_that_begins_at_a_bead_cannot_go_straight_onto_it():
     assert error.value.code == "TRIGGER" and "program.trigger.lead" in error.value.message
 
 
+@pytest.mark.parametrize("post", ["fanuc", "kuka"])
+def test_a_bead_onto_which_nothing_moves_or_that_the_program_begins_at_is_switched_on_where_the_robot_stands(post):
+    """How long the first move takes is not known, and a move to where the robot stands takes no time to be ahead by."""
+    cell, _, motion = planned(CELL[post])
+    first, last = int(np.argmax(motion.deposit)), int(np.flatnonzero(motion.deposit & (motion.point == 0))[-1])
+    bare = dataclasses.replace(motion, **{
+        field.name: getattr(motion, field.name)[first - 1:] for field in dataclasses.fields(motion)})
+    assert not bare.deposit[0] and bare.deposit[1]
+    joints = bare.joints.copy()
+    joints[last - first] = joints[last - first - 1]  # there already, where the way onto the last bead begins
+    bare = dataclasses.replace(bare, joints=joints)
+    process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
+    asked = ProgramParameters(
+        post=post, motion="cartesian" if post == "kuka" else "joint", trigger=TriggerParameters(lead=0.02))
+    program = build(bare, cell, process, asked, "job")
+    on = [block.ahead for block in program.blocks if isinstance(block, DepositOn)]
+    assert on == [None, *(0.02,) * (len(on) - 2), None] and len(on) > 3
+    assert {block.ahead for block in program.blocks if isinstance(block, DepositOff)} == {0.02}
+    events = catalogue.load(post).read(catalogue.load(post).write(program)).events
+    assert [event.ahead for event in events if event.kind == "on"] == on
+
+
 @pytest.mark.parametrize(("found", "due", "alike"), [
     (None, None, True), (None, 0.0, False), (0.0, None, False), (0.05, 0.0504, True), (0.05, 0.051, False),
 ])

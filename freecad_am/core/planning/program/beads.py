@@ -3,15 +3,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
+
+import numpy as np
 
 from ...issues import InputError, Word
 from ...motion import AT_END, AT_START, MIDDLE, Roles
 from ...parameters.process import ProcessParameters
 from ...parameters.program import ProgramParameters
 from ...program import Block, Call, DepositOff, DepositOn, Moves, Schedule, Weave
+from ...types import Array
 
 OUTPUT, ARC, CALL = "output", "arc", "call"
+# rad, or mm of what slides: a move that takes no axis farther than this takes no time that a switch could be ahead by
+STILL = 2e-5
 
 
 def deposited(
@@ -66,3 +72,16 @@ def _ahead(schedule: int | None, parameters: ProgramParameters) -> list[Block]:
     if parameters.schedule.by == CALL:
         return [Call(f"{parameters.schedule.call}{schedule}", "program.schedule.call")]
     return [Schedule(schedule)]
+
+
+def standing(blocks: Sequence[Block]) -> tuple[Block, ...]:
+    """The blocks, with the deposit switched on where the machine stands for beads onto which nothing moves it, and for one
+    that the program begins at: how far its first move is, from wherever the machine stands, is not known."""
+    found: list[Block] = []
+    places: list[Array] = []  # the last two, and no more
+    for block in blocks:
+        if isinstance(block, Moves) and len(block):
+            places = [*places, *block.joints[-2:]][-2:]
+        stands = len(places) < 2 or bool(np.abs(places[1] - places[0]).max() <= STILL)
+        found.append(dataclasses.replace(block, ahead=None) if isinstance(block, DepositOn) and stands else block)
+    return tuple(found)

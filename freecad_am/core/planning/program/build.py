@@ -44,7 +44,7 @@ from ...program import (
 from ...toolpath import Toolpath
 from ..joint_path import BeadPath
 from . import linear_approach
-from .beads import ARC, deposited, parted
+from .beads import ARC, deposited, parted, standing
 from .remarks import frames_of, remarks_of, six_of
 
 # what the rows of a motion are for, by its numbers
@@ -181,7 +181,7 @@ class _Blocks:
                 blocks += _between(self.process.between_layers, waits[here] if len(waits) else 0.0)
                 blocks += [LayerStart(here), *self._approach(rows[~retract], returns)]
             layer = here
-        return tuple(blocks)
+        return standing(blocks)
 
     def _bead(self, number: int, rows: NDArray[np.int64]) -> list[Block]:
         """A bead, switched on and off, by the group of rows of that number."""
