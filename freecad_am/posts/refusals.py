@@ -129,12 +129,16 @@ def refuse_triggers(program: Program, no_trigger: str) -> None:
             if no_trigger:
                 raise trigger_refused(no_trigger)
             if before is not None and block.ahead > before.duration[-1]:
-                raise InputError(
-                    "TRIGGER_LEAD", place(before),
-                    "the move that the deposit is switched on takes {:.3g} s, and it would be switched {:.3g} s before its "
-                    "end; use a shorter program.trigger.lead, or larger retract distance",
-                    before.duration[-1], block.ahead,
-                )
+                raise lead_refused(before, before.duration[-1], block.ahead)
+
+
+def lead_refused(before: Moves, seconds: float, lead: float) -> InputError:
+    """The error for a deposit that is switched `lead` s before the end of the last of moves, which takes only `seconds`."""
+    return InputError(
+        "TRIGGER_LEAD", place(before),
+        "the move that the deposit is switched on takes {:.3g} s, and it would be switched {:.3g} s before its "
+        "end; use a shorter program.trigger.lead, or larger retract distance", seconds, lead,
+    )
 
 
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:

@@ -61,3 +61,12 @@ def test_triggers_come_back_as_planned_and_none_may_be_another(name, lead):
         }
         passed = [what for what, those in changed.items() if not said(name, lead, "\r\n".join(those))]
         assert passed == []
+
+
+def test_a_lead_longer_than_the_move_is_by_whole_percents_is_refused():
+    """The first way onto a bead takes 0.198 s at 5 %, and 0.2 s were planned."""
+    text = made(NAMES[0], 0.198)[3]
+    assert "BAS(#VEL_PTP,5)\r\nTRIGGER WHEN DISTANCE=1 DELAY=-198 DO $OUT[1]=TRUE" in text
+    with pytest.raises(InputError) as error:
+        made(NAMES[0], 0.1999)
+    assert (error.value.code, str(error.value.where)) == ("TRIGGER_LEAD", "layer 0 bead 0")

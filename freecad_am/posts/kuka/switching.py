@@ -17,6 +17,13 @@ def ahead_of_moves(program: Program) -> dict[int, str]:
     return {id(moves): "\n".join(lines) for moves, block in switching(program) if (lines := _lines(program, block))}
 
 
+def leads(program: Program) -> dict[int, float]:
+    """s ahead of its end at which the last one of runs of moves switches an output, by the identity of these runs."""
+    if program.dry_run:
+        return {}
+    return {id(moves): block.ahead for moves, block in switching(program) if block.ahead is not None}
+
+
 def in_front(lines: str, word: str) -> str:
     """The word of a move, its settings in front of it, with such lines. A trigger comes last; calls of ArcTech come first,
     for what they set is set anew behind them."""

@@ -16,7 +16,7 @@ from ...core.orientation import MOVING_ZYX
 from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 from ..names import plain
 from ..parts import place
-from ..refusals import speeds_within
+from ..refusals import lead_refused, speeds_within
 from . import arc, switching
 
 END_OF_LINE = "\r\n"
@@ -25,6 +25,7 @@ WIDTH = 80  # of remarks
 ANGLE_DECIMALS, LENGTH_DECIMALS = 4, 3
 # mm/s: the least that is told well in m/s with six decimals, and what arms reach
 SPEEDS = (0.01, 3000.0)
+MILLISECOND = 0.001  # s: the step of a delay
 # percent: the least share of the axes' speeds that a controller is told, in whole numbers; half of that is rounded up to it
 LEAST_PERCENT = 1
 _AXES = [f"A{axis} %.{ANGLE_DECIMALS}f" for axis in range(1, 7)]
@@ -78,7 +79,7 @@ class Lines:
         self._nominal = np.where(self._slides, program.max_speed, np.degrees(np.array(program.max_speed)))
         self._before: Array | None = None
         self._own = program.own_axes
-        self._switching = switching.ahead_of_moves(program)
+        self._switching, self._leads = switching.ahead_of_moves(program), switching.leads(program)
         numbers = [program.first_external + k for k in range(len(program.external_kinds))]
         external = [f"E{number} %.{ANGLE_DECIMALS}f" for number in numbers]
         self._ptp, self._lin = (f"{word} {{{','.join([*values, *external])}}}" for word, values in (
@@ -131,7 +132,12 @@ class Lines:
                 "a rapid would need {:.3g} % of the largest joint speed, and KRL is told whole percents of {} to 100; use "
                 "another rapid speed", percent[wrong][0], LEAST_PERCENT,
             )
-        return [int(value) for value in np.clip(np.rint(percent), LEAST_PERCENT, 100)]
+        whole = np.clip(np.rint(percent), LEAST_PERCENT, 100)
+        lead, seconds = self._leads.get(id(moves), 0.0), float(100.0 * share[-1] / whole[-1])
+        # whole percents may be more than were planned, and the move shorter
+        if lead > seconds + MILLISECOND and (self._before is not None or len(moves) > 1):
+            raise lead_refused(moves, seconds, lead)
+        return [int(value) for value in whole]
 
     def _rounding(self, moves: Moves) -> float:
         """mm: corners are rounded within half the shortest move of the bead at most."""
