@@ -200,6 +200,8 @@ DAMAGE = [  # of which text, what is found in it, and what stands there then
     ("arc", r"(welddata d_am2:=\[8\.000),8\.000", r"\1,7.000"), ("arc", r"welddata d_am2:=", "welddata d_am92:="),
     ("arc", r"z_am\d+(?=,t_am)", "fine"), ("arc", r"fine(?=,t_am\S*\s+WaitTime )", "z_am1"),
     ("arc", r"t_am(?=\\WObj:=w_am;\r\n    ArcL )", "tool0"), ("arc", r"d_am\d+(?=\S*,fine\S*\s+MoveAbsJ)", "d_am9"),
+    ("arc", r"d_am2(?=\\Weave:=weave4,fine)", "d_am1"),
+    ("arc", r"(speeddata v_am1:=\[[^]]*,)5000", r"\g<1>2500"), ("arc", r"(speeddata v_am:=\[[^]]*,)1000(?=\])", r"\g<1>90"),
     ("held", r"(?m)^    ArcLEnd[^\n]*\n", ""), ("held", rf"(ArcLStart \[\[){N}", r"\g<1>0.100"),
     ("ahead", r"0\.045\\Time", "0"), ("ahead", r"0\.045\\Time", "0.046\\\\Time"), ("ahead", r"(g_on,\S*do)1", r"\g<1>2"),
     ("ahead", r"(g_off,\S*do1,)0", r"\g<1>1"), ("ahead", r"(?m)^    TriggIO g_off[^\n]*\n", ""),
@@ -233,6 +235,15 @@ def test_a_text_with_anything_else_is_refused(kind, pattern, change):
             text = files[name].decode()
             damaged = text[: found.start()] + found.expand(change) + text[found.end() :]
             assert damaged != text and codes(kind, {**files, name: damaged.encode()}, most), found[0]
+
+
+def test_a_trigger_on_a_corner_is_not_read():
+    """By itself, without a plan: the time of a trigger counts from where the robot stops."""
+    files = written("ahead")[3]
+    damaged = files["job.mod"].replace(b"g_on,fine", b"g_on,z_am1", 1)
+    with pytest.raises(InputError) as error:
+        abb.read({"job.mod": damaged})
+    assert "a corner has no end" in error.value.message
 
 
 def onto(rapid):

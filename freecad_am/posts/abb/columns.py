@@ -46,8 +46,8 @@ class Run:
     placed: whether a place of the move is told, in places and turns; joints: the numbers of joint moves. rounding: mm, NaN
     of moves that stop. nearest: ConfL is off, and positions are taken as the arm reaches them best. given: what the module
     has said of the process. output, on: what switches the deposit, and whether it is on. seam, weave: of the arc that
-    burns, struck: the weave it was struck with, until it moves, last: weld data and weave of the move before. feeding:
-    whether the wire goes on, fed: whether it ended in the bead.
+    burns, struck: the weave it was struck with, until it moves, last: weld data and weave it was struck or burnt by.
+    feeding: whether the wire goes on, fed: whether it ended in the bead.
     """
 
     found: dict[str, Module]

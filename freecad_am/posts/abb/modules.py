@@ -19,8 +19,8 @@ _TRIGGER = re.compile(r"LOCAL VAR triggdata (\w+);$")
 _TIP = re.compile(r"\[\d+(?:\.(\d+))?,")
 _TRACK = re.compile(r"! eax_([a-f]) is the track in mm\b")
 _MODULE_LINE, _PROC_LINE = re.compile(r"MODULE ([A-Za-z]\w*)$"), re.compile(r"PROC ([A-Za-z]\w*)\(\)$")
-# deg/s: a move that turns the tool faster would be slowed down
-_TURNING = 500.0
+# deg/s of the tool, mm/s and deg/s of axes beside the robot: moves that need more would be slowed down, as by RAPID's v1000
+_FAST = 500.0, 5000.0, 1000.0
 _NO_ARC = [0] * 9
 
 
@@ -131,8 +131,8 @@ def _keep(module: Module, kind: str, name: str, value: Any) -> None:
             raise ValueError
         module.objects[name], module.units[name] = (_truth(held), _pose(user) @ _pose(inside)), unit
     elif kind == "speeddata":
-        tip, turning, _, _ = map(float, value)
-        if turning < _TURNING:
+        tip, *others = map(float, value)
+        if any(one < least for one, least in zip(others, _FAST, strict=True)):
             raise ValueError
         module.speeds[name] = tip
     elif kind == "welddata":

@@ -81,6 +81,8 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
     run.feeding, run.fed = bool(starts) and not ends, bool(ends)
     for trigger in triggers:
         if isinstance(trigger, Switch):
+            if run.moving:
+                raise unreadable(where, "a corner has no end from which the time of a trigger counts")
             run.keep_switch(trigger.output, trigger.on, "do", where, trigger.digits, trigger.ahead)
 
 
@@ -97,7 +99,7 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
         if run.on or not run.nearest or not run.stands_at(move, where):
             raise unreadable(where, "the arc burns already, or is struck where the robot does not stand")
         run.keep_switch(seam, True, ARC, where)
-        run.seam, run.weave, run.struck = int(seam), 0, woven
+        run.seam, run.weave, run.struck, run.last = int(seam), 0, woven, (weld_name, woven)
         return
     if not run.on or run.output != ARC or run.seam != int(seam):
         raise unreadable(where, "the arc does not burn, or by another seam")
@@ -106,7 +108,7 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
             raise unreadable(where, "the arc ends with other data than it burnt by")
         _ends(run, where)
         return
-    _burns(move, weld, dry, woven, run, where)
+    _burns(move, weld, weld_name, dry, woven, run, where)
     run.keep_move(module, move, where)
     run.last = weld_name, woven
     if kind == "End":
@@ -115,14 +117,14 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
         _ends(run, where)
 
 
-def _burns(move: Move, weld: Weld, dry: float, woven: int, run: Run, where: str) -> None:
-    """Before a move of the arc: its weave begins with the first one, and is that of all; with the arc blocked it is as
-    fast."""
+def _burns(move: Move, weld: Weld, name: str, dry: float, woven: int, run: Run, where: str) -> None:
+    """Before a move of the arc: its weave begins with the first one, and is that of all, struck with the weld data of that
+    name; with the arc blocked it is as fast."""
     if dry != weld.speed:
         raise unreadable(where, "with the arc blocked the move has another speed")
     if run.struck is not None:
-        if run.struck != woven:
-            raise unreadable(where, "the arc is struck with another weave")
+        if run.last != (name, woven):
+            raise unreadable(where, "the arc is struck with other weld data, or another weave")
         run.struck, run.weave = None, woven
         if woven:
             run.happens("weave", float(woven))
