@@ -32,7 +32,7 @@ from freecad_am.core.simulation import rapid_look, waypoints
 from freecad_am.core.simulation.margins import on_deposit
 from freecad_am.objects.checks import controllers
 from freecad_am.posts import catalogue
-from freecad_am.read_back import driven
+from freecad_am.read_back import driven, switched
 from freecad_am.report import figures
 from freecad_am.sections import cell as job_cell
 from freecad_am.sections import tree
@@ -86,6 +86,7 @@ def check(programs: Sequence[str], cell_file: str, post: str | None, folder: str
         Issue(ERROR, code, Text("{} - it does not: {}", one.promise, one.figure), *(one.place or (None, None, None)))
         for code, one in zip(CODES, promises, strict=True) if one.ok is False
     ]
+    issues += switched.switching_issues(motion, read)
     if not motion.deposit.any():
         issues.append(Issue(NOTE, "NO_DEPOSIT", "the program never switches the deposit on"))
     stem = os.path.splitext(os.path.basename(catalogue.main_file(files)))[0]

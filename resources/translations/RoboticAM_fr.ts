@@ -6792,7 +6792,7 @@
         <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
         <source>a corner has no end from which the time of a trigger counts</source>
         <translation>un coin n&apos;a pas de fin d&apos;où compterait le temps d&apos;un déclencheur</translation>
     </message>
@@ -11258,8 +11258,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the arc is struck with another weave</source>
-        <translation>l&apos;arc est amorcé avec un autre balayage</translation>
+        <source>the arc is struck with other weld data, or another weave</source>
+        <translation>l&apos;arc est amorcé avec d&apos;autres données de soudage, ou un autre balayage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -11432,14 +11432,24 @@
         <translation>le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
+        <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
         <source>the deposit begins with a linear move onto the bead, and the program begins at the bead itself; give a retract distance, or another {0}</source>
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/program/arc_approach.py"/>
+        <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
         <source>the deposit begins with a linear move onto the bead, which would leave the way that was looked at by {0} mm; give a shorter retract distance, or another {1}</source>
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, qui s&apos;écarterait de {0} mm du chemin examiné ; donnez une distance de retrait plus courte, ou un autre {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/switched.py"/>
+        <source>the deposit is still on where the program ends</source>
+        <translation>le dépôt est encore actif où le programme finit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/switched.py"/>
+        <source>the deposit is switched on where it is on already</source>
+        <translation>le dépôt est activé où il l&apos;est déjà</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>

@@ -92,6 +92,21 @@ def test_what_was_broken_is_told_with_its_place(workshop, sound, pattern, by, co
     assert report(workshop)["status"] == "infeasible"
 
 
+@pytest.mark.parametrize(
+    ("pattern", "by", "code", "words"),
+    [
+        (r" *\d+:  DO\[1\]=OFF ;", "   1:  ;", "DEPOSIT_SWITCH", "is on already"),
+        (r"(?s)(.*)DO\[1\]=OFF ;", r"\1 ;", "DEPOSIT_SWITCH", "still on where the program ends"),
+        (r"(?s)(FINE {4};.*?)FINE {4};", r"\1FINE TB  29.00sec,DO[1]=OFF    ;", "TRIGGER_LEAD", "29 s before its end"),
+    ],
+)  # fmt: skip
+def test_a_deposit_that_is_switched_as_no_program_does_is_told(workshop, sound, pattern, by, code, words):
+    changed(sound[0], pattern, by)
+    done = run(workshop)
+    assert done.status == 3 and f"error[{code}] layer " in done.err and words in done.err, done.err
+    assert done.err.count(f"error[{code}]") == 1
+
+
 @pytest.mark.parametrize("controller", ["abb", "kuka", "linuxcnc", "siemens", "ur", "val3", "yaskawa"])
 def test_a_program_of_another_controller_is_refused_in_its_name(workshop, sound, root, controller):
     """Whatever the cell's robot reads: golden programs of all other controllers."""

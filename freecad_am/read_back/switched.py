@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether a text switches the deposit as a program can: nothing of a plan is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from freecad_am.core.types import Array
+
+from ..core.issues import ERROR, Issue, Text
+from ..core.motion import Motion
+from ..core.read_moves import Event, ReadMoves
+
+# s that a time in a text may be longer than that of its move: both are rounded to milliseconds
+MOST_LONGER = 0.002
+
+
+def switching_issues(motion: Motion, read: ReadMoves) -> list[Issue]:
+    """The first DEPOSIT_SWITCH where it is switched on a second time, or is on where the program ends: an end of a bead is
+    lost; and the first TRIGGER_LEAD where it is switched earlier than the move begins on which it is. motion: what the text
+    drives."""
+    first: dict[str, Issue] = {}
+    for issue in _issues(motion, read):
+        first.setdefault(issue.code, issue)
+    return list(first.values())
+
+
+def _issues(motion: Motion, read: ReadMoves) -> Iterator[Issue]:
+    rows, on = np.flatnonzero(motion.moves), False
+    for event in read.events:
+        if event.kind not in ("on", "off"):
+            continue
+        if on and event.kind == "on":
+            message = Text("the deposit is switched on where it is on already")
+            yield Issue(ERROR, "DEPOSIT_SWITCH", message, *_place(motion, rows, event.row))
+        on = event.kind == "on"
+        seconds = _time_of_its_move(event, motion.duration[rows])
+        if seconds is not None:
+            message = Text(
+                "the move that the deposit is switched on takes {:.3g} s, and it would be switched {:.3g} s before its "
+                "end; use a shorter program.trigger.lead, or larger retract distance", seconds, event.ahead,
+            )
+            yield Issue(ERROR, "TRIGGER_LEAD", message, *_place(motion, rows, event.row - 1))
+    if on:
+        message = Text("the deposit is still on where the program ends")
+        yield Issue(ERROR, "DEPOSIT_SWITCH", message, *_place(motion, rows, len(rows)))
+
+
+def _place(motion: Motion, rows: NDArray[np.intp], move: int) -> tuple[int, int, int]:
+    """Layer, bead and point of a move; of the last one for what follows it."""
+    row = rows[min(move, len(rows) - 1)]
+    return int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])
+
+
+def _time_of_its_move(event: Event, seconds: Array) -> float | None:
+    """s of the move that an event is on, where it comes before that begins. How long the first move takes nobody knows."""
+    move = event.row - 1
+    if event.ahead is None or move < 1 or not event.ahead > seconds[move] + event.digits + MOST_LONGER:
+        return None
+    return float(seconds[move])
