@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from .inside import Inside, inside_of
 from .obstacles import Obstacles
 
 PIECE = 8.0  # mm, longest edge of a triangle once it is cut up: slender triangles have large balls
+REMEMBERED = 1_000  # triangles of bodies that are kept as they are cut up
 MOST_PIECES = 60_000  # of all bodies; where there would be more, the pieces are longer
 
 
@@ -63,7 +65,27 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float, piece: float 
     if not bodies:
         return Bodies(Obstacles(np.zeros((0, 3, 3))), ())
     low, high = around.min(axis=0) - reach, around.max(axis=0) + reach
-    corners = np.concatenate([np.zeros((0, 3, 3)), *(body.corners() for body in bodies)])
+    corners = np.concatenate([body.corners() for body in bodies])
+    if len(corners) <= REMEMBERED and (corners >= low).all() and (corners <= high).all():
+        triangles = _of_all(corners.tobytes(), piece)
+    else:
+        triangles = Obstacles(_cut_up(corners, low, high, piece))
+    # only a body whose box reaches as far has room for a whole nozzle about one of the points
+    near = [body for body in bodies if len(body.vertices) and (body.vertices.min(axis=0) <= high).all()
+            and (body.vertices.max(axis=0) >= low).all()]
+    return Bodies(triangles, tuple(solid for solid in map(inside_of, near) if solid is not None))
+
+
+@lru_cache(maxsize=1)
+def _of_all(corners: bytes, piece: float) -> Obstacles:
+    """All triangles of bodies, cut up, once for the same ones: most jobs have nothing but their platform, and plan and look at
+    it several times."""
+    whole = np.frombuffer(corners).reshape(-1, 3, 3)
+    return Obstacles(_cut_up(whole, np.full(3, -np.inf), np.full(3, np.inf), piece))
+
+
+def _cut_up(corners: Array, low: Array, high: Array, piece: float) -> Array:
+    """Triangles (m, 3, 3) in pieces, as far as these meet a box."""
     whole = len(corners)
     while True:
         corners = corners[_in_box(corners, low, high)]
@@ -72,12 +94,8 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float, piece: float 
         longest = np.maximum(np.maximum(edges[:, 0], edges[:, 1]), edges[:, 2])
         long = longest > max(piece, 0.5 * float(longest.max(initial=0.0)))
         if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * whole):
-            break
+            return corners
         corners = np.concatenate([corners[~long], _halves(corners[long], edges[long].argmax(axis=1))])
-    # only a body whose box reaches as far has room for a whole nozzle about one of the points
-    near = [body for body in bodies if len(body.vertices) and (body.vertices.min(axis=0) <= high).all()
-            and (body.vertices.max(axis=0) >= low).all()]
-    return Bodies(Obstacles(corners), tuple(solid for solid in map(inside_of, near) if solid is not None))
 
 
 def _in_box(corners: Array, low: Array, high: Array) -> Mask:
