@@ -47,7 +47,7 @@ class Bodies:
 
     def _inside(self, solid: Frustum, tip: Array, axis: Array) -> Mask:
         found = np.zeros(len(tip), dtype=bool)
-        if not np.any(solid.high > solid.low):
+        if not self.solids or not np.any(solid.high > solid.low):
             return found
         low = np.broadcast_to(solid.low, len(tip))[:, None]
         ends = [tip + height * axis for height in (low, solid.high)]
@@ -78,7 +78,7 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float, piece: float 
 
 @lru_cache(maxsize=1)
 def _of_all(corners: bytes, piece: float) -> Obstacles:
-    """All triangles of bodies, cut up, once for the same ones: most jobs have nothing but their platform, and plan and look at
+    """All triangles of bodies, cut up, once for the same ones: most jobs have their platform alone, and plan and look at
     it several times."""
     whole = np.frombuffer(corners).reshape(-1, 3, 3)
     return Obstacles(_cut_up(whole, np.full(3, -np.inf), np.full(3, np.inf), piece))

@@ -64,25 +64,26 @@ def bounds(
         if not len(rows):
             break
         newest = solid.farthest(-place, axis) - _farthest(points, place)
-        size = high[rows]
-        low[rows] = np.maximum(low[rows], dots(place, newest) / size)
-        going = np.flatnonzero(low[rows] < np.minimum(farther[rows], size - CONVERGED))
+        size = high.take(rows)
+        at_least = np.maximum(low.take(rows), dots(place, newest) / size)
+        low[rows] = at_least
+        going = np.flatnonzero(at_least < np.minimum(farther.take(rows), size - CONVERGED))
         if len(going) < len(rows):
             if not len(going):
                 break
-            rows, newest, size, place = rows[going], newest[going], size[going], place[going]
-            solid, axis, points = solid.rows(going), axis[going], points[going]
-            simplex = None if simplex is None else simplex[going]
+            rows, size = rows.take(going), size.take(going)
+            newest, place, axis = (each.take(going, axis=0) for each in (newest, place, axis))
+            solid, points = solid.rows(going), points[going]
+            simplex = None if simplex is None else simplex.take(going, axis=0)
         place, simplex = _of_two(place, newest) if simplex is None else _nearest(simplex, newest)
         now = np.sqrt(dots(place, place))
         # no nearer than before: rounding has the last word
-        high[rows] = np.minimum(now, size)
-        going = np.flatnonzero((now > np.maximum(nearer[rows], CONVERGED)) & (now < size))
-        met = now <= CONVERGED
-        high[rows[met]] = 0.0
-        low[rows[met]] = 0.0
-        rows, simplex, place = rows[going], simplex[going], place[going]
-        solid, axis, points = solid.rows(going), axis[going], points[going]
+        high[rows] = np.where(now > CONVERGED, np.minimum(now, size), 0.0)
+        going = np.flatnonzero((now > np.maximum(nearer.take(rows), CONVERGED)) & (now < size))
+        if len(going) < len(rows):
+            rows = rows.take(going)
+            simplex, place, axis = (each.take(going, axis=0) for each in (simplex, place, axis))
+            solid, points = solid.rows(going), points[going]
     return np.minimum(low, high), high
 
 
