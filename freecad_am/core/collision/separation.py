@@ -65,8 +65,7 @@ def bounds(
             break
         newest = solid.farthest(-place, axis) - _farthest(points, place)
         size = high.take(rows)
-        at_least = np.maximum(low.take(rows), dots(place, newest) / size)
-        low[rows] = at_least
+        low[rows] = at_least = np.maximum(low.take(rows), dots(place, newest) / size)
         going = np.flatnonzero(at_least < np.minimum(farther.take(rows), size - CONVERGED))
         if len(going) < len(rows):
             if not len(going):

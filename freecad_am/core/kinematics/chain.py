@@ -124,7 +124,9 @@ class Chain:
             direction, value = self.directions[joint], angles[..., self.order[joint]]
             moved = (np.eye(3), value[..., None] * direction) if self.sliding[self.order[joint]] else (
                 frames.rotation_about(direction, value), np.zeros(3))
-            result[..., joint + 1, :, :] = result[..., joint, :, :] @ self.origins[joint] @ frames.pose(*moved)
+            before = result[..., joint, :, :]
+            still = (before.reshape(-1, 4) @ self.origins[joint]).reshape(before.shape)  # one product, not one each
+            result[..., joint + 1, :, :] = still @ frames.pose(*moved)
         return result
 
     def _driven(self, q: ArrayLike, point: Array, order: range, links: Array, sense: float) -> Array:
