@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import contextlib
-import dataclasses
-import os
 from typing import Any
 
 from ..core.geometry.located import is_there
@@ -19,8 +17,7 @@ from ..core.parameters import external, obstacles, touched
 from ..core.parameters import field as f
 from ..core.parameters.cell import NO_SHAPE, CellParameters
 from ..objects import user_machines
-from . import fields, quantity, tree
-from .paths import absolute
+from . import fields, paths, quantity, tree
 
 PAPERS = "paper"  # limits
 
@@ -30,34 +27,36 @@ def read(section: Any, path: str) -> CellParameters | None:
 
     Raises InputError about a key of the job or of the cell file.
     """
-    if isinstance(section, str) and section.strip():
-        return _of_file(absolute(section.strip(), path))
-    return None if section is None else _of_section(section, path)
+    section = paths.of_cell(section, path)
+    if isinstance(section, str) and section:
+        return _of_file(section)
+    return None if section is None else _of_section(section)
 
 
 def _of_file(path: str) -> CellParameters:
     saved = tree.read(path, "machine: ...", "machine and setup")
     saved.lines = {f"cell.{key}": line for key, line in saved.lines.items()}
     try:
-        return _of_section(saved.values, path)
+        return _of_section(paths.of_cell(saved.values, path))
     except InputError as error:
         raise saved.placed(error) from None
 
 
-def _of_section(section: Any, path: str) -> CellParameters:
+def _of_section(section: Any) -> CellParameters:
+    """The cell of a section whose files have absolute names."""
     section = dict(fields.mapping(section, "cell"))
     if section.get("machine") is not None:
-        section["machine"] = _machine(section["machine"], path)
+        section["machine"] = _machine(section["machine"])
     external_axes = section.pop("external", None)
     if external_axes == urdf_machine.WHOLE:
         section["machine"], section["external"] = urdf_cell.texts_of_machine(section.get("machine"))
     elif external_axes not in (None, []):
-        section["external"] = _external(external_axes, path)
+        section["external"] = _external(external_axes)
     around = section.pop("obstacles", None)
     if around not in (None, []):
-        section["obstacles"] = _obstacles(around, path)
+        section["obstacles"] = _obstacles(around)
     if isinstance(section.get("nozzle"), dict) and section["nozzle"].get("shape") not in (None, {}, NO_SHAPE):
-        section["nozzle"] = {**section["nozzle"], "shape": _shape(section["nozzle"]["shape"], path)}
+        section["nozzle"] = {**section["nozzle"], "shape": _shape(section["nozzle"]["shape"])}
     if section.get("touched") not in (None, []):
         section["touched"] = _touched(section["touched"])
     if isinstance(section.get("world_up"), list):
@@ -78,13 +77,17 @@ def _proposed(cell: CellParameters, own_branch: bool) -> CellParameters:
     return cell
 
 
-def _machine(value: Any, path: str, key: str = "cell.machine") -> Any:
-    """What `cell.machine` says, the path of a file made absolute: of a machine file, or of a URDF with the links meant."""
+def _machine(value: Any, key: str = "cell.machine") -> Any:
+    """What `cell.machine` says as the text that a cell keeps: an id, a machine file, a URDF with the links meant, or one of
+    these with the calibration of a robot."""
     if isinstance(value, dict) and value:
         fields.known_keys(value, ("file", "base", "tip", "name", "calibration"), key)
         texts = {name: fields.text(one, f"{key}.{name}").strip() for name, one in value.items() if one is not None}
         if "calibration" in texts or "name" in texts:
-            return _calibrated(texts, path)
+            if set(texts) != {"name", "calibration"}:
+                raise InputError("BAD_VALUE", "cell.machine", "a calibration is that of a machine; write machine: {name: "
+                                 "ur-ur10e, calibration: my_robot.yaml}")
+            return str(calibration.Named(texts["name"], texts["calibration"]))
         if "file" not in texts:
             raise InputError("BAD_VALUE", f"{key}.file", "there is no file; write machine: {file: robot.urdf}")
         meant = urdf_reference.reference(texts["file"])
@@ -93,52 +96,36 @@ def _machine(value: Any, path: str, key: str = "cell.machine") -> Any:
                 "BAD_VALUE", f"{key}.file", "{} is no URDF, which alone has links; write machine: {{file: robot.urdf, base: "
                 "base_link, tip: tool0}}, or the path of a machine file without braces", texts["file"],
             )
-        return str(urdf_reference.Reference(absolute(meant.file, path), texts.get("base"), texts.get("tip")))
-    if not isinstance(value, str):
-        return value
-    measured = calibration.named(value)
-    if measured is not None:
-        return _calibrated({"name": measured.machine, "calibration": measured.file}, path)
-    meant = urdf_reference.reference(value)
-    if meant is not None:
-        return str(dataclasses.replace(meant, file=absolute(meant.file, path)))
-    return absolute(value, path) if os.sep in value or value.lower().endswith(".json") else value
+        return str(urdf_reference.Reference(meant.file, texts.get("base"), texts.get("tip")))
+    return value
 
 
-def _calibrated(texts: dict[str, str], path: str) -> str:
-    """A machine with the calibration of one robot as the text that a cell keeps."""
-    if set(texts) != {"name", "calibration"}:
-        raise InputError("BAD_VALUE", "cell.machine", "a calibration is that of a machine; write machine: {name: ur-ur10e, "
-                         "calibration: my_robot.yaml}")
-    return str(calibration.Named(_machine(texts["name"], path), absolute(texts["calibration"], path)))
-
-
-def _external(value: Any, path: str) -> str:
-    """What `cell.external` says as the text that a cell keeps, paths of files made absolute."""
+def _external(value: Any) -> str:
+    """What `cell.external` says as the text that a cell keeps."""
     if not isinstance(value, list):
         raise InputError("BAD_VALUE", external.WHERE, "give a list such as - {machine: motoman-motopos-d500, pose: "
                          "[1500, 0, 0, 0, 0, 0], carries: part}")
-    return f"{external.MORE} ".join(str(_one_external(one, f"{external.WHERE}[{k}]", path)) for k, one in enumerate(value))
+    return f"{external.MORE} ".join(str(_one_external(one, f"{external.WHERE}[{k}]")) for k, one in enumerate(value))
 
 
-def _one_external(value: Any, key: str, path: str) -> external.External:
+def _one_external(value: Any, key: str) -> external.External:
     section = fields.mapping(value, key)
     fields.known_keys(section, ("machine", "pose", "carries"), key)
     pose = _pose(section.get("pose"), f"{key}.pose")
     wanted = section.get("machine")
     if not isinstance(wanted, dict):
         wanted = fields.text(wanted, f"{key}.machine").strip()
-    machine = _machine(wanted, path, f"{key}.machine")
+    machine = _machine(wanted, f"{key}.machine")
     return external.External(machine, pose, section.get("carries") or external.PART)
 
 
-def _shape(value: Any, path: str) -> str:
-    """What `cell.nozzle.shape` says, the path of its file made absolute."""
+def _shape(value: Any) -> str:
+    """What `cell.nozzle.shape` says: the path of its file."""
     key = "cell.nozzle.shape"
     if isinstance(value, dict):
         fields.known_keys(value, ("file",), key)
         value, key = value.get("file"), f"{key}.file"
-    file = absolute(fields.text(value, key).strip(), path)
+    file = fields.text(value, key)
     if not is_there(file):
         raise InputError("NO_FILE", key, "there is no file {}; check the path, relative to the file with it",
                          file)
@@ -179,21 +166,21 @@ def _pose(value: Any, key: str) -> external.Pose:
     return x, y, z, a, b, c
 
 
-def _obstacles(value: Any, path: str) -> str:
-    """What `cell.obstacles` says as the text that a cell keeps, paths of files made absolute."""
+def _obstacles(value: Any) -> str:
+    """What `cell.obstacles` says as the text that a cell keeps."""
     if not isinstance(value, list):
         raise InputError("BAD_VALUE", obstacles.WHERE, "give a list such as - {file: table.step, pose: [0, 0, "
                          "-200, 0, 0, 0]}")
-    found = [_obstacle(one, f"{obstacles.WHERE}[{k}]", k + 1, path) for k, one in enumerate(value)]
+    found = [_obstacle(one, f"{obstacles.WHERE}[{k}]", k + 1) for k, one in enumerate(value)]
     return f"{obstacles.MORE} ".join(map(str, found))
 
 
-def _obstacle(value: Any, key: str, number: int, path: str) -> obstacles.Obstacle:
+def _obstacle(value: Any, key: str, number: int) -> obstacles.Obstacle:
     section = fields.mapping(value, key)
     fields.known_keys(section, ("name", "file", "box", "pose"), key)
     file, size = "", None
     if section.get("file") is not None:
-        file = absolute(fields.text(section["file"], f"{key}.file").strip(), path)
+        file = fields.text(section["file"], f"{key}.file")
         if not is_there(file):
             raise InputError("NO_FILE", f"{key}.file", "there is no file {}; check the path, relative to the file with it",
                              file)

@@ -1,11 +1,27 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Paths in job files and cell files."""
+"""Names of files in job files and cell files: which keys have them, and where they are. Made absolute once, as a file is
+read, so that nothing after that has to know where it came from."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
 
-from ..core.geometry.located import expanded, located
+from ..core.geometry.located import expanded, is_there, located
+from ..core.kinematics.machines import calibration
+from ..core.kinematics.urdf import reference as urdf_reference
+from ..core.parameters.cell import NO_SHAPE
+from ..core.process.model import bead_table
+
+EACH = "[]"
+FEATURES = "features"
+OF_FEATURE = (
+    ("part", "file"), ("substrate", "file"), ("substrate", "scan"), ("fixtures", EACH, "file"),
+    ("strategy", "guide", "file"),
+)
 
 
 def absolute(file: str, path: str) -> str:
@@ -13,3 +29,75 @@ def absolute(file: str, path: str) -> str:
     found = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(path)), expanded(file)))
     located(found)  # who collects what a job is made of is told of it
     return found
+
+
+def of_job(values: dict[str, Any], path: str) -> dict[str, Any]:
+    """The values of a job file with absolute names of all files but those of the cell, which has files of its own; what is
+    no name of a file stays as it is."""
+    at = partial(absolute, path=path)
+    for feature in ((), (FEATURES, EACH)):
+        for keys in OF_FEATURE:
+            values = _changed(values, (*feature, *keys), at)
+        values = _changed(values, (*feature, "process", "bead_model"), partial(_table, at))
+        values = _changed(values, (*feature, "process", "material"), partial(_material, at))
+    return values
+
+
+def of_cell(section: Any, path: str) -> Any:
+    """The section `cell` of the file `path` with absolute names of files; where it names a cell file, that name."""
+    def at(file: str) -> str:
+        return absolute(file.strip(), path)
+
+    machine = partial(_machine, at)
+    section = _changed(section, (), at)
+    for keys in (("machine",), ("external", EACH, "machine")):
+        section = _changed(_changed(section, keys, machine), keys, partial(_described, at, machine), dict)
+    section = _changed(section, ("obstacles", EACH, "file"), at)
+    section = _changed(section, ("nozzle", "shape"), lambda shape: shape if shape == NO_SHAPE else at(shape))
+    return _changed(section, ("nozzle", "shape", "file"), at)
+
+
+def _changed(value: Any, keys: tuple[str, ...], change: Callable[[Any], Any], kind: type = str) -> Any:
+    """A value with another one at these keys, where there is one of the kind and not empty; the value itself stays."""
+    if not keys:
+        return change(value) if isinstance(value, kind) and (value.strip() if isinstance(value, str) else value) else value
+    key, rest = keys[0], keys[1:]
+    if key == EACH:
+        return [_changed(one, rest, change, kind) for one in value] if isinstance(value, list) else value
+    if not isinstance(value, dict) or key not in value:
+        return value
+    return {**value, key: _changed(value[key], rest, change, kind)}
+
+
+def _table(at: Callable[[str], str], name: str) -> str:
+    """A bead table that is none of ours."""
+    return name if name in ("none", *bead_table.BUILT_IN) else at(name)
+
+
+def _material(at: Callable[[str], str], name: str) -> str:
+    """The file of a material if there is one, else its name."""
+    own = at(name.strip())
+    return own if is_there(own) else name
+
+
+def _machine(at: Callable[[str], str], text: str) -> str:
+    """The text of a machine: its id, its machine file, a URDF with the links meant, or one of these and a calibration."""
+    measured = calibration.named(text)
+    if measured is not None:
+        return str(calibration.Named(_machine(at, measured.machine), at(measured.file)))
+    meant = urdf_reference.reference(text)
+    if meant is not None:
+        return str(replace(meant, file=at(meant.file)))
+    return at(text) if os.sep in text or text.lower().endswith(".json") else text
+
+
+def _described(at: Callable[[str], str], machine: Callable[[str], str], section: dict[str, Any]) -> dict[str, Any]:
+    """The same of a machine that is a section of its own."""
+    section = _changed(_changed(section, ("name",), machine), ("calibration",), at)
+    return _changed(section, ("file",), partial(_urdf, at))
+
+
+def _urdf(at: Callable[[str], str], file: str) -> str:
+    """The file of a URDF; other texts, which are refused, stay as they are."""
+    meant = urdf_reference.reference(file)
+    return at(file) if meant is not None and meant.file == file.strip() else file

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 from freecad_am.core.geometry.curves.bead_curves import POINT_FILES
@@ -12,9 +11,9 @@ from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters
+from freecad_am.core.process.model import bead_table
 from freecad_am.core.strategies.families import AUTO, KINDS, NEEDED, NONE, family_of
 from freecad_am.sections import fields, quantity
-from freecad_am.sections.paths import absolute
 
 from . import classes as job_classes
 from . import material
@@ -26,24 +25,16 @@ def kept_clear(kind: str) -> tuple[str, ...]:
     return ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
 
 
-def process_of(section: Any, strategy: LayerParameters, path: str) -> ProcessParameters:
+def process_of(section: Any, strategy: LayerParameters | None = None) -> ProcessParameters:
     """The process, what its material says filled in; where solids are filled a bead width that the job gives is meant,
-    whatever it is."""
-    given = job_classes.as_text(material.filled_in(fields.mapping(section, "process"), path))
-    if "bead_width" in given and family_of(strategy).filled:
+    whatever it is. strategy: None of a program of several features, which may differ from it, or where none is chosen yet.
+    InputError, of its bead table too."""
+    given = job_classes.as_text(material.filled_in(fields.mapping(section, "process")))
+    if strategy is not None and "bead_width" in given and family_of(strategy).filled:
         given = {"fill_width": "bead_width", **given}
-    return fields.build(ProcessParameters, given, "process")
-
-
-def with_path(process: ProcessParameters, path: str) -> ProcessParameters:
-    """A process with the file of its bead table found from the folder of the job."""
-    if process.bead_model == "none":
-        return process
-    from freecad_am.core.process.model import bead_table
-
-    if process.bead_model not in bead_table.BUILT_IN:
-        process = dataclasses.replace(process, bead_model=absolute(process.bead_model, path))
-    bead_table.load(process.bead_model)
+    process = fields.build(ProcessParameters, given, "process")
+    if process.bead_model != "none":
+        bead_table.load(process.bead_model)
     return process
 
 
@@ -54,7 +45,7 @@ def refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -
         raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why, build_direction.mode)
 
 
-def substrate_of(section: Any, strategy: Any, part: PartSource, path: str) -> PartSource | None:
+def substrate_of(section: Any, strategy: Any, part: PartSource) -> PartSource | None:
     """Where what a feature grows on comes from; None where it stands on the platform."""
     family = family_of(strategy)
     if part.start_edges and not family.edges:
@@ -72,7 +63,7 @@ def substrate_of(section: Any, strategy: Any, part: PartSource, path: str) -> Pa
     if family.substrate == NEEDED:
         if section is None:
             return None
-        found = part_of(fields.mapping(section, "substrate"), path, "substrate")
+        found = part_of(fields.mapping(section, "substrate"), "substrate")
         if found.faces:
             raise InputError(
                 "NOT_YET", "substrate.faces", "{!r} is not supported yet; use the whole solid", ", ".join(found.faces)
@@ -80,7 +71,7 @@ def substrate_of(section: Any, strategy: Any, part: PartSource, path: str) -> Pa
         return found
     if section is not None and family.substrate == NONE:
         raise InputError("NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out")
-    return None if section is None else part_of(fields.mapping(section, "substrate"), path, "substrate")
+    return None if section is None else part_of(fields.mapping(section, "substrate"), "substrate")
 
 
 def strategy_of(section: Any) -> LayerParameters:

@@ -15,17 +15,8 @@ from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.families import AUTO, KINDS, NONE, Family, family_of
 from freecad_am.sections import fields, tree
 
-from . import auto_layers, material
-from . import classes as job_classes
-from .feature_sections import (
-    kept_clear,
-    process_of,
-    refuse_direction,
-    strategy_of,
-    substrate_of,
-    with_direction,
-    with_path,
-)
+from . import auto_layers
+from .feature_sections import kept_clear, process_of, refuse_direction, strategy_of, substrate_of, with_direction
 from .part_source import PartSource, faces_of, fixtures_of, guide_of, part_of
 from .scan_source import ScanSource, scan_of, split
 
@@ -57,24 +48,24 @@ class JobFeature:
     scan: ScanSource | None = None
 
 
-def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
-    """The feature of the sections of a job file `path`, or of a feature in it.
+def one_feature(values: dict[str, Any], name: str) -> JobFeature:
+    """The feature of the sections of a job, or of a feature in it, whose files have absolute names.
     Raises InputError that names key and what to do."""
     if values.get("part") is None:
         raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
     part_section = fields.mapping(values["part"], "part")
     if auto_layers.asked(values.get("strategy")):
-        process = process_of_all(values.get("process") or {}, path)
+        process = process_of(values.get("process") or {})
         values = {**values, "strategy": auto_layers.resolved(values["strategy"], process)}
     section = values.get("strategy")
     if isinstance(section, dict) and section.get("kind") == AUTO.kind:
-        return _left_open(values, section, name, path)
+        return _left_open(values, section, name)
     strategy = strategy_of(_with_fuse(values.get("strategy") or {}, part_section))
-    process = with_path(process_of(values.get("process") or {}, strategy, path), path)
+    process = process_of(values.get("process") or {}, strategy)
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
     refuse_direction(strategy, build_direction)
-    part = part_of({key: value for key, value in part_section.items() if key != "fuse"}, path)
-    guide = guide_of((values.get("strategy") or {}).get("guide"), part_section, path)
+    part = part_of({key: value for key, value in part_section.items() if key != "fuse"})
+    guide = guide_of((values.get("strategy") or {}).get("guide"), part_section)
     if guide is not None and getattr(strategy, "layers", "") != "along":
         raise InputError("NOT_FOR_FAMILY", "strategy.guide", "only layers: along have a guide; leave it out, or use them")
     start_faces = faces_of((values.get("strategy") or {}).get("start_faces"), "strategy.start_faces")
@@ -85,23 +76,23 @@ def one_feature(values: dict[str, Any], name: str, path: str) -> JobFeature:
         )
     ground, scanned = split(values.get("substrate"))
     return JobFeature(
-        name, part, substrate_of(ground, strategy, part, path), fixtures_of(values.get("fixtures"), path), strategy,
-        build_direction, process, guide, start_faces=start_faces, scan=scan_of(scanned, strategy, path),
+        name, part, substrate_of(ground, strategy, part), fixtures_of(values.get("fixtures")), strategy,
+        build_direction, process, guide, start_faces=start_faces, scan=scan_of(scanned, strategy),
     )
 
 
-def _left_open(values: dict[str, Any], section: dict[str, Any], name: str, path: str) -> JobFeature:
+def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> JobFeature:
     """A feature whose family is chosen once its part is known; keys may be those of any family."""
     fields.known_keys(section, ("kind", *sorted({key for family in KINDS.values() for key in _keys(family)})), "strategy")
     common = {key: value for key, value in section.items() if key in _keys(AUTO)}
     part = {key: value for key, value in fields.mapping(values["part"], "part").items() if key != "fuse"}
     ground, _ = split(values.get("substrate"))
-    substrate = None if ground is None else part_of(fields.mapping(ground, "substrate"), path, "substrate")
+    substrate = None if ground is None else part_of(fields.mapping(ground, "substrate"), "substrate")
     return JobFeature(
-        name, part_of(part, path), substrate,
-        fixtures_of(values.get("fixtures"), path), fields.build(LayerParameters, common, "strategy"),
+        name, part_of(part), substrate,
+        fixtures_of(values.get("fixtures")), fields.build(LayerParameters, common, "strategy"),
         fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"),
-        process_of_all(values.get("process") or {}, path),
+        process_of(values.get("process") or {}),
         sections=values,
     )
 
@@ -116,7 +107,7 @@ def leans(feature: JobFeature, strategy: LayerParameters) -> bool:
     return "mode" not in (feature.sections.get("build_direction") or {})
 
 
-def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str, mode: str = "") -> JobFeature:
+def chosen(feature: JobFeature, kind: str, layers: str, mend: float, mode: str = "") -> JobFeature:
     """The feature with the family that was left open: of its keys those that the family has. mend: mm across of the largest
     hole that is closed where the job does not say, 0 for what is usual. mode: of the build direction, where it is not as
     the job says. Raises InputError as any."""
@@ -130,7 +121,7 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str, 
         values.pop("substrate", None)
     if kind != "solid" and isinstance(values["part"], dict):
         values["part"] = {key: value for key, value in values["part"].items() if key != "fuse"}
-    return one_feature(values, feature.name, path)
+    return one_feature(values, feature.name)
 
 
 def planes_of(feature: JobFeature) -> SolidParameters:
@@ -144,14 +135,7 @@ def _keys(family: Family) -> tuple[str, ...]:
     return tuple(field.name for field in dataclasses.fields(family.parameters))
 
 
-def process_of_all(section: Any, path: str) -> ProcessParameters:
-    """The process of a program of several features, which may differ from it."""
-    given = job_classes.as_text(material.filled_in(fields.mapping(section, "process"), path))
-    process = fields.build(ProcessParameters, given, "process")
-    return with_path(process, path)
-
-
-def several(values: dict[str, Any], path: str, lines: tree.Tree) -> tuple[JobFeature, ...]:
+def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
     """The features listed in a job file. Raises InputError that names feature and key."""
     entries = values["features"]
     if not isinstance(entries, list) or not entries:
@@ -167,7 +151,7 @@ def several(values: dict[str, Any], path: str, lines: tree.Tree) -> tuple[JobFea
         if name in [one.name for one in made]:
             raise InputError("BAD_VALUE", f"{here}.name", "{!r} is the name of another feature; give each its own", name)
         try:
-            made.append(one_feature(_with_defaults(own, values), name, path))
+            made.append(one_feature(_with_defaults(own, values), name))
         except InputError as error:
             raise about_feature(error, number, name, lines) from None
     return tuple(made)

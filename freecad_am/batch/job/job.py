@@ -18,9 +18,10 @@ from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from freecad_am.sections import cell as job_cell
-from freecad_am.sections import fields, quantity, tree
+from freecad_am.sections import fields, paths, quantity, tree
 
-from .features import JobFeature, one_feature, process_of_all, several
+from .feature_sections import process_of
+from .features import JobFeature, one_feature, several
 from .part_source import PartSource
 
 SEQUENCES = (BY_FEATURE, BY_HEIGHT)
@@ -93,7 +94,7 @@ def from_tree(job: tree.Tree, path: str) -> Job:
 
 
 def _checked(job: tree.Tree, path: str) -> Job:
-    values = job.values
+    values = paths.of_job(job.values, path)
     fields.known_keys(values, SECTIONS, "")
     version = values.get("version", 1)
     if version != 1 or isinstance(version, bool):
@@ -102,11 +103,11 @@ def _checked(job: tree.Tree, path: str) -> Job:
     if values.get("features") is None:
         if values.get("sequence") is not None:
             raise InputError("BAD_VALUE", "sequence", "there is one feature alone; leave it out, or list features")
-        features: tuple[JobFeature, ...] = (one_feature(values, name, path),)
+        features: tuple[JobFeature, ...] = (one_feature(values, name),)
         process = features[0].process
     else:
-        process = process_of_all(values.get("process") or {}, path)
-        features = several(values, path, job)
+        process = process_of(values.get("process") or {})
+        features = several(values, job)
     program = _program(values.get("program"))
     scan = next((one.scan for one in features if one.scan is not None), None)
     if scan is not None and len(features) > 1:

@@ -33,12 +33,12 @@ def built_in() -> list[str]:
     return sorted(path.stem for path in FOLDER.glob(f"*{ENDING}"))
 
 
-def filled_in(section: Any, path: str) -> Any:
-    """The section `process` of the job file `path` with what its material says and it does not itself; a section without a
+def filled_in(section: Any) -> Any:
+    """The section `process` of a job with what its material says and it does not itself; a section without a
     file of one as it is. InputError about a key of the job or of the material file."""
     if not isinstance(section, dict) or not isinstance(section.get("material"), str):
         return section
-    file = _file(section["material"].strip(), path)
+    file = _file(section["material"].strip())
     saved = tree.read(str(file), "source: and density:", "source and density")
     try:
         stated = _defaults(saved.values, file)
@@ -47,11 +47,10 @@ def filled_in(section: Any, path: str) -> Any:
     return _over(stated, section)
 
 
-def _file(name: str, path: str) -> Path:
-    """The file that a name means: one in the job's folder, else one that is built in."""
-    own = Path(absolute(name, path))
-    if is_there(own):
-        return own
+def _file(name: str) -> Path:
+    """The file that a name means: one that is there, by its absolute name, else one that is built in."""
+    if os.path.isabs(name) and is_there(name):
+        return Path(name)
     known = FOLDER / f"{name.removesuffix(ENDING)}{ENDING}"
     if name.removesuffix(ENDING) in built_in():
         return known

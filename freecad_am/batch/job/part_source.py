@@ -13,7 +13,6 @@ from freecad_am.core.geometry.mesh.file_unit import MESHES, refuse_scale
 from freecad_am.core.issues import InputError, Text
 from freecad_am.core.parameters import field as f
 from freecad_am.sections import fields, quantity
-from freecad_am.sections.paths import absolute
 
 _EDGE = re.compile(r"Edge[1-9]\d*", re.ASCII)
 _FACE = re.compile(r"Face[1-9]\d*", re.ASCII)
@@ -36,28 +35,28 @@ class PartSource:
     edges: tuple[str, ...] = ()
 
 
-def fixtures_of(section: Any, path: str) -> tuple[PartSource, ...]:
-    """The fixtures of a section `fixtures` of the job file `path`. InputError naming key and what to do."""
+def fixtures_of(section: Any) -> tuple[PartSource, ...]:
+    """The fixtures of a section `fixtures`. InputError naming key and what to do."""
     entries = [] if section is None else section
     if not isinstance(entries, list):
         raise InputError("BAD_VALUE", "fixtures", "fixtures are a list; write fixtures: [{file: clamp.step}]")
     found = []
     for number, entry in enumerate(entries):
         key = f"fixtures[{number}]"
-        fixture = part_of(fields.mapping(entry, key), path, key)
+        fixture = part_of(fields.mapping(entry, key), key)
         if fixture.faces:
             raise InputError("BAD_VALUE", f"{key}.faces", "a fixture counts as a whole; leave out its faces")
         found.append(fixture)
     return tuple(found)
 
 
-def part_of(section: dict[str, Any], path: str, key: str = "part") -> PartSource:
-    """The source of a section such as `part` of the job file `path`. InputError naming key and what to do."""
+def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
+    """The source of a section such as `part`, whose file has an absolute name. InputError naming key and what to do."""
     further = ("start_edges", "edges") if key == "part" else ()
     fields.known_keys(section, ("file", "object", "solids", "faces", "set", "scale", *further), key)
     if "file" not in section:
         raise InputError("NO_PART", f"{key}.file", "there is no file; write {}: {{file: shape.step}}", key)
-    file = absolute(fields.text(section["file"], f"{key}.file"), path)
+    file = fields.text(section["file"], f"{key}.file")
     is_document = file.lower().endswith(".fcstd")
     for entry in ("object", "set"):
         if section.get(entry) is not None and not is_document:
@@ -85,7 +84,7 @@ def part_of(section: dict[str, Any], path: str, key: str = "part") -> PartSource
     )
 
 
-def guide_of(given: Any, part: dict[str, Any], path: str) -> PartSource | None:
+def guide_of(given: Any, part: dict[str, Any]) -> PartSource | None:
     """Where the guide of a strategy comes from: the file and object of the section `part`, unless it tells its own; None for
     auto. InputError naming key and what to do."""
     key = "strategy.guide"
@@ -100,7 +99,7 @@ def guide_of(given: Any, part: dict[str, Any], path: str) -> PartSource | None:
     own = {name: given[name] for name in ("file", "object", "set") if name in given}
     if "file" not in own:
         own = {**{name: part[name] for name in ("file", "object", "set") if name in part}, **own}
-    return replace(part_of(own, path, key), edges=_names(given.get("edges"), f"{key}.edges", _EDGE))
+    return replace(part_of(own, key), edges=_names(given.get("edges"), f"{key}.edges", _EDGE))
 
 
 def faces_of(value: Any, key: str) -> tuple[str, ...]:

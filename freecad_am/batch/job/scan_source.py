@@ -12,7 +12,6 @@ from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.inspection import AUTO, BEST, NONE, UNITS, InspectionParameters
 from freecad_am.core.parameters.scan import PREFIX, ScanParameters
 from freecad_am.sections import fields as job_fields
-from freecad_am.sections.paths import absolute
 
 FITS = (AUTO, BEST, NONE)
 OWN = ("scan", "scan_unit", "scan_fit", "scan_pairs")
@@ -41,14 +40,14 @@ def split(section: Any) -> tuple[Any, dict[str, Any]]:
     )
 
 
-def scan_of(given: dict[str, Any], strategy: Any, path: str) -> ScanSource | None:
-    """The scan of these keys of a substrate in the job file `path`; None without any. InputError naming the key."""
+def scan_of(given: dict[str, Any], strategy: Any) -> ScanSource | None:
+    """The scan of these keys of a substrate; None without any. InputError naming the key."""
     if not given:
         return None
     if "scan" not in given:
         key = next(iter(given))
         raise InputError("BAD_VALUE", f"{PREFIX}.{key}", "there is no scan; give its file as {}.scan, or leave it", PREFIX)
-    file = absolute(job_fields.text(given["scan"], f"{PREFIX}.scan"), path)
+    file = job_fields.text(given["scan"], f"{PREFIX}.scan")
     if not is_there(file):
         raise InputError("NO_FILE", f"{PREFIX}.scan", "there is no file {}; check the path, relative to the file with it",
                          file)

@@ -71,10 +71,10 @@ class Shapes:
             )
             if found.layers == GEODESIC and self.fails:
                 found = replace(found, layers=PLANES, reason=found.reason + INSTEAD.format(self.fails))
-            of = chosen(self.of, found.kind, found.layers, found.mend, self.job.path)
+            of = chosen(self.of, found.kind, found.layers, found.mend)
             if self.fails and leans(self.of, of.strategy):
                 found = replace(found, reason=found.reason + FIXED.format(self.fails))
-                of = chosen(self.of, found.kind, found.layers, found.mend, self.job.path, UPRIGHT)
+                of = chosen(self.of, found.kind, found.layers, found.mend, UPRIGHT)
             self.of = of
         except InputError as error:
             raise self.placed(error) from None

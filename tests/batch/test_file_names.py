@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Names of files in a job and in a cell: absolute once they are read, whatever stands beside them as it was."""
+
+import copy
+
+import pytest
+
+from freecad_am.sections import paths
+
+AT = "/work/cup.yaml"
+
+
+def test_names_of_files_of_every_feature_are_absolute():
+    feature = {
+        "part": {"file": "a.step"}, "substrate": {"file": "../b.step", "scan": "c.csv"},
+        "fixtures": [{"file": "/d.stl"}, {}],
+        "strategy": {"guide": {"file": "e.step"}}, "process": {"bead_model": "own.csv", "material": "nowhere"},
+    }
+    wanted = {
+        "part": {"file": "/work/a.step"}, "substrate": {"file": "/b.step", "scan": "/work/c.csv"},
+        "fixtures": [{"file": "/d.stl"}, {}], "strategy": {"guide": {"file": "/work/e.step"}},
+        "process": {"bead_model": "/work/own.csv", "material": "nowhere"},
+    }
+    values = {**feature, "features": [feature, {"name": "top"}], "name": "cup.step"}
+    before = copy.deepcopy(values)
+    assert paths.of_job(values, AT) == {**wanted, "features": [wanted, {"name": "top"}], "name": "cup.step"}
+    assert values == before
+
+
+@pytest.mark.parametrize("values", [
+    {"part": "a.step"}, {"part": {"file": 3}}, {"part": {"file": " "}}, {"fixtures": {"file": "a.step"}}, {"part": None},
+    {"process": {"bead_model": "csw", "material": {"name": "wire"}}}, {"process": {"bead_model": "none"}},
+    {"strategy": {"guide": "auto"}}, {"features": "all"}, {"features": [1]}, {"substrate": []},
+])
+def test_what_names_no_file_stays(values):
+    assert paths.of_job(values, AT) == values
+
+
+def test_a_material_in_the_folder_of_the_job_comes_before_those_built_in(tmp_path):
+    (tmp_path / "er70s-6").write_text("")
+    found = paths.of_job({"process": {"material": "er70s-6"}}, str(tmp_path / "cup.yaml"))
+    assert found == {"process": {"material": str(tmp_path / "er70s-6")}}
+
+
+@pytest.mark.parametrize("machine, wanted", [
+    ("fanuc-arcmate120ic", "fanuc-arcmate120ic"),
+    ("mine.json", "/work/mine.json"),
+    ("robots/mine", "/work/robots/mine"),
+    ("robot.urdf base=base_link", "/work/robot.urdf base=base_link"),
+    ("ur-ur10e calibration=my.yaml", "ur-ur10e calibration=/work/my.yaml"),
+    ({"file": "robot.urdf", "tip": "tool0"}, {"file": "/work/robot.urdf", "tip": "tool0"}),
+    ({"file": "robot.urdf base=arm"}, {"file": "robot.urdf base=arm"}),  # which is refused, and told as it stands
+    ({"name": "mine.json", "calibration": "my.yaml"}, {"name": "/work/mine.json", "calibration": "/work/my.yaml"}),
+])
+def test_machines_of_a_cell(machine, wanted):
+    assert paths.of_cell({"machine": machine, "external": [{"machine": machine}]}, AT) == {
+        "machine": wanted, "external": [{"machine": wanted}],
+    }
+
+
+def test_other_files_of_a_cell():
+    assert paths.of_cell(" hall.yaml ", AT) == "/work/hall.yaml"
+    section = {"obstacles": [{"file": "table.step"}, {"box": [1, 2, 3]}], "nozzle": {"shape": {"file": "torch.stl"}}}
+    assert paths.of_cell(section, AT) == {
+        "obstacles": [{"file": "/work/table.step"}, {"box": [1, 2, 3]}], "nozzle": {"shape": {"file": "/work/torch.stl"}},
+    }
+    for shape in ("none", 3, None):
+        assert paths.of_cell({"nozzle": {"shape": shape}}, AT) == {"nozzle": {"shape": shape}}
