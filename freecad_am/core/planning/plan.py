@@ -32,7 +32,7 @@ from .joint_path import BeadPath, JointPath
 from .methods import closed_form, constant, layer_by_layer, point_by_point
 from .points import gather
 from .rotation import given, search
-from .task import Task
+from .task import Parts, Task
 from .turns import unwrap as turns
 from .turns.locked import as_held, lock_of
 
@@ -66,10 +66,12 @@ def plan_joints(
     clear where `cell.arm_clearance` asks for it. Raises InputError NOT_FOR_SETUP for what only rotary axes can do.
     """
     lock, (parameters, not_used) = lock_of(cell, parameters, toolpath), _used(cell, parameters)
-    joined, kept = all(part.family != REVOLUTION for part, _ in toolpath.parts), of_job(toolpath, cell, cylinders)
+    parts = toolpath.parts
+    joined, kept = all(part.family != REVOLUTION for part, _ in parts), of_job(toolpath, cell, cylinders)
     wanted = _branch_wanted(cell, parameters)
     among = range(BRANCHES) if wanted is None else (wanted,)
-    asked = Task(cell, 0, parameters, joined, kept, lock, toolpath.chord_error, toolpath.overlap, toolpath.retreat)
+    asked = Task(cell, 0, parameters, joined, kept, lock, toolpath.chord_error, toolpath.overlap, toolpath.retreat,
+                 parts)
 
     def served(some: Sequence[Bead]) -> float:
         return -_ranked(some, places, asked, among)[0][0] / min(len(some), SCREENED)
@@ -78,7 +80,7 @@ def plan_joints(
     for beads, places, tilted in ways(cell, toolpath):
         for moved in track.placed(beads, cell, served):
             branches = [wanted] if wanted is not None else best_branches(moved, cell, parameters, joined, kept, places)
-            found = _in_branches(toolpath, (moved, places), tilted, asked, branches, progress)
+            found = _in_branches((moved, places), tilted, asked, branches, progress)
             if planned is None or found.feasible:
                 planned = found
             if planned.feasible:
@@ -102,28 +104,27 @@ def _branch_wanted(cell: Cell, parameters: JointParameters) -> int | None:
 
 
 def _in_branches(
-    toolpath: Toolpath, placed: tuple[list[Bead], list[Place]], tilted: list[Issue], asked: Task, branches: Sequence[int],
-    progress: Progress,
+    placed: tuple[list[Bead], list[Place]], tilted: list[Issue], asked: Task, branches: Sequence[int], progress: Progress
 ) -> JointPath:
     """The joint path, external axes as the beads have them, in the first of the branches that serves."""
     (beads, places), cell, parameters = placed, asked.cell, asked.parameters
     together, notes = external_rule.asked(parameters, cell)
     task = dataclasses.replace(asked, branch=branches[0])
-    paths, issues = _planned(task, toolpath, beads, places, progress)
+    paths, issues = _planned(task, beads, places, progress)
     failed = _failed(paths, issues, places)
     for branch in branches[1:] if has_errors(issues) else ():
         other = dataclasses.replace(asked, branch=branch)
         # most branches fail at the same beads: these alone are soon planned
         some = [beads[k] for k in failed], [places[k] for k in failed]
-        if failed and has_errors(_planned(other, toolpath, *some, progress)[1]):
+        if failed and has_errors(_planned(other, *some, progress)[1]):
             continue
-        found = _planned(other, toolpath, beads, places, progress)
+        found = _planned(other, beads, places, progress)
         if not has_errors(found[1]):
             task, (paths, issues) = other, found
             break
     level = None
     if together:
-        (paths, issues), level = _bettered(task, toolpath, beads, places, (paths, issues), progress)
+        (paths, issues), level = _bettered(task, beads, places, (paths, issues), progress)
     issues = [*tilted, *issues, *notes]
     if cell.robot.arm is not None and cell.robot.arm.followed:
         issues = [*issues, Issue(
@@ -210,33 +211,31 @@ def _compare_order(parameters: JointParameters) -> list[str]:
 
 
 def _planned(
-    task: Task, toolpath: Toolpath, beads: Sequence[Bead], places: Sequence[tuple[int, int]], progress: Progress
+    task: Task, beads: Sequence[Bead], places: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
     paths, issues = ALL_METHODS[_choices(task)[0]](task, beads, places, progress)
-    paths, found = _finished(task, toolpath, places, paths)
+    paths, found = _finished(task, paths)
     return paths, given.not_used(task.parameters, places) + issues + found
 
 
 def _bettered(
-    task: Task, toolpath: Toolpath, beads: Sequence[Bead], places: Sequence[Place],
-    level: tuple[list[BeadPath], list[Issue]], progress: Progress,
+    task: Task, beads: Sequence[Bead], places: Sequence[Place], level: tuple[list[BeadPath], list[Issue]],
+    progress: Progress,
 ) -> tuple[tuple[list[BeadPath], list[Issue]], dict[str, object]]:
     """The same with the external axes optimised, and the figures of `level`."""
     planned, issues = METHODS[task.parameters.method](task, beads, places, _silent)
     before = given.not_used(task.parameters, places) + issues
 
     def finish(paths: list[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
-        done, found = _finished(task, toolpath, places, paths)
+        done, found = _finished(task, paths)
         return done, before + found
 
     return external_rule.bettered(
-        task, toolpath, level, planned, finish, lambda share: progress(share, "optimising the external axes"),
+        task, level, planned, finish, lambda share: progress(share, "optimising the external axes"),
     )
 
 
-def _finished(
-    task: Task, toolpath: Toolpath, places: Sequence[Place], paths: Sequence[BeadPath]
-) -> tuple[list[BeadPath], list[Issue]]:
+def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with the points that straight motion asks for, turns counted on, and what is wrong with them."""
     straight = closing.where_asked(task, _as_run(task, paths))
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])
@@ -249,7 +248,7 @@ def _finished(
     if task.kept is not None:
         issues += arm_clear.findings(task.kept, paths)
     if not has_errors(issues):
-        paths, found = _slowed(task.cell, paths, toolpath)
+        paths, found = _slowed(task.cell, paths, task.parts)
         issues = issues + found
     return paths, issues
 
@@ -262,12 +261,12 @@ def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[
     return all_refined(task, longer, task.chord_error)
 
 
-def _slowed(cell: Cell, paths: Sequence[BeadPath], toolpath: Toolpath) -> tuple[list[BeadPath], list[Issue]]:
+def _slowed(cell: Cell, paths: Sequence[BeadPath], parts: Parts) -> tuple[list[BeadPath], list[Issue]]:
     """The paths slowed where axes cannot follow and that is usual, and what is wrong with the rest."""
     done, notes = list(paths), []
-    for part, numbers in toolpath.parts:
-        rows = [k for k, path in enumerate(paths) if path.layer in set(numbers.tolist())] if toolpath.features else (
-            list(range(len(paths))))
+    for part, numbers in parts:
+        layers = set(numbers.tolist())
+        rows = [k for k, path in enumerate(paths) if path.layer in layers]
         some = [paths[k] for k in rows]
         if not some:
             continue

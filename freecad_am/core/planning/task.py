@@ -16,6 +16,7 @@ from ..kinematics.cell import Cell
 from ..kinematics.inverse.serial_arm import SerialArm
 from ..kinematics.pose_frames import PoseFrames
 from ..parameters.joints import JointParameters
+from ..toolpath import Toolpath
 from ..types import Array
 from .arm.kept import ArmKept
 from .limit_rows import LimitRows, limit_rows
@@ -23,6 +24,8 @@ from .points import Points, in_pieces, unwrapped, unwrapped_by_turns
 from .reserve import RESERVE
 from .turns import configurations as following
 from .turns.directed import Lock
+
+Parts = tuple[tuple[Toolpath, NDArray[np.intp]], ...]  # of a toolpath: that of each feature, and its layers in all of it
 
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
@@ -39,7 +42,8 @@ class Task:
 
     joined: whether the polynomial of a closed bead must come back to its value but for whole turns. On parts of revolution
     it need not: there a limited axis turns back between layers. kept: what keeps the links clear, where that is asked for.
-    lock: of two turning axes the one that stands. chord_error, overlap, retreat: mm, those of the toolpath.
+    lock: of two turning axes the one that stands. chord_error, overlap, retreat: mm, those of the toolpath; parts: the
+    toolpath of each feature, and its layers, which say how fast beads are laid and how far they may lean.
     """
 
     cell: Cell
@@ -51,6 +55,7 @@ class Task:
     chord_error: float = 0.0
     overlap: float = 0.0
     retreat: float = 0.0
+    parts: Parts = ()
 
     @cached_property
     def rows(self) -> LimitRows:

@@ -20,6 +20,7 @@ from ...kinematics.external import ExternalAxes, tilt_from
 from ...toolpath import Bead, Toolpath
 from ...types import Array
 from ..joint_path import BeadPath, JointPath
+from ..task import Parts
 from ..turns.unwrap import is_otherwise, seam_notes
 from . import courses, stroke
 from .courses import middle, on_face
@@ -51,14 +52,15 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
     that has a whole turn too."""
     external = cell.external
     assert external is not None
-    allowed = _allowed(toolpath)
+    allowed = allowed_by_layer(toolpath.parts)
     seen = [on_face(cell, bead.tool) for _, _, bead in toolpath]
-    before, hold = _standing_all(external, cell, seen, allowed)
+    before, hold = _standing_all(external, cell, seen, min(allowed[layer] for layer, _, _ in toolpath))
     done: list[Bead] = []
     places: list[Place] = []
     issues: list[Issue] = []
     helped: tuple[list[int], list[int]] = [], []
-    for (layer, index, bead), directions, most in zip(toolpath, seen, allowed, strict=True):
+    for (layer, index, bead), directions in zip(toolpath, seen, strict=True):
+        most = allowed[layer]
         values = np.tile(before, (len(bead), 1)) if hold else _followed(external, cell, directions, most, before)
         held = [dataclasses.replace(bead, external=values)]
         if stroke.lacks(cell, values, whole_turns) or not stroke.runs_on(cell, held[0], most, toolpath.overlap):
@@ -80,7 +82,9 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
 def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
     """What leans more than allowed where no axis beside the robot turns the part: at most one issue of a bead."""
     up, issues = cell.machine.base[:3, :3] @ cell.up, []
-    for (layer, index, bead), most in zip(toolpath, _allowed(toolpath), strict=True):
+    allowed = allowed_by_layer(toolpath.parts)
+    for layer, index, bead in toolpath:
+        most = allowed[layer]
         if most >= math.pi:
             continue
         axes = cell.station[None, :3, 2] if cell.arrangement.carries_part else on_face(cell, bead.tool)
@@ -142,19 +146,13 @@ def axes_figures(cell: Cell, paths: Sequence[BeadPath]) -> dict[str, object]:
     }
 
 
-def _allowed(toolpath: Toolpath) -> list[float]:
-    """The largest angle to the vertical, rad, of each bead."""
-    most = allowed_by_layer(toolpath)
-    return [most[layer] for layer, _, _ in toolpath]
-
-
-def allowed_by_layer(toolpath: Toolpath) -> dict[int, float]:
+def allowed_by_layer(parts: Parts) -> dict[int, float]:
     """The largest angle to the vertical, rad, of each layer."""
-    return {int(number): part.max_from_vertical for part, numbers in toolpath.parts for number in numbers}
+    return {int(number): part.max_from_vertical for part, numbers in parts for number in numbers}
 
 
 def _standing_all(
-    external: ExternalAxes, cell: Cell, seen: Sequence[Array], allowed: Sequence[float]
+    external: ExternalAxes, cell: Cell, seen: Sequence[Array], most: float
 ) -> tuple[Array, bool]:
     """Values (k,) of the external axes to begin with, and whether they serve the whole job."""
     zero = np.zeros(external.axes)
@@ -162,7 +160,7 @@ def _standing_all(
         return zero, True
     directions = np.concatenate(seen)
     one = middle(directions)
-    if one is None or float(tilt_from(directions, one).max()) > min(allowed):
+    if one is None or float(tilt_from(directions, one).max()) > most:
         return zero, False
     values = _standing(external, cell, one, zero)
     return (zero, False) if stroke.lacks(cell, values[None]) else (values, True)

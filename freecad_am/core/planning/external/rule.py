@@ -10,7 +10,6 @@ import numpy as np
 from ...issues import ERROR, NOTE, InputError, Issue, Text, has_errors
 from ...kinematics.cell import Cell
 from ...parameters.joints import LEVEL, JointParameters
-from ...toolpath import Toolpath
 from ..joint_path import BeadPath
 from ..task import Task, condition_margin
 from .courses import on_face
@@ -39,7 +38,7 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
 
 
 def bettered(
-    task: Task, toolpath: Toolpath, level: Found, planned: Sequence[BeadPath], finish: Callable[[list[BeadPath]], Found],
+    task: Task, level: Found, planned: Sequence[BeadPath], finish: Callable[[list[BeadPath]], Found],
     report: Callable[[float], None],
 ) -> tuple[Found, dict[str, object]]:
     """What is planned with all external axes optimised, and the figures of `level`, which stays where it is no worse.
@@ -49,7 +48,7 @@ def bettered(
     from .optimised import optimised  # few jobs have external axes
 
     paths = list(planned)
-    tried = optimised(task, paths, lambda tool: on_face(task.cell, tool), allowed_by_layer(toolpath), report)
+    tried = optimised(task, paths, lambda tool: on_face(task.cell, tool), allowed_by_layer(task.parts), report)
     found = finish(tried)
     if not _better(task, found, level):
         wrong = _worse(task, found, level)
