@@ -25,31 +25,31 @@ def with_overhangs(slices: Iterator[Slice], base: Base, strategy: SolidParameter
     reach = strategy.layer_height * math.tan(strategy.max_overhang) + strategy.chord_error
     least = (LEAST * strategy.bead_spacing) ** 2
     before: Slice | None = None
-    for one in slices:
-        issues = one.issues
+    for layer in slices:
+        issues = layer.issues
         if before is not None and strategy.max_overhang < NEVER:
-            over = _over(one, before if before.layer == one.layer - 1 else None, reach, strategy.chord_error, least)
+            over = _over(layer, before if before.layer == layer.layer - 1 else None, reach, strategy.chord_error, least)
             if over:
                 spot = max(over, key=lambda part: part.area).inside()
-                at = place(base.placed(one.surface.wrap(spot[None]).points)[0])
+                at = place(base.placed(layer.surface.wrap(spot[None]).points)[0])
                 issues = (*issues, Issue(
                     WARNING, CODE, Text("{:.4g} mm^2 lean out over the layer below by more than {:.4g} deg, the largest "
                         "piece at {}; deposit what carries it first, choose another strategy.direction, or raise "
                         "strategy.max_overhang", math.fsum(part.area for part in over), math.degrees(strategy.max_overhang),
-                        at), one.layer,
+                        at), layer.layer,
                 ))
-        before = one
-        yield one._replace(issues=issues)
+        before = layer
+        yield layer._replace(issues=issues)
 
 
-def _over(one: Slice, below: Slice | None, reach: float, chord_error: float, least: float) -> list[Region]:
+def _over(layer: Slice, below: Slice | None, reach: float, chord_error: float, least: float) -> list[Region]:
     """The pieces of a layer farther than `reach` mm beside the one below it."""
     under = () if below is None else below.regions
     carried = [
         part for region in under if isinstance(region, Region) for part in region.grown(reach, max(ARC * reach, chord_error))
     ]
     pieces = [
-        part for region in one.regions if isinstance(region, Region)
+        part for region in layer.regions if isinstance(region, Region)
         for part in (region.without(carried) if carried else (region,))
     ]
     return [part for part in pieces if part.area > least]

@@ -6,13 +6,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..filling.cover import Cover
-from ..filling.curve import PlaneCurve
 from ..geometry.on_hub import Base
 from ..geometry.plane import Plane
 from ..geometry.walls.clad_faces import CladFaces
-from ..issues import NOTE, InfeasibleError, InputError, Issue, Text
+from ..issues import NOTE, InputError, Issue, Text
 from ..layers.curved.on_faces import FaceLayer, pieces, slices
-from ..layers.surface import Slice
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
@@ -21,8 +19,8 @@ from ..process.order import RankedBead, ordered, waited
 from ..toolpath import Toolpath
 from ..types import Array
 from .progress import Progress, silent
-from .solids.beads import Wrapped, classed, reversed_curve
-from .solids.filling import Filled, Pictures, bead_width, spaced
+from .solids.beads import Wrapped, bead_of
+from .solids.filling import Pictures, bead_width, naming, spaced
 from .solids.islands import island_by_island
 from .solids.lean_notes import lean_notes
 from .solids.notes import notes
@@ -54,12 +52,13 @@ def plan(
         at: Array | None = None
         for layer in slices(sheet, piece, strategy):
             progress((number + layer.layer / strategy.layers) / len(found), f"layer {layer.layer}")
-            beads = _filled(pictures, layer, given.label)
+            with naming(given.label, layer.layer):
+                beads = pictures.filled(layer, 0.0, PART)
             mended += beads.issues
             assert isinstance(layer.surface, FaceLayer)
             stretch = max(stretch, layer.surface.stretch)
             covers.append(beads.cover)
-            here = [_bead(curve, layer, strategy, build, process, model) for curve in beads.curves]
+            here = [bead_of(curve, layer, PART, strategy, build, process, model) for curve in beads.curves]
             order = island_by_island([one.bead for one in here], beads.islands, at)
             at = here[order[-1]].bead.points[-1] if order else at
             ranked += [RankedBead(0, number, layer.layer, -rank, here[k].bead) for rank, k in enumerate(order)]
@@ -71,10 +70,8 @@ def plan(
         )
     layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
     noted = notes(made, layers, mended, strategy, process, model)
-    issues = (
-        *given.issues, *_stretched(stretch), *(one for one in noted if one.code != "SINGLE_LAYER"),  # as many as asked for
-        *lean_notes(made, layers, build),
-    )
+    noted = [one for one in noted if one.code != "SINGLE_LAYER"]  # there are as many as were asked for
+    issues = (*given.issues, *_stretched(stretch), *noted, *lean_notes(made, layers, build))
     return Toolpath(
         layers, np.eye(4), strategy.layer_height, strategy.chord_error, issues, process.overlap, "cladding",
         given.surroundings, None if model is None else model.law(process.acceleration), nominal,
@@ -90,23 +87,3 @@ def _stretched(share: float) -> tuple[Issue, ...]:
             "{:.2g} % nearer together or farther apart than the bead spacing; strategy.distortion bounds that",
             100.0 * share),
     ),)
-
-
-def _filled(pictures: Pictures, layer: Slice, label: str) -> Filled:
-    try:
-        return pictures.filled(layer, 0.0, PART)
-    except InfeasibleError as error:
-        where = f"{label} layer {layer.layer}"
-        raise InfeasibleError(
-            error.code, where, error.message,
-            issues=(Issue("error", error.code, Text("{}: {}", label, error.message), layer.layer),)
-        ) from None
-
-
-def _bead(
-    curve: PlaneCurve, layer: Slice, strategy: CladdingParameters, build: BuildDirectionParameters,
-    process: ProcessParameters, model: BeadModel | None,
-) -> Wrapped:
-    if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
-        curve = reversed_curve(curve)
-    return classed(curve, layer, PART, strategy, build, process, model)

@@ -65,7 +65,7 @@ def slices(base: Base, surface: Developable, body: Body, strategy: DevelopablePa
 
 
 def _adjacent(
-    base: Developable, below: Sequence[list[Loop]], ahead: Sequence[list[Loop]], height: float, thick: int
+    surface: Developable, below: Sequence[list[Loop]], ahead: Sequence[list[Loop]], height: float, thick: int
 ) -> list[tuple[int, list[Loop]]]:
     """The loops of so many layers under and over the last one below, moved to it, each lot with its number from there: none
     of those that are not there, or that go round the hub."""
@@ -73,7 +73,7 @@ def _adjacent(
     found = []
     for k in (k for step in range(1, thick + 1) for k in (-step, step)):
         there = below[here + k] if -here <= k < 0 else ahead[k - 1] if 0 < k <= len(ahead) else []
-        found.append((k, [moved(base, loop, -k * height) for loop in there if not loop.turns]))
+        found.append((k, [moved(surface, loop, -k * height) for loop in there if not loop.turns]))
     return found
 
 

@@ -41,21 +41,21 @@ class Loop:
 
 
 class Facets:
-    """A closed mesh prepared for cuts with equidistant surfaces of one base.
+    """A closed mesh prepared for cuts with equidistant surfaces of one surface.
 
     vertices (n, 3) mm in the hub's frame; faces (m, 3) with outward normals, every edge between two faces.
     InputError 'OPEN_MESH' naming the place where an edge has one face, or more than two.
     """
 
-    def __init__(self, base: Developable, vertices: Array, faces: Index, label: str = "part") -> None:
-        self.base, self.vertices, self.faces = base, vertices, faces
-        self.away = base.distance(vertices)
+    def __init__(self, surface: Developable, vertices: Array, faces: Index, name: str = "part") -> None:
+        self.surface, self.vertices, self.faces = surface, vertices, faces
+        self.away = surface.distance(vertices)
         following = faces[:, [1, 2, 0]]
         key = (np.minimum(faces, following).astype(np.int64) * len(vertices) + np.maximum(faces, following)).ravel()
         order = np.argsort(key, kind="stable")
         ranked = key[order]
         if len(ranked) % 2 or (ranked[::2] != ranked[1::2]).any() or (ranked[2::2] == ranked[1:-1:2]).any():
-            raise self._open(ranked, label)
+            raise self._open(ranked, name)
         # per edge the vertices at its ends, and the sides of faces that it is: 3 face + side, doubled, and 1 where the face
         # goes along it; all in one place, for a cut touches edges all over the memory
         self.edges = np.empty((len(order) // 2, 4), dtype=np.int32)
@@ -84,12 +84,12 @@ class Facets:
                 loops.append(Loop(points, self._turns(points)))
         return loops
 
-    def _open(self, ranked: NDArray[np.int64], label: str) -> InputError:
+    def _open(self, ranked: NDArray[np.int64], name: str) -> InputError:
         """What is told of edges, as ranked numbers of those of all faces, of which some have not two."""
         edges, counts = np.unique(ranked, return_counts=True)
         place = self.vertices[list(divmod(int(edges[counts != 2][0]), len(self.vertices)))].mean(axis=0)
         return InputError(
-            "OPEN_MESH", label, "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's base; close "
+            "OPEN_MESH", name, "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's base; close "
             "the mesh", int((counts != 2).sum()), place[0], place[1], place[2],
         )
 
@@ -99,7 +99,7 @@ class Facets:
         p, q = (self.vertices.take(self.edges[maybe, k], axis=0) for k in range(2))
         way = q - p
         level = (way[:, :2] ** 2).sum(axis=1)
-        cos, sin = np.cos(self.base.taper), np.sin(self.base.taper)
+        cos, sin = np.cos(self.surface.taper), np.sin(self.surface.taper)
         toward = (p[:, :2] * way[:, :2]).sum(axis=1)
         closest = (p[:, 0] * way[:, 1] - p[:, 1] * way[:, 0]) ** 2 / np.maximum(level, 1e-300)
         # rho = sqrt(closest + level (t - t0)^2), closest being the line's squared distance from the axis;
@@ -109,7 +109,7 @@ class Facets:
         reach = np.sqrt(closest) * np.where(turning, slope, 0.0) / np.sqrt(1.0 - np.where(turning, slope, 0.0) ** 2)
         t = (-toward + reach * np.sqrt(level)) / np.maximum(level, 1e-300)
         some = np.flatnonzero(turning & (t > 0.0) & (t < 1.0))
-        return maybe[some], self.base.distance(p[some] + t[some, None] * way[some])
+        return maybe[some], self.surface.distance(p[some] + t[some, None] * way[some])
 
     def _may_dip(self) -> Index:
         """The edges along which the distance falls at first and rises at last, or nearly so."""
@@ -118,7 +118,7 @@ class Facets:
         start, end = (self.edges[:, k].astype(np.intp) for k in range(2))
         across = x.take(start) * x.take(end) + y.take(start) * y.take(end)
         one, other = rho.take(start), rho.take(end)
-        rise = np.tan(self.base.taper) * (z.take(end) - z.take(start))
+        rise = np.tan(self.surface.taper) * (z.take(end) - z.take(start))
         # rho times the slope at either end, over cos(a); rounding is a hair of what goes into it
         begins, ends = across - one * one + rise * one, other * other - across + rise * other
         hair = ROUNDING * (one + other + np.abs(rise)) * (one + other)
@@ -138,7 +138,7 @@ class Facets:
         """Faces cut in a closed curve that meets no edge, with a place inside of it."""
         if not len(self.pierced):
             return []
-        low = self.base.distance(self.piercing) < distance
+        low = self.surface.distance(self.piercing) < distance
         clear = (self.away[self.faces[self.pierced]] >= distance).all(axis=1)
         dipping = self.dips[self.least < distance]
         clear &= ~np.array([np.isin(edges, dipping).any() for edges in self.around])
@@ -162,7 +162,7 @@ class Facets:
         t = np.zeros(len(outer))
         start, along = columns(outer), columns(way)
         for _ in range(NEWTON):
-            away, slope = self.base.along(start + t * along, along)
+            away, slope = self.surface.along(start + t * along, along)
             step = (away - distance) / np.minimum(slope, -1e-300)
             new = np.minimum(np.maximum(np.where(slope < 0.0, t - step, t), t), 1.0)
             if (new - t).max(initial=0.0) < 1e-15:
@@ -201,7 +201,7 @@ class Facets:
         t = np.zeros(len(points))
         start, along = columns(points), columns(way)
         for _ in range(NEWTON):
-            away, slope = self.base.along(start + t * along, along)
+            away, slope = self.surface.along(start + t * along, along)
             step = (distance - away) / np.maximum(slope, 1e-6)
             t += step
             if np.abs(step).max(initial=0.0) < 1e-14 * max(1.0, abs(distance)):
@@ -211,7 +211,7 @@ class Facets:
     def _round(self, face: int, spot: Array, distance: float, chord_error: float) -> Loop:
         """The closed cut about the axis in a facet that it pierces; the solid is on the side the facet turns away from."""
         normal = self._normals(np.array([face]))[0]
-        radius = self.base.radius + distance
+        radius = self.surface.radius + distance
         count = int(np.clip(np.ceil(np.pi / np.arccos(max(1.0 - chord_error / radius, -1.0))), 12, 8192))
         angle = TURN * np.arange(count) / count
         way = np.stack([np.cos(angle), np.sin(angle), np.zeros(count)], axis=1)
@@ -228,7 +228,7 @@ class Facets:
         return unit
 
     def _turns(self, points: Array) -> int:
-        step = np.diff(self.base.around(points), append=self.base.around(points[:1]))
+        step = np.diff(self.surface.around(points), append=self.surface.around(points[:1]))
         return int(np.round((np.remainder(step + np.pi, TURN) - np.pi).sum() / TURN))
 
 

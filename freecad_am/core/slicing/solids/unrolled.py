@@ -55,12 +55,12 @@ def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
     gap = lowest - distance if distance < lowest < distance + REACH else 0.0
     aside = gap + ASIDE * chord_error if gap or lying.any() else -TOUCH * chord_error
     found = facets.cut(distance + aside, chord_error)
-    return [moved(facets.base, loop, -aside) for loop in found]
+    return [moved(facets.surface, loop, -aside) for loop in found]
 
 
-def moved(base: Developable, loop: Loop, distance: float) -> Loop:
-    """The loop moved along the normals of the base."""
-    return Loop(loop.points + distance * base.normals(loop.points), loop.turns)
+def moved(surface: Developable, loop: Loop, distance: float) -> Loop:
+    """The loop moved along the normals of the surface."""
+    return Loop(loop.points + distance * surface.normals(loop.points), loop.turns)
 
 
 def opened(surface: Developable, loops: Sequence[Loop], centre: float, where: str) -> Flat:

@@ -47,11 +47,14 @@ class Wrapped(NamedTuple):
     turned: Turned | None = None
 
 
-def classed(
+def bead_of(
     curve: PlaneCurve, layer: Slice, base: Base, strategy: FilledParameters, build: BuildDirectionParameters,
     process: ProcessParameters, model: BeadModel | None,
 ) -> Wrapped:
-    """The bead of a curve of a layer as its class is laid, with the torch leaning as its class does."""
+    """The bead of a curve of a layer as its class is laid, with the torch leaning as its class does. Where directions
+    alternate every other closed one runs the other way."""
+    if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
+        curve = reversed_curve(curve)
     name = classes.of_filled(curve.kind, layer.layer)
     build, process = classes.leaning(build, process, name), process.for_class(name)
     lean = leaning(curve, layer, strategy, build)
@@ -68,23 +71,12 @@ def wrapped(
     lean: of the torch, by default that of the build direction. Points that come so soon after another that no controller can
     be told of the move are left out.
     """
-    found = _wrapped(curve, surface, base, strategy, build, process, model, lean)
-    index = np.flatnonzero(_sparse(found.bead.points, found.bead.speed[1:], BRIEF))
-    if len(index) == len(found.bead):
-        return found
-    clamped, tight = (None if mask is None else mask[index] for mask in (found.clamped, found.tight))
-    return Wrapped(found.bead.thinned(index), clamped, tight, found.turned)
-
-
-def _wrapped(
-    curve: PlaneCurve, surface: LayerSurface, base: Base, strategy: FilledParameters,
-    build: BuildDirectionParameters, process: ProcessParameters, model: BeadModel | None, lean: Lean | None,
-) -> Wrapped:
-    """The bead with all of its points."""
     period = surface.period
     start = period.moved(curve.points[:1], curve.turns) if curve.turns and period is not None else curve.points[:1]
     ended = np.vstack([curve.points, start]) if curve.closed else curve.points
-    flat = dense(ended, surface, WRAP_SHARE * strategy.chord_error, _kept_points(curve))
+    share = np.r_[curve.share, curve.share[:1]] if curve.closed and curve.share is not None else curve.share
+    kept = None if share is None else telling(_along(ended), share, SHARES)
+    flat = dense(ended, surface, WRAP_SHARE * strategy.chord_error, kept)
     course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
     lean = Lean(build.lead, build.tilt) if lean is None else lean
     flat, local, normal, tool, turned = held(course, lean, build, strategy.chord_error)
@@ -96,43 +88,43 @@ def _wrapped(
         points, base.turned(normal), base.turned(tool), TURN * way / way[-1], np.full(len(way), process.travel_speed),
         curve.closed, kind=curve.kind, ring=curve.ring,
     )
-    closed = curve.closed and not curve.turns
-    share = None if curve.share is None else _share(curve, ended, flat)
+    if share is not None:
+        asked, known = _along(flat), _along(ended)
+        share = np.interp(asked / asked[-1], known / known[-1], share)
+    heights = surface.heights(flat) if model is None else None
+    found = _with_speed(bead, flat, curve.closed and not curve.turns, share, heights, strategy, process, model)
+    index = np.flatnonzero(_sparse(found.bead.points, found.bead.speed[1:], BRIEF))
+    if len(index) == len(found.bead):
+        return found._replace(turned=turned)
+    clamped, tight = (None if mask is None else mask[index] for mask in (found.clamped, found.tight))
+    return Wrapped(found.bead.thinned(index), clamped, tight, turned)
+
+
+def _along(line: Array) -> Array:
+    """How far (n,) mm along a polyline (n, 2) its points are."""
+    return np.asarray(np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+
+
+def _with_speed(
+    bead: Bead, flat: Array, closed: bool, share: Array | None, heights: Array | None, strategy: FilledParameters,
+    process: ProcessParameters, model: BeadModel | None,
+) -> Wrapped:
+    """The bead, flat (n, 2) on the plane, at the speeds that hold its width. share: (n,) of the usual one; heights: (n,) mm
+    of the layer there, which no bead model asks for; None where they are as ever."""
     if model is not None:
         radius = radii(flat, closed, process.bead_width)
-        found = at_speed(bead, radius, flat, closed, process, model, 1.0 if share is None else share)
-        return Wrapped(*found, turned)
-    heights = surface.heights(flat)
+        return Wrapped(*at_speed(bead, radius, flat, closed, process, model, 1.0 if share is None else share))
     if share is None and heights is None:
-        return Wrapped(bead, turned=turned)
+        return Wrapped(bead)
     high = np.ones(len(flat)) if heights is None else heights / strategy.layer_height
     section = high if share is None else high * share
     speed = followed(flat, process.travel_speed / section, closed, max(process.acceleration, AGILE))
     section = process.travel_speed / speed  # at one wire feed
     bead = replace(bead, speed=of_segments(speed))
     if share is None:
-        return Wrapped(replace(bead, height=strategy.layer_height * section), turned=turned)
+        return Wrapped(replace(bead, height=strategy.layer_height * section))
     width = bead_width(strategy, process, model) * section / high
-    return Wrapped(replace(bead, width=width, height=heights), turned=turned)
-
-
-def _kept_points(curve: PlaneCurve) -> Mask | None:
-    """Which points (n,) of a curve, the first of a closed one again at its end, tell how wide it is; None: it is as wide as
-    ever."""
-    if curve.share is None:
-        return None
-    share = np.r_[curve.share, curve.share[:1]] if curve.closed else curve.share
-    line = np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
-    return telling(np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))], share, SHARES)
-
-
-def _share(curve: PlaneCurve, ended: Array, flat: Array) -> Array:
-    """The share (n,) of its usual width that a bead has at the points (n, 2) of it as laid, those of the curve (m, 2) and
-    more."""
-    assert curve.share is not None
-    share = np.r_[curve.share, curve.share[:1]] if curve.closed else curve.share
-    given, wrapped = (np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))] for line in (ended, flat))
-    return np.asarray(np.interp(wrapped / wrapped[-1], given / given[-1], share))
+    return Wrapped(replace(bead, width=width, height=heights))
 
 
 def _needed(flat: Array, tolerance: float, besides: Mask | None) -> Array:

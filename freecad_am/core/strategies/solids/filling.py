@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple, TypeVar
 
@@ -21,7 +22,7 @@ from ...geometry.formatting import place
 from ...geometry.on_hub import Base
 from ...geometry.regions.region import Region
 from ...geometry.regions.strip import Strip
-from ...issues import NOTE, WARNING, InputError, Issue, Text
+from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text
 from ...layers.margins import ARCS
 from ...layers.surface import Slice
 from ...parameters.filled import FilledParameters
@@ -74,63 +75,63 @@ class Pictures:
         self._width = width
         self._known: dict[tuple[float, ...], list[_Picture]] = {}
 
-    def filled(self, one: Slice, centre: float, base: Base) -> Filled:
+    def filled(self, layer: Slice, centre: float, base: Base) -> Filled:
         """The beads of a layer of a solid whose middle is at the azimuth `centre`, rad. InfeasibleError THIN_REGION."""
         strategy, process = self._strategy, self._process
-        seam = process.seam.angle + one.layer * process.seam.step
-        turned = one.surface.turned(centre)  # the picture, by the cutting line
+        seam = process.seam.angle + layer.layer * process.seam.step
+        turned = layer.surface.turned(centre)  # the picture, by the cutting line
 
         def where(point: Array) -> str:
-            return place(base.placed(one.surface.wrap(point[None]).points)[0])
+            return place(base.placed(layer.surface.wrap(point[None]).points)[0])
 
         beads = Beads(
             strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.least_bead, strategy.thin,
             process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error, where,
-            self._width, one.layer * OVER if strategy.starts == "spread" else None,
+            self._width, layer.layer * OVER if strategy.starts == "spread" else None,
         )
-        angle = strategy.fill_angle + one.layer * strategy.fill_angle_step - turned
+        angle = strategy.fill_angle + layer.layer * strategy.fill_angle_step - turned
         infill = Infill()
         if strategy.fill_density < 1.0:
-            height = one.layer * strategy.layer_height if strategy.fill == "gyroid" else 0.0
-            infill = Infill(strategy.fill_density, height, strategy.fill_angle - turned, one.covered)
+            height = layer.layer * strategy.layer_height if strategy.fill == "gyroid" else 0.0
+            infill = Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.covered)
         curves: list[PlaneCurve] = []
         issues: list[Issue] = []
         gaps: list[tuple[Array, float]] = []
         islands: list[int] = []
         covers: list[Cover] = []
-        for number, region in enumerate(one.regions):
-            found, left, cover = self._picture(one, region, beads, angle, infill)
+        for number, region in enumerate(layer.regions):
+            found, left, cover = self._picture(layer, region, beads, angle, infill)
             covers.append(cover)
-            found = [_from_other_end(curve) for curve in found] if beads.spread is not None and one.layer % 2 else found
+            found = [_from_other_end(curve) for curve in found] if beads.spread is not None and layer.layer % 2 else found
             curves += [replace(curve, sheet=region.sheet) for curve in found] if isinstance(region, Region) else found
             islands += [number] * len(found)
             gaps += left
-        plain = [region for region in one.regions if isinstance(region, Region)]
-        if len(plain) == len(one.regions) and strategy.fill_density == 1.0:
+        plain = [region for region in layer.regions if isinstance(region, Region)]
+        if len(plain) == len(layer.regions) and strategy.fill_density == 1.0:
             gaps = found_at if (found_at := open_at_slits(plain, curves, beads)) is not None else gaps
         if gaps:
             point, width = max(gaps, key=lambda gap: gap[1])
             issues.append(Issue(
                 WARNING, "OPEN_GAP", Text("beads leave {} gap(s) open, the widest of {:.3g} mm at {}; strategy.gap allows "
-                    "{:.3g} mm", len(gaps), width, where(point), beads.gap), one.layer,
+                    "{:.3g} mm", len(gaps), width, where(point), beads.gap), layer.layer,
             ))
-        issues += _standing_out(one, curves, beads)
-        if strategy.fill in INSTEAD and any(isinstance(region, Strip) for region in one.regions):
+        issues += _standing_out(layer, curves, beads)
+        if strategy.fill in INSTEAD and any(isinstance(region, Strip) for region in layer.regions):
             issues.append(Issue(
                 NOTE, "PATTERN_ROUND_HUB", Text("a layer all the way round the hub is filled with {}; strategy.fill = {} is "
-                    "for regions with an end", INSTEAD[strategy.fill], strategy.fill), one.layer,
+                    "for regions with an end", INSTEAD[strategy.fill], strategy.fill), layer.layer,
             ))
         return Filled(curves, tuple(issues), islands, total(covers))
 
     def _picture(
-        self, one: Slice, region: Region | Strip, beads: Beads, angle: float, infill: Infill
+        self, layer: Slice, region: Region | Strip, beads: Beads, angle: float, infill: Infill
     ) -> tuple[Sequence[PlaneCurve], list[tuple[Array, float]], Cover]:
         if isinstance(region, Strip):
-            if one.covered == ():
+            if layer.covered == ():
                 infill = Infill()
             curves, left = self._made(region, beads, angle, infill)
             return curves, left, covered(region, curves, beads, infill.density)
-        known = self._known.setdefault(one.surface.alike, [])
+        known = self._known.setdefault(layer.surface.alike, [])
         for other in known:
             alike = abs(other.angle - angle) < 1e-9 and abs(_number(other.beads) - _number(beads)) < 1e-9
             alike = alike and other.beads.spread == beads.spread
@@ -138,7 +139,7 @@ class Pictures:
                 return other.curves, other.left, other.cover
         curves, left = self._made(region, beads, angle, infill)
         cover = covered(region, curves, beads, infill.density)
-        if infill.density == 1.0 and one.surface.period is None and self._strategy.spacing_range == EVERY:
+        if infill.density == 1.0 and layer.surface.period is None and self._strategy.spacing_range == EVERY:
             curves = self._thinned(curves, beads, angle, cover)
         known.append(_Picture(beads, angle, infill, region.rings(), curves, left, cover))
         return curves, left, cover
@@ -166,6 +167,18 @@ class Pictures:
         if twice <= MUCH * cover.whole or self._strategy.narrowest == 1.0:
             return curves
         return tuple(thinned(curves, beads, angle, self._strategy.narrowest))
+
+
+@contextlib.contextmanager
+def naming(name: str, layer: int) -> Iterator[None]:
+    """What cannot be filled meanwhile is told with the name of the piece and the number of the layer."""
+    try:
+        yield
+    except InfeasibleError as error:
+        raise InfeasibleError(
+            error.code, f"{name} layer {layer}", error.message,
+            issues=(Issue("error", error.code, Text("{}: {}", name, error.message), layer),)
+        ) from None
 
 
 def _weighed(curve: PlaneCurve) -> float:
@@ -200,10 +213,10 @@ def bead_width(strategy: FilledParameters, process: ProcessParameters, model: Be
     return width
 
 
-def _standing_out(one: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:
+def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:
     """What is told of single beads in regions narrower than they are."""
-    rings = [ring for region in one.regions if isinstance(region, Region) for ring in region.rings()]
-    rings += [ring for region in one.regions if isinstance(region, Strip) for ring, _ in region.rings()]
+    rings = [ring for region in layer.regions if isinstance(region, Region) for ring in region.rings()]
+    rings += [ring for region in layer.regions if isinstance(region, Strip) for ring, _ in region.rings()]
     single = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]
     if not single:
         return []
@@ -215,7 +228,7 @@ def _standing_out(one: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> lis
         return []
     return [Issue(
         NOTE, "THIN_SINGLE", Text("{} bead(s) alone in regions narrower than a bead of {:.3g} mm stand out of them, by up "
-            "to {:.3g} mm at {}", len(single), 2.0 * beads.inset, out[worst], beads.where(points[worst])), one.layer,
+            "to {:.3g} mm at {}", len(single), 2.0 * beads.inset, out[worst], beads.where(points[worst])), layer.layer,
     )]
 
 

@@ -9,11 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from ...filling.cover import Cover
-from ...filling.curve import PlaneCurve
-from ...geometry.on_hub import Base, SolidsOnHub, downwards, upright
-from ...issues import InfeasibleError, InputError, Issue, Text
-from ...layers.field import Piece, pieces, upwards
-from ...layers.surface import Slice
+from ...geometry.on_hub import SolidsOnHub, downwards, upright
+from ...issues import InputError, Issue
+from ...layers.field import pieces, upwards
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
@@ -23,8 +21,8 @@ from ...toolpath import Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
-from .beads import Wrapped, classed, reversed_curve
-from .filling import Filled, Pictures, bead_width, spaced
+from .beads import Wrapped, bead_of
+from .filling import Pictures, bead_width, naming, spaced
 from .islands import as_below, island_by_island
 from .lean_notes import lean_notes
 from .notes import notes
@@ -44,7 +42,8 @@ def plan(
     InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
     THIN_REGION.
     """
-    _refuse_mode(solids, strategy, build)
+    planes, at = on_planes(solids), None
+    _refuse_mode(planes, strategy, build)
     strategy = spaced(strategy, process)
     expected = _layers_of_a_piece(solids, strategy, process)
     nominal = bead_width(strategy, process, model)
@@ -56,20 +55,20 @@ def plan(
     uneven: dict[int, tuple[float, float]] = {}
     found = [(group, one.base, number, piece) for group, one in enumerate(solids.groups)
              for number, piece in enumerate(pieces(one, solids.surroundings, strategy))]
-    planes, at = on_planes(solids), None
     for done, (group, base, number, piece) in enumerate(found):
         below: Array | None = None  # middles of the islands of the layer before
         before: Counter[int] = Counter()  # beads of the pieces that a curved layer has had
         for count, layer in enumerate(piece.slices):
             mended += layer.issues
             progress((done + min(1.0, count / expected)) / len(found), f"{piece.name} layer {layer.layer}")
-            beads = _filled(layer, piece, base, pictures)
+            with naming(piece.name, layer.layer):
+                beads = pictures.filled(layer, piece.centre, base)
             mended += beads.issues
             share = 1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
             covers.append(Cover(*(share * area for area in beads.cover)))
             if layer.heights is not None:
                 uneven[layer.layer] = _both(uneven.get(layer.layer), layer.heights)
-            here = [_bead(curve, layer, base, strategy, build, process, model) for curve in beads.curves]
+            here = [bead_of(curve, layer, base, strategy, build, process, model) for curve in beads.curves]
             made += here
             ranks = [curve.ring for curve in beads.curves]
             if planes:
@@ -90,7 +89,7 @@ def plan(
     layers = waited(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
     issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
     return Toolpath(
-        layers, _frame(solids), strategy.layer_height, strategy.chord_error, issues, process.overlap,
+        layers, _frame(solids, planes), strategy.layer_height, strategy.chord_error, issues, process.overlap,
         "solid" if planes else "developable",
         solids.surroundings, None if model is None else model.law(process.acceleration), nominal,
         volumes=volumes(solids, strategy, covers), twice=twice(made, strategy, covers, nominal),
@@ -112,22 +111,13 @@ def _both(known: tuple[float, float] | None, heights: tuple[float, float, float]
     return (low, high) if known is None else (min(low, known[0]), max(high, known[1]))
 
 
-def _bead(
-    curve: PlaneCurve, layer: Slice, base: Base, strategy: FilledParameters, build: BuildDirectionParameters,
-    process: ProcessParameters, model: BeadModel | None,
-) -> Wrapped:
-    if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
-        curve = reversed_curve(curve)
-    return classed(curve, layer, base, strategy, build, process, model)
-
-
-def _refuse_mode(solids: SolidsOnHub, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
+def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
     if getattr(strategy, "layers", "planes") != "planes" and build.mode != "local":
         raise InputError(
             "NOT_FOR_FAMILY", "build_direction.mode", "{} is not for curved layers, which grow along their normals; use "
             "local", build.mode,
         )
-    if on_planes(solids):
+    if planes:
         if build.mode == "symmetry-plane":
             raise InputError(
                 "NOT_FOR_FAMILY", "build_direction.mode", "symmetry-plane is for walls; plane layers grow along their "
@@ -158,22 +148,11 @@ def clear_by_itself(toolpath: Toolpath, solids: SolidsOnHub) -> bool:
     return all(float(((body.vertices - origin) @ up).max()) < LEVEL for body in solids.surroundings)
 
 
-def _filled(layer: Slice, piece: Piece, base: Base, pictures: Pictures) -> Filled:
-    try:
-        return pictures.filled(layer, piece.centre, base)
-    except InfeasibleError as error:
-        where = f"{piece.name} layer {layer.layer}"
-        raise InfeasibleError(
-            error.code, where, error.message,
-            issues=(Issue("error", error.code, Text("{}: {}", piece.name, error.message), layer.layer),)
-        ) from None
-
-
-def _frame(solids: SolidsOnHub) -> Array:
+def _frame(solids: SolidsOnHub, planes: bool) -> Array:
     """The frame of the feature (interface.md, mount): Z the axis of the first base, upwards in the part; origin where the
     lowest end of the solids is; X the part's X seen along Z. Of planes Z is the stacking direction, wherever it points."""
-    base: Base = solids.groups[0].base
-    if on_planes(solids):
+    base = solids.groups[0].base
+    if planes:
         return base.frame
     z = base.frame[:3, 2]
     z = -z if downwards(z) else z
