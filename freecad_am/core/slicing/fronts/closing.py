@@ -18,9 +18,10 @@ from scipy.spatial import cKDTree
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.mesh.triangle_mesh import LevelLine, Mesh, chains
+from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...types import Array, Index, Mask
-from .curve import Feet, Wall, feet
+from .curve import Feet, feet
 from .gap_middle import finer, middle, samples, shares
 
 COVERED = 0.594  # of the height; no point is to be farther from a bead, and is found to less than the rest to 0.6
@@ -38,18 +39,18 @@ AROUND, CLIMB, SHORTER = 8, 14, 0.7  # ways in which deeper places are sought, h
 
 
 def closing(
-    wall: Wall, mesh: Mesh, below: list[SpaceCurve], above: list[SpaceCurve], passed: Index, height: float, ends: Array,
+    wall: PatchWall, below: list[SpaceCurve], above: list[SpaceCurve], passed: Index, height: float, ends: Array,
     widest: float = 1.0,
 ) -> list[SpaceCurve]:
     """The beads, along the middle of gaps, that cover the wall between fronts.
 
     below, above: the fronts of two layers that follow each other, those above none where the wall ends. passed: (n,) the
-    vertices of the mesh between them. ends: points (k, 3) along the edges at which layers finish. widest: heights that the
-    layers may be apart.
+    vertices of the wall's mesh between them. ends: points (k, 3) along the edges at which layers finish. widest: heights
+    that the layers may be apart.
     """
     if not len(passed):
         return []
-    fronts = [*below, *above]
+    fronts, mesh = [*below, *above], wall.mesh
     faces = mesh.faces[mesh.faces_at(passed)]
     near = cKDTree(samples(fronts, SAMPLED * height))
     corners = mesh.vertices[faces]
@@ -106,7 +107,7 @@ class _Gaps(NamedTuple):
     cut: those of its vertices (k,) that lie on its border, but on none of the wall: what reaches them is not a gap between
     fronts. levels: heights, where borders of gaps are drawn. ends: points (k, 3) where layers finish."""
 
-    wall: Wall
+    wall: PatchWall
     fine: Mesh
     asked: Mask
     cut: Index

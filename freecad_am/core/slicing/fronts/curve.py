@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.frames import unit
+from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...types import Array, Index
 
@@ -22,13 +23,6 @@ WITHIN = 5e-5  # mm; at INSIDE, where arcs are off by more than half of what the
 # of each arc; where the wall's curvature jumps within it, its middle may be right by chance
 INSIDE = np.array([1.0 / 3.0, 2.0 / 3.0])
 SAME_FOOT = 1e-3  # of the height; branches whose nearest points lie closer than this are one
-
-
-class Wall(Protocol):
-    """An exact wall near which a mesh lies."""
-
-    def project(self, points: Array) -> tuple[Array, Array]:
-        """Nearest points of the wall and unit normals, (n, 3), the normals to one side all over."""
 
 
 class Feet(NamedTuple):
@@ -65,7 +59,7 @@ def inside(curve: SpaceCurve) -> Array:
 
 
 def exact(
-    wall: Wall, fronts: list[SpaceCurve], height: float, points: Array, closed: bool, rims: Array, ends: Array
+    wall: PatchWall, fronts: list[SpaceCurve], height: float, points: Array, closed: bool, rims: Array, ends: Array
 ) -> list[SpaceCurve]:
     """The front at `height` mm from the fronts below that runs near the chain of points (n, 3).
 
@@ -131,7 +125,7 @@ class _Nodes(NamedTuple):
 
 
 def _converged(
-    wall: Wall, fronts: list[SpaceCurve], height: float, points: Array, rims: Array | None
+    wall: PatchWall, fronts: list[SpaceCurve], height: float, points: Array, rims: Array | None
 ) -> tuple[Array, Array, Feet]:
     """Points moved within the wall, straight away from the front below, until their distance is the height; the ends of
     an open chain along the rims."""
@@ -152,7 +146,7 @@ def _converged(
 
 
 def _corners(
-    wall: Wall, fronts: list[SpaceCurve], height: float, nodes: _Nodes, arcs: Index
+    wall: PatchWall, fronts: list[SpaceCurve], height: float, nodes: _Nodes, arcs: Index
 ) -> tuple[Index, _Nodes]:
     """Corners on those of the arcs (k,) whose ends belong to two branches: the arcs that have one, and the corners."""
     n = len(nodes.points)

@@ -9,9 +9,9 @@ from scipy.spatial import cKDTree
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.mesh.triangle_mesh import Mesh
+from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...types import Array, Index
-from .curve import Wall
 from .even_line import even, rounded
 from .on_wall import on_wall
 
@@ -20,7 +20,7 @@ ROUND = 0.8  # of the height; standard deviation of the mean that rounds a bead
 DECIMALS = 6  # decimals of mm to which vertices of the fine mesh are told apart
 
 
-def middle(wall: Wall, borders: list[Array], height: float) -> SpaceCurve | None:
+def middle(wall: PatchWall, borders: list[Array], height: float) -> SpaceCurve | None:
     """The line halfway between the sides of a gap with the borders (k, 3): open along one that has a single border, closed
     within a ring."""
     longest = max(borders, key=len)
@@ -46,7 +46,7 @@ def _opposite(points: Array, line: Array) -> Array:
     return nearest
 
 
-def _through(wall: Wall, points: Array, height: float, closed: bool) -> SpaceCurve | None:
+def _through(wall: PatchWall, points: Array, height: float, closed: bool) -> SpaceCurve | None:
     """A smooth curve on the wall near a chain of points."""
     if closed:
         points = np.vstack([points, points[:1]])

@@ -16,13 +16,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.mesh.triangle_mesh import Mesh, thinned
-from ...geometry.walls.patch_wall import FirstCurve, Rim
+from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...issues import Text
 from ...types import Array, Index, Mask
@@ -41,33 +41,6 @@ ON_FRONT_MM = 1e-4  # mm; vertices nearer to a front lie on it, so that the last
 NEIGHBOURS = 12  # vertices near a place of a first curve that tell on which side the wall is
 
 
-class FrontWall(Protocol):
-    """What fronts need of a wall; geometry.patch_wall.PatchWall is one."""
-
-    @property
-    def mesh(self) -> Mesh:
-        """A mesh with its vertices on the wall, faces counter-clockwise seen from the side the normals point to."""
-
-    @property
-    def first(self) -> tuple[FirstCurve, ...]:
-        """Where layers start."""
-
-    @property
-    def behind(self) -> Mask:
-        """The vertices (n,) on the other side of that, which are not to be deposited."""
-
-    @property
-    def rims(self) -> tuple[Rim, ...]:
-        """The edges of the wall."""
-
-    @property
-    def label(self) -> str:
-        """What messages call it."""
-
-    def project(self, points: Array) -> tuple[Array, Array]:
-        """Nearest points of the wall and unit normals, (k, 3), the normals to one side all over."""
-
-
 @dataclass(frozen=True)
 class State:
     """Where the deposit has come to: the fronts of the last layer, the vertices (n,) behind them, those (k,) that the last
@@ -79,7 +52,7 @@ class State:
     weight: int = HEAVY
 
 
-def start(wall: FrontWall) -> State:
+def start(wall: PatchWall) -> State:
     """The first layer. All fronts have the wall still to come on their left, seen from where the normals point to."""
     mesh = wall.mesh
     fronts = [_facing(wall, one.curve()) for one in wall.first]
@@ -89,7 +62,7 @@ def start(wall: FrontWall) -> State:
     return State(fronts, behind, np.flatnonzero(behind))
 
 
-def step(wall: FrontWall, rims: Rims, state: State, height: float, smoothing: Smoothing | None = None) -> State:
+def step(wall: PatchWall, rims: Rims, state: State, height: float, smoothing: Smoothing | None = None) -> State:
     """The next layer: all fronts at `height` mm from those of the state, which may be none; smooth ones as near to that as
     their smoothing allows. The state's `behind` is carried on: the new state has the same array, with more behind.
 
@@ -132,7 +105,7 @@ def _true(front: SpaceCurve, below: list[SpaceCurve], height: float) -> bool:
 
 
 def _passed(
-    wall: FrontWall, exact_ones: list[SpaceCurve], found: list[SmoothFront], points: Array, low: Mask, far: float
+    wall: PatchWall, exact_ones: list[SpaceCurve], found: list[SmoothFront], points: Array, low: Mask, far: float
 ) -> Mask:
     """Whether points (n, 3) lie behind the fronts found, where these are not the exact ones; low: of the latter."""
     fronts = [one.curve for one in found]
@@ -159,7 +132,7 @@ class Sliced(NamedTuple):
 
 
 def layers(
-    wall: FrontWall, height: float, smoothing: Smoothing | None = None,
+    wall: PatchWall, height: float, smoothing: Smoothing | None = None,
     progress: Callable[[float, str], None] = lambda fraction, text: None,
 ) -> Sliced:
     """All layers, from the first until the wall is covered or its edges are reached. progress(fraction, text) is told the
@@ -175,7 +148,7 @@ def layers(
         state = step(wall, rims, below, height, smoothing)
         left -= len(state.passed)
         gaps = [_on_left(wall, gap, below.fronts)
-                for gap in closing(wall, wall.mesh, below.fronts, state.fronts, state.passed, height, ends, widest)]
+                for gap in closing(wall, below.fronts, state.fronts, state.passed, height, ends, widest)]
         if state.fronts or gaps:
             closed.append(gaps)
         if not state.fronts:
@@ -185,7 +158,7 @@ def layers(
     return Sliced(done, closed)
 
 
-def _on_left(wall: FrontWall, curve: SpaceCurve, below: list[SpaceCurve]) -> SpaceCurve:
+def _on_left(wall: PatchWall, curve: SpaceCurve, below: list[SpaceCurve]) -> SpaceCurve:
     """The curve run so that what was deposited below is on its right."""
     place, slope, _ = curve.at(curve.w[:-1] + 0.5 * curve.span)
     left = np.cross(wall.project(place)[1], slope)
@@ -213,7 +186,7 @@ def _around(mesh: Mesh, spots: Array, reach: float) -> Index:
     return near
 
 
-def _facing(wall: FrontWall, curve: SpaceCurve) -> SpaceCurve:
+def _facing(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
     """The curve run so that the vertices still to come are on its left."""
     place, slope, _ = curve.at(curve.w[:-1] + 0.5 * curve.span)
     left = np.cross(wall.project(place)[1], slope)

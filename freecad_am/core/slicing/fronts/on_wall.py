@@ -6,13 +6,14 @@ from __future__ import annotations
 import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
-from .curve import INSIDE, WITHIN, Wall, inside
+from .curve import INSIDE, WITHIN, inside
 
 ROUNDS = 12
 
 
-def on_wall(wall: Wall, curve: SpaceCurve) -> SpaceCurve:
+def on_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
     """The curve with further nodes where its arcs are off the wall between the nodes, by WITHIN at INSIDE."""
     for _ in range(ROUNDS):
         points = curve.at(inside(curve))[0]

@@ -15,11 +15,12 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ...geometry.curves.space_curve import SpaceCurve
+from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...types import Array, Mask
 from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest
 from ..directions.wall_turn import turns_in_wall
-from .curve import Wall, feet
+from .curve import feet
 from .even_line import even, rounded
 from .on_wall import on_wall
 from .rims import ON_RIM, Rims
@@ -55,7 +56,7 @@ class SmoothFront(NamedTuple):
     weight: int
 
 
-def turn(wall: Wall, curve: SpaceCurve) -> float:
+def turn(wall: PatchWall, curve: SpaceCurve) -> float:
     """The sharpest turn of a front within the wall, rad/mm, on a grid finer than its own."""
     w = curve.refined(FINER)
     points, slope, _ = curve.at(w)
@@ -68,7 +69,7 @@ def turn(wall: Wall, curve: SpaceCurve) -> float:
 
 
 def smoothed(
-    wall: Wall, rims: Rims, below: list[SpaceCurve], front: SpaceCurve, others: list[SpaceCurve], height: float,
+    wall: PatchWall, rims: Rims, below: list[SpaceCurve], front: SpaceCurve, others: list[SpaceCurve], height: float,
     smoothing: Smoothing, weight: int = HEAVY,
 ) -> SmoothFront:
     """The front near an exact one, as near to `height` mm as a turn within the wall of smoothing.limit allows.
@@ -117,7 +118,7 @@ class _Line:
     sliding: Mask
 
     @classmethod
-    def of(cls, wall: Wall, rims: Rims, front: SpaceCurve, height: float) -> _Line:
+    def of(cls, wall: PatchWall, rims: Rims, front: SpaceCurve, height: float) -> _Line:
         """The front, rounded, with equally spread places."""
         count = max(FEWEST, int(np.ceil(front.length * PLACES / height)))
         line = even(front.at(front.refined(FINER))[0], front.closed, count)
@@ -144,7 +145,7 @@ class _Line:
                     across = across + np.maximum(1.0 - s, 0.0)[:, None] * aside
         return cls(points, across, bend, front.closed, sliding)
 
-    def levels(self, wall: Wall, below: list[SpaceCurve], distances: Array) -> Array | None:
+    def levels(self, wall: PatchWall, below: list[SpaceCurve], distances: Array) -> Array | None:
         """How far across the line (k, n) mm the places at the distances (k,) from the fronts below lie; none where some
         place is not found."""
         goal = np.repeat(distances, len(self.points))
@@ -177,7 +178,7 @@ class _Line:
             bound[ENDS[~self.sliding]] = 0.0
         return between(wanted, low, high, weight, self.bend[1:-1], False)
 
-    def curve(self, wall: Wall, rims: Rims, x: Array) -> SpaceCurve:
+    def curve(self, wall: PatchWall, rims: Rims, x: Array) -> SpaceCurve:
         """The curve at heights (n,) over the line."""
         points, normal = wall.project(self.points + x[:, None] * self.across)
         if self.closed:
