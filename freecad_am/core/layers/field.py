@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from ..geometry.curves.guide import Guide
@@ -16,6 +16,8 @@ from ..slicing.solids.unrolled import cut
 from ..types import Array
 from .along import field as along
 from .curved import field as curved
+from .curved.covered import with_covered
+from .overhang import with_overhangs
 from .planes import field as planes
 from .planes.layer import PlaneLayer
 from .rotary import field as rotary
@@ -44,11 +46,17 @@ def pieces(group: Group, ground: Sequence[Body], strategy: FilledParameters) -> 
     if strategy.layers in ("geodesic", "offset"):
         return [Piece(group.bodies[0].name, 0.0, curved.slices(group, ground, strategy))]
     lots = [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
-    cut = along.slices if isinstance(surface, Guide) else planes.slices
-    return [
-        Piece(lot[0].name if len(lot) == 1 else f"{len(lot)} solids", 0.0, cut(group.base, lot, strategy))
-        for lot in lots
-    ]
+    made: list[Piece] = []
+    for lot in lots:
+        layers: Iterable[Slice]
+        if isinstance(surface, Guide):
+            layers = along.slices(group.base, lot, strategy)
+        else:
+            layers = planes.slices(group.base, lot, strategy)
+        layers = with_overhangs(layers, group.base, strategy)
+        name = lot[0].name if len(lot) == 1 else f"{len(lot)} solids"
+        made.append(Piece(name, 0.0, with_covered(layers, strategy.thick)))
+    return made
 
 
 def footprints(group: Group, chord_error: float) -> list[list[Array]]:
@@ -61,8 +69,3 @@ def footprints(group: Group, chord_error: float) -> list[list[Array]]:
     foot = along.footprint if isinstance(surface, Guide) else planes.footprint
     found = [foot(base, body, chord_error) for body in group.bodies]
     return [[base.placed(PlaneLayer(0.0).wrap(loop).points) for loop in loops] for loops in found]
-
-
-def upwards(group: Group) -> bool:
-    """Whether layers of the group lie flat one above the other, so that nothing deposited before stands above a layer."""
-    return not isinstance(group.base.surface, Developable)

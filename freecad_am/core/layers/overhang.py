@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from ..geometry.formatting import place
 from ..geometry.on_hub import Base
@@ -19,7 +19,7 @@ NEVER = math.radians(89.9)  # nothing leans out by more
 LEAST = 0.25  # of the bead spacing: sides of a square that is not worth telling of
 
 
-def with_overhangs(slices: Iterator[Slice], base: Base, strategy: SolidParameters) -> Iterator[Slice]:
+def with_overhangs(slices: Iterable[Slice], base: Base, strategy: SolidParameters) -> Iterator[Slice]:
     """Layers of one stack of planes with an issue for each that leans out by more than `max_overhang` from the direction in
     which they are stacked, with the area and where the largest piece of it is."""
     reach = strategy.layer_height * math.tan(strategy.max_overhang) + strategy.chord_error

@@ -8,7 +8,7 @@ bent part twice cuts it once. Where it cuts an edge the edge and the plane thems
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,7 @@ from ...issues import ERROR, InfeasibleError, InputError, Issue, Text
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
 from ...types import Array, Index
-from ..curved.covered import with_covered
 from ..margins import grown, within_margin
-from ..overhang import with_overhangs
 from ..planes import field as planes
 from ..surface import Slice
 from .layer import AlongLayer, between
@@ -55,13 +53,9 @@ class AlongCuts(PlaneCuts):
         return np.asarray(np.stack([(point * poses[:, :3, k]).sum(axis=1) for k in (0, 1)], axis=1))
 
 
-def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> list[Slice]:
     """The layers of bodies on the planes 0, h, 2 h ... mm along the guide of the base. InputError TOO_LOW, GUIDE_TIGHT,
     GUIDE_OUTSIDE; InfeasibleError LAYER_HEIGHT where a layer is higher or lower than `band` allows."""
-    return with_covered(with_overhangs(iter(_cut(base, bodies, strategy)), base, strategy), strategy.thick)
-
-
-def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> list[Slice]:
     guide, height = base.surface, strategy.layer_height
     assert isinstance(guide, Guide)
     meshes = [_ready(base, guide, body) for body in bodies]

@@ -16,9 +16,7 @@ from ...issues import InputError
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
 from ...types import Array
-from ..curved.covered import with_covered
 from ..margins import grown, within_margin
-from ..overhang import with_overhangs
 from ..surface import Slice
 from .layer import PlaneLayer
 
@@ -39,10 +37,6 @@ def count(top: float, strategy: SolidParameters) -> int:
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     """The layers of bodies upwards, on the planes 0, h, 2 h ... mm above that of the base; those without any region are left
     out. InputError TOO_LOW where no layer reaches into them."""
-    return with_covered(with_overhangs(_cut(base, bodies, strategy), base, strategy), strategy.thick)
-
-
-def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     local = [base.inside(body.vertices) for body in bodies]
     top = max(float(points[:, 2].max()) for points in local)
     number = count(top, strategy)

@@ -9,9 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...filling.cover import Cover
+from ...geometry.developable import Developable
 from ...geometry.on_hub import SolidsOnHub, downwards, upright
 from ...issues import InputError, Issue
-from ...layers.field import pieces, upwards
+from ...layers.field import pieces
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
@@ -131,8 +132,8 @@ def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirection
 
 
 def on_planes(solids: SolidsOnHub) -> bool:
-    """Whether the layers are planes, one above the other."""
-    return all(upwards(group) for group in solids.groups)
+    """Whether the layers are planes, one above the other, so that nothing deposited before stands above a layer."""
+    return not any(isinstance(group.base.surface, Developable) for group in solids.groups)
 
 
 def clear_by_itself(toolpath: Toolpath, solids: SolidsOnHub) -> bool:
