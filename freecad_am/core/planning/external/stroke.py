@@ -46,8 +46,8 @@ def found(cell: Cell, bead: Bead, most: float, before: Array, overlap: float) ->
         return [begun]
     for _ in range(ROUNDS):
         ways = _Ways.along(cell, bead, most)
-        if cuts := _cuts(ways.reach, 0, ways.last(bead, 0, overlap)):
-            return _pieces(bead, ways, cuts, before, overlap)
+        if cuts := _cuts(ways.reach, 0, ways.last(0, overlap)):
+            return _pieces(ways, cuts, before, overlap)
         if not ways.fits.any(axis=0).all():
             break
         count = len(bead) - 1
@@ -70,10 +70,11 @@ def _begun_elsewhere(cell: Cell, bead: Bead, most: float, before: Array, overlap
     return None
 
 
-def _pieces(bead: Bead, ways: _Ways, cuts: Sequence[int], before: Array, overlap: float) -> list[Bead]:
+def _pieces(ways: _Ways, cuts: Sequence[int], before: Array, overlap: float) -> list[Bead]:
     """A bead in pieces, cut at points that serve, or of a closed one from where fewer do; the last one runs on."""
+    bead = ways.bead
     starts = [0, *(cut % (len(bead) - 1) for cut in cuts[1:-1] if bead.closed)]
-    tried = [_cuts(ways.reach, start, ways.last(bead, start, overlap)) for start in starts]
+    tried = [_cuts(ways.reach, start, ways.last(start, overlap)) for start in starts]
     cuts = _balanced(ways.reach, min(filter(None, tried), key=len))
     whole = (bead.started_at(cuts[0]) if cuts[0] else bead).run_on(overlap)
     pieces = list[Bead]()
@@ -123,11 +124,12 @@ def waiting(cell: Cell, values: Array, on: Array) -> Array:
 
 @dataclasses.dataclass(frozen=True)
 class _Ways:
-    """Ways to turn directions (n, 3) upright, three times round a closed bead, whole turns told apart, held within the
-    limits. values: (ways, n, k) of the turning axes, `rows` of all. held: (ways, n) rad by which they are kept from where
-    they would go. fits: (ways, n) whether the tool then leans no more than it may, `most`."""
+    """Ways to turn directions (n, 3) of a bead upright, three times round a closed one, whole turns told apart, held within
+    the limits. values: (ways, n, k) of the turning axes, `rows` of all. held: (ways, n) rad by which they are kept from
+    where they would go. fits: (ways, n) whether the tool then leans no more than it may, `most`."""
 
     cell: Cell
+    bead: Bead
     external: ExternalAxes
     directions: Array
     most: float
@@ -154,7 +156,7 @@ class _Ways:
                 fits.append(inside | (tilt_from(external.upright(directions, every), external.up) <= most))
         count = len(directions)
         return cls(
-            cell, external, directions, most, rows, np.array(values).reshape(-1, count, len(rows)),
+            cell, bead, external, directions, most, rows, np.array(values).reshape(-1, count, len(rows)),
             np.array(held).reshape(-1, count), np.array(fits, dtype=bool).reshape(-1, count),
         )
 
@@ -170,9 +172,9 @@ class _Ways:
         """(n,) the last point to which any way has room from a point on."""
         return np.asarray(self.furthest.max(axis=0, initial=-1))
 
-    def last(self, bead: Bead, start: int, overlap: float) -> int:
-        """The point at which a bead ends that begins at one, or up to which it runs on."""
-        return start + len(bead) - 1 + (_run_on(bead, start, overlap) if bead.closed else 0)
+    def last(self, start: int, overlap: float) -> int:
+        """The point at which the bead ends if it begins at one, or up to which it runs on."""
+        return start + len(self.bead) - 1 + (_run_on(self.bead, start, overlap) if self.bead.closed else 0)
 
     def nearly_round(self, count: int) -> Index:
         """Segments of a closed bead in which what a way has room for ends, where all but these two are in it."""

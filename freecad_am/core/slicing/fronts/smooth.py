@@ -83,7 +83,7 @@ def smoothed(
         return kept
     line = _Line.of(wall, rims, front, height)
     shares = np.array([1.0, 1.0 - smoothing.band * (1.0 - MARGIN), 1.0 + smoothing.band * (1.0 - MARGIN)])
-    levels = line.levels(wall, below, height * shares)
+    levels = line.levels(below, height * shares)
     if levels is None:
         return kept
     wanted, low, high = levels
@@ -92,7 +92,7 @@ def smoothed(
     least, most = (1.0 - smoothing.band) * height, (1.0 + smoothing.band) * height
 
     def trial(index: int) -> SmoothFront | None:
-        curve = line.curve(wall, rims, line.smooth(wanted, low, high, float(WEIGHTS[index])))
+        curve = line.curve(line.smooth(wanted, low, high, float(WEIGHTS[index])))
         distance = feet(below, curve.at(curve.refined(FINER))[0]).distance
         if distance.min() < least or distance.max() > most:
             return None
@@ -106,11 +106,13 @@ def smoothed(
 
 @dataclass(frozen=True)
 class _Line:
-    """A smooth line on a wall: points (n, 3), unit vectors (n, 3) in the wall to its left, `bend` (n,) its own second
-    differences along those. A closed one does not repeat its first point. sliding: (2,) whether the ends of an open one lie
-    on rims, along which their `across` is then, as long as leads as far to the left, and theirs near there lean
+    """A smooth line on a wall with rims: points (n, 3), unit vectors (n, 3) in the wall to its left, `bend` (n,) its own
+    second differences along those. A closed one does not repeat its first point. sliding: (2,) whether the ends of an open
+    one lie on rims, along which their `across` is then, as long as leads as far to the left, and theirs near there lean
     likewise; other ends stay."""
 
+    wall: PatchWall
+    rims: Rims
     points: Array
     across: Array
     bend: Array
@@ -143,9 +145,9 @@ class _Line:
                 if sliding[end]:  # what the end slides along the front is spread over its neighbours
                     aside = along[end] / rate[end] - across[ENDS[end]]
                     across = across + np.maximum(1.0 - s, 0.0)[:, None] * aside
-        return cls(points, across, bend, front.closed, sliding)
+        return cls(wall, rims, points, across, bend, front.closed, sliding)
 
-    def levels(self, wall: PatchWall, below: list[SpaceCurve], distances: Array) -> Array | None:
+    def levels(self, below: list[SpaceCurve], distances: Array) -> Array | None:
         """How far across the line (k, n) mm the places at the distances (k,) from the fronts below lie; none where some
         place is not found."""
         goal = np.repeat(distances, len(self.points))
@@ -155,7 +157,7 @@ class _Line:
         low, high = x - farthest, x + farthest
         todo = np.arange(len(goal))
         for _ in range(STEPS):
-            place = feet(below, wall.project(start[todo] + x[todo, None] * across[todo])[0])
+            place = feet(below, self.wall.project(start[todo] + x[todo, None] * across[todo])[0])
             off = place.distance - goal[todo]
             above = off > 0.0
             high[todo[above]], low[todo[~above]] = x[todo[above]], x[todo[~above]]
@@ -178,13 +180,13 @@ class _Line:
             bound[ENDS[~self.sliding]] = 0.0
         return between(wanted, low, high, weight, self.bend[1:-1], False)
 
-    def curve(self, wall: PatchWall, rims: Rims, x: Array) -> SpaceCurve:
+    def curve(self, x: Array) -> SpaceCurve:
         """The curve at heights (n,) over the line."""
-        points, normal = wall.project(self.points + x[:, None] * self.across)
+        points, normal = self.wall.project(self.points + x[:, None] * self.across)
         if self.closed:
             points, normal = (np.vstack([column, column[:1]]) for column in (points, normal))
         else:
-            slid = rims.nearest(points[ENDS])[1] if self.sliding.any() else points[ENDS]
+            slid = self.rims.nearest(points[ENDS])[1] if self.sliding.any() else points[ENDS]
             points[ENDS] = np.where(self.sliding[:, None], slid, self.points[ENDS])
         w, slope = _spline(points, self.closed)
         slope -= dot(slope, normal)[:, None] * normal
