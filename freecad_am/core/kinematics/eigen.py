@@ -85,11 +85,11 @@ def _tridiagonal(matrices: Array) -> tuple[Array, Array]:
 
 def _polynomial(diagonal: Array, squares: Array, x: Array) -> tuple[Array, Array, Array]:
     """The characteristic polynomial of tridiagonal matrices at `x` with its first and second derivative."""
-    # of degree 1, then up by the recurrence of the leading minors; half the second derivative saves a factor
-    value, slope, curve = diagonal[0] - x, np.full_like(x, -1.0), np.zeros_like(x)
-    before, slope_before, curve_before = np.ones_like(x), np.zeros_like(x), np.zeros_like(x)
-    factor, spare = np.empty_like(x), np.empty_like(x)
-    for row in range(1, len(diagonal)):
+    # of degree 2, then up by the recurrence of the leading minors; half the second derivative saves a factor
+    before, factor = diagonal[0] - x, diagonal[1] - x
+    value, slope, curve = factor * before - squares[0], -factor - before, np.ones_like(x)
+    slope_before, curve_before, spare = np.full_like(x, -1.0), np.zeros_like(x), np.empty_like(x)
+    for row in range(2, len(diagonal)):
         np.subtract(diagonal[row], x, out=factor)
         square = squares[row - 1]
         # the new minor takes the place of the one before the last
