@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,7 +151,15 @@ def thinned(bead: Bead, most: int | None) -> NDArray[np.int64]:
     most = max(most, int(np.ceil((most - 1) * turns)) + 1)
     if len(bead) <= most:
         return np.arange(len(bead))
-    return np.asarray(np.unique(np.round(np.linspace(0, len(bead) - 1, most)).astype(np.int64)))
+    return _evenly(len(bead), most)
+
+
+@lru_cache(maxsize=64)
+def _evenly(count: int, most: int) -> NDArray[np.int64]:
+    """So many of a count of points, both ends among them: beads have the same counts again and again."""
+    chosen: NDArray[np.int64] = np.unique(np.round(np.linspace(0, count - 1, most)).astype(np.int64))
+    chosen.flags.writeable = False
+    return chosen
 
 
 def steps(joints: Array, points: Points) -> Array:
@@ -159,12 +167,12 @@ def steps(joints: Array, points: Points) -> Array:
     bead."""
     step = np.zeros_like(joints)
     np.subtract(joints[..., 1:, :], joints[..., :-1, :], out=step[..., 1:, :])
-    long = np.abs(step) > 0.25 * TURN  # others are the short way, and most are
-    if points.sliding is not None:
-        long &= ~points.sliding
-    if long.any():
-        step[long] = shortest(step[long])
     step[..., points.first, :] = 0.0
+    if not max(step.max(initial=0.0), -step.min(initial=0.0)) <= 0.5 * TURN:  # else all are the short way
+        long = np.abs(step) > 0.5 * TURN
+        if points.sliding is not None:
+            long &= ~points.sliding
+        step[long] = shortest(step[long])
     return step
 
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...geometry.columns import lengths
 from ...geometry.ramps import below
 from ...issues import ERROR, WARNING, Issue, Text, Word
 from ...kinematics.cell import Cell
@@ -35,7 +36,7 @@ def rings_slowed(
     result, slowed = [], []
     for path in paths:
         bead, ratio = path.bead, (_axis_speeds(path) / cell.machine.max_speed).max(axis=1)
-        radius = np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / np.abs(np.diff(bead.parameter))
+        radius = lengths(np.diff(bead.points, axis=0)) / np.abs(np.diff(bead.parameter))
         tight = (ratio > 1.0) & (radius < layer_height)
         if tight.any():
             path = _at(path, np.where(tight, JUST / ratio, 1.0))
@@ -172,7 +173,7 @@ def _at(path: BeadPath, share: Array) -> BeadPath:
 
 def _axis_speeds(path: BeadPath) -> Array:
     """(n - 1, axes) rad/s at which the axes turn along a bead."""
-    length = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1)
+    length = lengths(np.diff(path.bead.points, axis=0))
     speed: Array = np.abs(np.diff(path.joints, axis=0)) * (path.bead.speed[1:] / length)[:, None]
     return speed
 
