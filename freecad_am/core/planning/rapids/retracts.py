@@ -80,14 +80,20 @@ class Retracts:
             ways[k, useless | ~((ways[k] * tool).sum(axis=1) > AWAY)] = np.nan
         return ways
 
-    def _sides(self, angle: float) -> Array:
-        """(n, 3) unit vectors across the tool axes, at an angle (rad) about them from one that the platform gives."""
+    @cached_property
+    def _across(self) -> tuple[Array, Array]:
+        """(n, 3) unit vectors across the tool axes, one that the platform gives and one across both."""
         tool = self.ends.tool
         x, y = self.cell.mount[:3, 0], self.cell.mount[:3, 1]
         # where two choices are as good, rounding must not choose
         one = np.cross(tool, np.where((np.abs(tool @ x) < 0.8)[:, None], x, y))
         one /= np.linalg.norm(one, axis=1, keepdims=True)
-        side: Array = math.cos(angle) * one + math.sin(angle) * np.cross(tool, one)
+        return one, np.cross(tool, one)
+
+    def _sides(self, angle: float) -> Array:
+        """(n, 3) unit vectors across the tool axes, at an angle (rad) about them from the first of these."""
+        one, other = self._across
+        side: Array = math.cos(angle) * one + math.sin(angle) * other
         return side
 
     @cached_property

@@ -109,7 +109,7 @@ class RapidWays:
         assert way.start is not None
         whole = np.vstack([way.start, way.joints])
         continuous = self.cell.limits.continuous
-        turn = np.nan_to_num(np.abs(np.diff(whole[:, continuous], axis=0))).max(axis=1, initial=0.0)
+        turn = np.fmax.reduce(np.abs(whole[1:, continuous] - whole[:-1, continuous]), axis=1, initial=0.0)  # none of NaN
         if turn.max() <= LARGEST_TURN:
             return way
         rows: list[Array] = []
