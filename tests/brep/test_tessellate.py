@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Solids and meshes as bodies: within the deflection of the true surface, in the coordinates of the document."""
 
+from types import SimpleNamespace
+
 import Mesh
+import MeshPart
 import numpy as np
 import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 
-from freecad_am.brep.shapes.tessellate import DEFLECTION, body
+from freecad_am.brep.shapes.distance import skin
+from freecad_am.brep.shapes.tessellate import DEFLECTION, body, tessellated
 from freecad_am.core.issues import InputError
 
 PLACE = Placement(Vector(10, -20, 30), Rotation(Vector(1, 2, 3), 50))
@@ -43,3 +47,33 @@ def test_an_edge_is_no_body():
     with pytest.raises(InputError) as error:
         body(Part.makeLine(Vector(), Vector(1, 0, 0)), "line")
     assert error.value.code == "NO_FACES" and error.value.where == "line"
+
+
+def crossed():
+    """A face that the kernel makes no triangles of, as its edges cross: between two others, and a box."""
+    bow = Part.makePolygon([Vector(*place) for place in ((0, 0, 0), (9, 9, 0), (9, 0, 0), (0, 9, 0), (0, 0, 0))])
+    return Part.makeCompound([Part.makeSphere(2).Faces[0], Part.Face(bow), Part.makeCylinder(1, 3).Faces[0],
+                              Part.makeBox(4, 5, 6, Vector(20, 0, 0))])
+
+
+def test_a_face_that_the_kernel_fails_on_has_no_triangles_and_the_others_theirs():
+    found = tessellated(crossed(), 0.05)
+    assert set(found.owner) == {0, *range(2, 9)} and [len(nodes) > 0 for nodes in found.nodes].count(False) == 1
+    assert np.linalg.norm(found.vertices[found.triangles[found.owner == 0]], axis=2) == pytest.approx(2.0, abs=1e-6)
+    assert found.vertices[found.triangles[found.owner > 2], 0].min() >= 20.0
+    distance, _ = skin(crossed(), "faces").exact(np.array([[22.0, 2.0, 7.5]]))
+    assert distance == pytest.approx([1.5])
+
+
+def test_a_face_that_the_kernel_has_failed_on_is_not_asked_for_again(monkeypatch):
+    """Beside a countersink out of a STEP file it took minutes for that, or did not come back."""
+    def failed():
+        raise RuntimeError("Face has no triangulation")
+
+    def asked(_):
+        pytest.fail("the kernel may take minutes for this")
+
+    shape = Part.makeBox(1, 2, 3)
+    faces = [SimpleNamespace(getUVNodes=failed, tessellate=asked), *shape.Faces]
+    monkeypatch.setattr(MeshPart, "meshFromShape", lambda **words: shape.tessellate(words["LinearDeflection"]))
+    assert set(tessellated(SimpleNamespace(Faces=faces), 0.1).owner) == set(range(1, 7))

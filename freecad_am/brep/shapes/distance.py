@@ -15,6 +15,7 @@ from freecad_am.core.types import Array
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.issues import InputError
 from ..kernel.process import in_kernel_process
+from .tessellate import divided
 
 FINEST, SHARE = 0.02, 2e-4  # mm, and of the extent: deflection of the triangles
 OFF = 4.0  # deflections between the two feet of a point on a bent face, beyond which it is past the edge of the face,
@@ -52,7 +53,8 @@ def skin(shape: Any, label: str) -> Skin:
 def _by_face(shape: Any, deflection: float) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
     """Vertices (n, 3), triangles (m, 3), and the number of the face (m,) of each."""
     points, corners = shape.tessellate(deflection)
-    face = np.repeat(np.arange(len(shape.Faces)), [len(one.tessellate(deflection)[1]) for one in shape.Faces])
+    counts = [len(one.tessellate(deflection)[1]) if divided(one) else 0 for one in shape.Faces]
+    face = np.repeat(np.arange(len(shape.Faces)), counts)
     return np.array([tuple(point) for point in points]), np.array(corners, dtype=np.intp), face
 
 

@@ -58,13 +58,23 @@ def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
     MeshPart.meshFromShape(Shape=shape, LinearDeflection=chord, AngularDeflection=angle, Relative=False)
     points, corners, owner, nodes, count = [], [], [], [], 0
     for k, face in enumerate(shape.Faces):
-        own, triangles = face.tessellate(chord)
+        own, triangles = face.tessellate(chord) if divided(face) else ([], [])
         points.append(np.array([tuple(point) for point in own]).reshape(-1, 3))
         corners.append(np.array(triangles, dtype=np.intp).reshape(-1, 3) + count)
         owner.append(np.full(len(triangles), k, dtype=np.intp))
         nodes.append(np.array(face.getUVNodes() if triangles else [], dtype=float).reshape(-1, 2))
         count += len(own)
     return Tessellation(*welded(np.vstack(points), np.vstack(corners), np.concatenate(owner)), nodes)
+
+
+def divided(face: Any) -> bool:
+    """Whether the kernel has made triangles of a face when it made those of its shape. Asked for those of one alone that it
+    has failed on, it may take minutes, which nothing ends, for a few that do not meet its neighbours'."""
+    try:
+        face.getUVNodes()
+    except RuntimeError:
+        return False
+    return True
 
 
 def welded(points: Array, triangles: Corners, owner: Corners) -> tuple[Array, Corners, Corners]:
