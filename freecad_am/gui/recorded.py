@@ -58,7 +58,8 @@ def _run(document: Any, function: str, first: str, arguments: dict[str, str]) ->
         Gui.doCommand(f"am.{function}({', '.join(texts)})")
     new = [finding for finding in _wrong(document) if finding not in before]
     for name, status, message in new[:1]:  # those that follow say it again
-        App.Console.PrintError(tr("{} is {}: {}").format(name, translated(status), translated(message)) + "\n")
+        text = tr("{} failed: {}") if status == FAILED else tr("{} is infeasible: {}")
+        App.Console.PrintError(text.format(name, translated(message)) + "\n")
 
 
 def _wrong(document: Any) -> list[tuple[str, str, str]]:

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Iterator
 from typing import Any
 
 from ..core.issues import AmError
 from ..objects import stage as stages
 from ..objects.fields.settings import given
 from ..objects.program import Program
+from ..objects.staleness import UP_TO_DATE
 from .steps import checked_stage, in_order, one_step, renew, with_faces
 
 
@@ -20,7 +22,7 @@ def change(obj: Any, **values: Any) -> Any:
     itself is raised and takes the change back, in documents that keep undo steps (those of the window do).
     """
     proxy = checked_stage(obj)
-    with one_step(obj.Document, f"Edit {obj.Label}"):
+    with _unmarked_where_refused(obj), one_step(obj.Document, f"Edit {obj.Label}"):
         links = {link.key: link.name for link in proxy.links}
         if isinstance(proxy, Program):
             links["name"] = "ProgramName"
@@ -45,6 +47,18 @@ def change(obj: Any, **values: Any) -> Any:
             with contextlib.suppress(AmError):
                 renew(follower)
     return obj
+
+
+@contextlib.contextmanager
+def _unmarked_where_refused(obj: Any) -> Iterator[None]:
+    """FreeCAD marks what a step was taken back of as to be recomputed, though it is as it was before."""
+    marked = "Touched" in obj.State
+    try:
+        yield
+    except AmError:
+        if not marked and obj.Status == UP_TO_DATE:
+            obj.purgeTouched()
+        raise
 
 
 def recompute(target: Any, force: bool = False) -> None:

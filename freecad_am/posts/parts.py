@@ -68,10 +68,14 @@ def packed(
         return [everything]
     parts: list[list[Piece]] = []
     remaining = (0, 0)
-    for group in groups:
-        points, lines = size(group)
-        fits = points <= most_points and lines <= most_lines
-        chunks = [group] if fits else list(cut(group, most_points, most_lines))
+    cuts = {}
+    # the largest first: where beads are refused it is the one that is told, and one correction is enough
+    for number in sorted(range(len(groups)), key=lambda number: size(groups[number]), reverse=True):
+        points, lines = size(groups[number])
+        if points > most_points or lines > most_lines:
+            cuts[number] = list(cut(groups[number], most_points, most_lines))
+    for number, group in enumerate(groups):
+        chunks = cuts.get(number, [group])
         for chunk in chunks:
             points, lines = size(chunk)
             if points > remaining[0] or lines > remaining[1] or len(chunks) > 1:

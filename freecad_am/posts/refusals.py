@@ -97,14 +97,14 @@ def refuse_weave(program: Program, most: int) -> None:
         raise weave_refused(Text("the controller has weaves 1 to {}, not {}", most, max(numbers)))
 
 
-JOINT_WEAVE = "the controller swings the torch about linear moves, so far as is known, and these are joint moves"
+JOINT_WEAVE = "controllers weave on linear moves, so far as is known, and these are joint moves"
 
 
 def weave_refused(why: str, where: str = "process.weave") -> InputError:
     """The error for a weave that cannot be told."""
     return InputError(
-        "WEAVE", where, "{}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot, abb with "
-        "program.schedule.by: arc too; elsewhere use 0 in process.weave and process.classes", why,
+        "WEAVE", where, "{}; set program.motion to cartesian with the tool on the robot (fanuc, yaskawa; abb with "
+        "program.schedule.by: arc too), or process.weave, also in process.classes, to 0", why,
     )
 
 
@@ -122,22 +122,28 @@ def refuse_triggers(program: Program, no_trigger: str) -> None:
     """Raises InputError TRIGGER, for the reason `no_trigger` where there is one, where the deposit is switched ahead of a
     place; TRIGGER_LEAD where that is earlier than the move that leads there begins."""
     before: Moves | None = None
+    ahead: list[tuple[Moves, DepositOn | DepositOff]] = []
     for block in () if program.dry_run else program.blocks:
         if isinstance(block, Moves):
             before = block if len(block) else before
         elif isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
             if no_trigger:
                 raise trigger_refused(no_trigger)
-            if before is not None and block.ahead > before.duration[-1]:
-                raise lead_refused(before, before.duration[-1], block.ahead)
+            if before is not None:
+                ahead.append((before, block))
+    if ahead:
+        moves, switch = min(ahead, key=lambda pair: pair[0].duration[-1])  # the shortest: one correction is enough
+        if switch.ahead is not None and switch.ahead > moves.duration[-1]:
+            raise lead_refused(moves, moves.duration[-1], switch.ahead)
 
 
 def lead_refused(before: Moves, seconds: float, lead: float) -> InputError:
     """The error for a deposit that is switched `lead` s before the end of the last of moves, which takes only `seconds`."""
     return InputError(
         "TRIGGER_LEAD", place(before),
-        "the move that the deposit is switched on takes {:.3g} s, and it would be switched {:.3g} s before its "
-        "end; use a shorter program.trigger.lead, or larger retract distance", seconds, lead,
+        "the move at the end of which the deposit is switched takes {:.3g} s, less than the {:.3g} s that it "
+        "would be switched ahead; use a program.trigger.lead no longer than that, a larger retract distance where it "
+        "is switched on, or a larger strategy.chord_error where it is switched off", seconds, lead,
     )
 
 

@@ -40,8 +40,9 @@ def _issues(motion: Motion, read: ReadMoves) -> Iterator[Issue]:
         seconds = _time_of_its_move(event, motion.duration[rows])
         if seconds is not None:
             message = Text(
-                "the move that the deposit is switched on takes {:.3g} s, and it would be switched {:.3g} s before its "
-                "end; use a shorter program.trigger.lead, or larger retract distance", seconds, event.ahead,
+                "the move at the end of which the deposit is switched takes {:.3g} s, less than the {:.3g} s that it "
+                "would be switched ahead; use a program.trigger.lead no longer than that, a larger retract distance "
+                "where it is switched on, or a larger strategy.chord_error where it is switched off", seconds, event.ahead,
             )
             yield Issue(ERROR, "TRIGGER_LEAD", message, *_place(motion, rows, event.row - 1))
     if on:

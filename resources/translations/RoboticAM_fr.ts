@@ -8017,6 +8017,11 @@
         <translation>des contours qui se croisent ou se touchent ont été réparés ; {0} mm^2 ont changé</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>controllers weave on linear moves, so far as is known, and these are joint moves</source>
+        <translation>les commandes balaient sur des mouvements linéaires, à ce que l&apos;on sait, et ceux-ci sont articulaires</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>coordinates in {0}</source>
         <translation>coordonnées en {0}</translation>
@@ -11408,11 +11413,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the controller swings the torch about linear moves, so far as is known, and these are joint moves</source>
-        <translation>la commande balance la torche autour de mouvements linéaires, à ce que l&apos;on sait, et ceux-ci sont articulaires</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
         <source>the controller&apos;s program reads analogue inputs 1 to {0}, not {1}; use one of these</source>
         <translation>le programme de la commande lit les entrées analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
@@ -11847,6 +11847,11 @@
         <translation>le module ne règle pas tout ce sur quoi compte le mouvement</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the move at the end of which the deposit is switched takes {0} s, less than the {1} s that it would be switched ahead; use a program.trigger.lead no longer than that, a larger retract distance where it is switched on, or a larger strategy.chord_error where it is switched off</source>
+        <translation>le mouvement à la fin duquel le dépôt est commuté dure {0} s, moins que les {1} s d&apos;avance de la commutation ; utilisez un program.trigger.lead qui ne dépasse pas cette durée, une plus grande distance de retrait là où il est enclenché, ou une plus grande strategy.chord_error là où il est coupé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>the move before it is to be approximated, and it stops there</source>
         <translation>le mouvement qui précède doit être lissé, et s&apos;arrête là</translation>
@@ -11855,11 +11860,6 @@
         <location filename="../../freecad_am/posts/nc/read.py"/>
         <source>the move is not told in the axes of the first one</source>
         <translation>le mouvement n&apos;est pas dit dans les axes du premier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the move that the deposit is switched on takes {0} s, and it would be switched {1} s before its end; use a shorter program.trigger.lead, or larger retract distance</source>
-        <translation>le mouvement pendant lequel le dépôt est commuté dure {0} s, et il le serait {1} s avant sa fin ; utilisez un program.trigger.lead plus court, ou une plus grande distance de retrait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -13352,11 +13352,6 @@
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} (and {1} layers of solids more)</source>
-        <translation>{0} (et {1} couches de solides de plus)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/tree.py"/>
         <source>{0} (line {1})</source>
         <translation>{0} (ligne {1})</translation>
@@ -13365,6 +13360,11 @@
         <location filename="../../freecad_am/sections/tree.py"/>
         <source>{0} (line {1}, column {2})</source>
         <translation>{0} (ligne {1}, colonne {2})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>{0} (more layers like it: {1})</source>
+        <translation>{0} (autres couches de ce genre : {1})</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/check_poses.py"/>
@@ -15213,11 +15213,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0}; fanuc and yaskawa weave with motion: cartesian and the tool on the robot, abb with program.schedule.by: arc too; elsewhere use 0 in process.weave and process.classes</source>
-        <translation>{0} ; fanuc et yaskawa balaient avec motion: cartesian et l&apos;outil sur le robot, abb aussi avec program.schedule.by: arc ; ailleurs mettez 0 dans process.weave et process.classes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
         <source>{0}; leave it out, or use another controller</source>
         <translation>{0} ; omettez-le, ou utilisez une autre commande</translation>
     </message>
@@ -15230,6 +15225,11 @@
         <location filename="../../freecad_am/core/process/model/bead_model.py"/>
         <source>{0}; measure at least two speeds and two radii</source>
         <translation>{0} ; mesurez au moins deux vitesses et deux rayons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0}; set program.motion to cartesian with the tool on the robot (fanuc, yaskawa; abb with program.schedule.by: arc too), or process.weave, also in process.classes, to 0</source>
+        <translation>{0} ; mettez program.motion à cartesian avec l&apos;outil sur le robot (fanuc, yaskawa ; abb aussi avec program.schedule.by: arc), ou process.weave, aussi dans process.classes, à 0</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/nodes/machine_links.py"/>
@@ -15387,6 +15387,16 @@
         <translation>{} ({})</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <source>{} Double-click a stage in the tree to change it.</source>
+        <translation>{} Double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <source>{} Read the warnings first: double-click {}.</source>
+        <translation>{} Lisez d&apos;abord les avertissements : double-cliquez sur {}.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/drawn/board.py"/>
         <source>{} against {} at layer {} bead {} point {}</source>
         <translation>{} contre {} à la couche {} cordon {} point {}</translation>
@@ -15457,6 +15467,16 @@
         <translation>{} faces en {} nappes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <source>{} failed.</source>
+        <translation>{} a échoué.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/recorded.py"/>
+        <source>{} failed: {}</source>
+        <translation>{} a échoué : {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>{} has changed; compute again.</source>
         <translation>{} a changé ; calculez de nouveau.</translation>
@@ -15512,6 +15532,16 @@
         <translation>{} est caché, ou n&apos;a pas de résultat.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <source>{} is infeasible.</source>
+        <translation>{} est infaisable.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/recorded.py"/>
+        <source>{} is infeasible: {}</source>
+        <translation>{} est infaisable : {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/pick.py"/>
         <source>{} is missing: click it in the tree or the 3D view.</source>
         <translation>{} manque : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
@@ -15542,19 +15572,14 @@
         <translation>{} n&apos;est pas à jour ; ceci est de ce qu&apos;il était.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <source>{} is stale.</source>
+        <translation>{} est périmé.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>{} is written.</source>
         <translation>{} est écrit.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/new_job/after.py"/>
-        <source>{} is {}. Double-click a stage in the tree to change it.</source>
-        <translation>{} est {}. Double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/recorded.py"/>
-        <source>{} is {}: {}</source>
-        <translation>{} est {} : {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking/picking.py"/>

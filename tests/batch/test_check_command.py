@@ -97,7 +97,7 @@ def test_what_was_broken_is_told_with_its_place(workshop, sound, pattern, by, co
     [
         (r" *\d+:  DO\[1\]=OFF ;", "   1:  ;", "DEPOSIT_SWITCH", "is on already"),
         (r"(?s)(.*)DO\[1\]=OFF ;", r"\1 ;", "DEPOSIT_SWITCH", "still on where the program ends"),
-        (r"(?s)(FINE {4};.*?)FINE {4};", r"\1FINE TB  29.00sec,DO[1]=OFF    ;", "TRIGGER_LEAD", "29 s before its end"),
+        (r"(?s)(FINE {4};.*?)FINE {4};", r"\1FINE TB  29.00sec,DO[1]=OFF    ;", "TRIGGER_LEAD", "less than the 29 s that"),
     ],
 )  # fmt: skip
 def test_a_deposit_that_is_switched_as_no_program_does_is_told(workshop, sound, pattern, by, code, words):

@@ -2,9 +2,12 @@
 """Panels show words and full names where documents hold keys, and no field without a meaning for the machine."""
 
 import pytest
+from PySide import QtGui
 
 from freecad_am import api
 from freecad_am.core.kinematics.proposed_cell import cell_of
+from freecad_am.gui.new_job import after
+from freecad_am.gui.texts.field_names import as_in_panels
 
 pytestmark = pytest.mark.gui
 
@@ -43,6 +46,28 @@ def test_machines_have_their_full_names(person, hemisphere):
     person.press("Ok")
     person.panel_closed()
     assert hemisphere.Document.Cell.Machine == "kuka-kr16-2"
+
+
+def test_fields_away_from_the_heading_of_their_group_name_it(person, cells):
+    """'Ramp' stood twice among what is advanced, and 'Lead', 'First', 'Zero' for nobody knows what."""
+    person.double_click(cells[0])
+    panel = person.panel("RoboticAM_Toolpath")
+    labels = [label.text() for label in panel.findChildren(QtGui.QLabel)]
+    assert {"Start, ramp", "End, ramp", "Cooling, gain (1/°C)", "Material, source", "Weave"} <= set(labels)
+    assert not {"Ramp", "Gain (1/°C)", "Zero", "Source"} & set(labels)
+    person.press("Cancel")
+    person.panel_closed()
+    assert as_in_panels("use a shorter program.trigger.lead", str) == "use a shorter “Trigger, lead”"
+
+
+def test_warnings_of_a_job_that_is_ready_are_pointed_to(person, hemisphere):
+    document = hemisphere.Document
+    feature, cell = api.make_feature(document, hemisphere, layer_height=5), api.make_cell(document, limits="paper")
+    toolpath = api.make_toolpath(document, feature, cell)
+    path = api.make_joint_path(document, toolpath, cell)
+    assert "are not deposited" in toolpath.Message
+    after.tell_next([cell, feature, toolpath, path])
+    assert "Read the warnings first: double-click Toolpath." in person.window.statusBar().currentMessage()
 
 
 def test_any_part_of_a_machine_s_name_offers_it(person, hand, hemisphere):

@@ -87,7 +87,7 @@ def test_a_step_in_which_nothing_changed_is_not_left_open(job):
         with pytest.raises(InputError):
             api.change(job.feature, layer_height=refused)
         assert App.getActiveTransaction() is None and job.doc.UndoCount == 0
-        assert (job.feature.LayerHeight.Value, job.feature.Status) == (10.0, "up to date")
+        assert (job.feature.LayerHeight.Value, job.feature.Status, job.feature.State) == (10.0, "up to date", ["Up-to-date"])
     api.change(job.feature)
     assert App.getActiveTransaction() is None
     api.change(job.feature, layer_height=20)

@@ -361,6 +361,15 @@ def test_parts_hold_whole_beads_are_loaded_away_from_them_and_their_sum_is_told(
     abb.write(beads(2, 25, max_points=28, layers=2))
 
 
+def test_of_beads_too_long_for_a_part_the_longest_is_named():
+    """What is said to be enough is enough."""
+    blocks = [block for points in (22, 40, 31) for block in beads(1, points).blocks]
+    too_long = dataclasses.replace(beads(1, 22, max_points=20), blocks=tuple(blocks))
+    enough = int(refusal(too_long, code="BEAD_TOO_LONG", where="program.max_points").rsplit(" ", 1)[1])
+    assert enough > 40
+    abb.write(dataclasses.replace(too_long, max_points=enough))
+
+
 @pytest.mark.parametrize(("name", "why", "proposal"), [
     ("", "empty", "am"), ("my part", "letters", "my_part"), ("2nd", "start with a letter", "am_2nd"),
     ("x" * 15, "14 characters", "x" * 10), ("con", "reserved", "am_con"), ("endFor", "reserved", "am_endFor"),

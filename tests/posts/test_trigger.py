@@ -91,6 +91,9 @@ def test_a_lead_longer_than_the_move_it_stands_on_is_refused_with_its_bead():
             with pytest.raises(InputError) as error:
                 refuse_triggers(program, "")
             assert error.value.code == "TRIGGER_LEAD" and error.value.where.startswith("layer ")
+            ends = [run.duration[-1] for run, after in zip(program.blocks, program.blocks[1:], strict=False)
+                    if isinstance(run, Moves) and isinstance(after, (DepositOn, DepositOff))]
+            assert f"takes {min(ends):.3g} s" in error.value.message  # so that one correction is enough
             refuse_triggers(dataclasses.replace(program, dry_run=True), "")
         else:
             refuse_triggers(program, "")

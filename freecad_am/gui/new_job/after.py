@@ -9,9 +9,11 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from ... import api
+from ...core.issues import WARNING
 from ...core.parameters.external import externals
-from ...objects.staleness import UP_TO_DATE
-from ..texts.translation import tr, translated
+from ...objects.results.findings import issues_of
+from ...objects.staleness import FAILED, INFEASIBLE, STALE, UP_TO_DATE
+from ..texts.translation import tr
 
 SHOWN_MS = 15000  # ms that the next step is told on the status bar
 
@@ -21,7 +23,8 @@ def tell_next(stages: list[Any]) -> None:
     wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
     if wrong is not None:
         # why is in the report view already
-        text = tr("{} is {}. Double-click a stage in the tree to change it.").format(wrong.Label, translated(wrong.Status))
+        state = {FAILED: tr("{} failed."), INFEASIBLE: tr("{} is infeasible."), STALE: tr("{} is stale.")}[wrong.Status]
+        text = tr("{} Double-click a stage in the tree to change it.").format(state.format(wrong.Label))
     elif stages[-1].Proxy.kind == "program":
         text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
     else:
@@ -29,6 +32,9 @@ def tell_next(stages: list[Any]) -> None:
             "The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export "
             "Path… writes its points as a table."
         )
+    warned = [obj.Label for obj in stages if any(issue.level == WARNING for issue in issues_of(obj))]
+    if wrong is None and warned:
+        text = tr("{} Read the warnings first: double-click {}.").format(text, ", ".join(warned))
     Gui.getMainWindow().statusBar().showMessage(text, SHOWN_MS)
     App.Console.PrintMessage(text + "\n")
     _show_whole()

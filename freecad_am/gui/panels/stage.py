@@ -97,7 +97,7 @@ class StagePanel(Noted):
         folds: dict[str, Fold] = {}
         for row in rows(section.cls):
             nested = isinstance(row.path[-1], str) and len(row.path) > 1
-            title = group_of(row) if nested else section.group
+            title = group = group_of(row) if nested else section.group
             title = ADVANCED if row.spec.advanced else title
             if title not in folds:
                 text = tr(ADVANCED).format(translated(section.group)) if title == ADVANCED else translated(title)
@@ -108,9 +108,10 @@ class StagePanel(Noted):
             if current is None and value != row.default:
                 field.differs_from(row.default)
             self._mark_driven(field)
-            self.notes[f"{section.prefix}_{row.key}"] = folds[title].add(field.heading, field.widget)
-            own = title == section.group or row.spec.advanced
-            name = field.label if own else tr("{}, {}").format(translated(title), field.label.lower())
+            own = group == section.group
+            heading = field.heading if own or title == group else _in_group(group, field.heading)
+            self.notes[f"{section.prefix}_{row.key}"] = folds[title].add(heading, field.widget)
+            name = field.label if own else _in_group(group, field.label)
             self.places[f"{section.prefix}_{row.key}"] = (field, name, folds[title])
         for fold in folds.values():
             self.column.addWidget(fold.widget)
@@ -225,6 +226,11 @@ class StagePanel(Noted):
     def reject(self) -> bool:
         """Nothing was done since the last Apply, so nothing is taken back."""
         return True
+
+
+def _in_group(group: str, label: str) -> str:
+    """A label that is read away from the heading of its group: 'Trigger, lead' of 'Lead'."""
+    return tr("{}, {}").format(translated(group), label[:1].lower() + label[1:])
 
 
 def _narrow(box: Any) -> None:

@@ -33,7 +33,7 @@ def _known() -> dict[str, tuple[str, str]]:
         for row in rows(cls):
             steps = [step for step in row.path if isinstance(step, str)]
             if len(steps) == len(row.path):
-                nested = len(steps) > 1 and not row.spec.advanced
+                nested = len(steps) > 1
                 found.setdefault(".".join([section, *steps]), (group_of(row) if nested else "", row.label))
                 if nested:
                     found.setdefault(f"{section}.{steps[0]}", ("", group_of(row)))

@@ -129,7 +129,7 @@ def test_patterns_that_end_are_others_round_the_hub_and_that_is_told(hub, fill, 
     (told,) = [issue for issue in path.issues if issue.code == "PATTERN_ROUND_HUB"]
     assert told.level == "note" and f"is filled with {instead}" in told.message and f"strategy.fill = {fill}" in told.message
     levels = {layer for layer, _, bead in path if bead.points[:, 2].min() > 65.0}
-    assert f"(and {len(levels) - 1} layers of solids more)" in told.message and len(levels) > 2
+    assert f"(more layers like it: {len(levels) - 1})" in told.message and len(levels) > 2
     other, (same, _) = beads(instead)
     assert not [issue for issue in other.issues if issue.code == "PATTERN_ROUND_HUB"]
     assert len(round_it) == len(same) and all((one.points == two.points).all() for one, two in zip(round_it, same))

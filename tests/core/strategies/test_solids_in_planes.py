@@ -410,7 +410,7 @@ def test_walls_that_lean_out_are_told(lean, most, told):
         outer = inner + 2.0 * math.tan(math.radians(lean))
         free = math.pi * (outer**2 - (inner + 2.0 * math.tan(math.radians(most)) + ERROR) ** 2)
         assert float(found[0].message.split(" mm^2")[0]) == pytest.approx(free, rel=0.05)
-        assert found[0].layer == 1 and "(and 3 layers of solids more)" in found[0].message
+        assert found[0].layer == 1 and "(more layers like it: 3)" in found[0].message
 
 
 def test_a_wall_thinner_than_a_bead_gets_one_bead_and_says_so():

@@ -58,6 +58,6 @@ def _mended(issues: Sequence[Issue]) -> list[Issue]:
     for code in sorted({issue.code for issue in issues}):
         alike = [issue for issue in issues if issue.code == code]
         first, more = alike[0], len(alike) - 1
-        text = Text("{} (and {} layers of solids more)", first.message, more) if more else first.message
+        text = Text("{} (more layers like it: {})", first.message, more) if more else first.message
         found.append(Issue(first.level, code, text, first.layer))
     return found
