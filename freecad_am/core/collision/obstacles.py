@@ -211,11 +211,13 @@ class Obstacles:
         high = separation.largest(np.einsum("kcj,kj->kc", offset, axis)) + self.radius.take(node)
         rows = np.flatnonzero(high > solid.low)
         node = node.take(rows)
-        line = self.line.take(node, axis=0) - tip.take(rows, axis=0)[:, None]
-        as_line = (self.since.take(node) >= own.take(rows)) & (separation.from_origin(line) < self.foot.take(node))
-        lines, line = rows[as_line], line[as_line]
+        laying = np.flatnonzero(self.since.take(node) >= own.take(rows))
+        line = self.line.take(node[laying], axis=0) - tip.take(rows[laying], axis=0)[:, None]
+        near = separation.from_origin(line) < self.foot.take(node[laying])
+        as_line, line = laying[near], line[near]
+        lines = rows[as_line]
         meets[lines] = solid.rows(lines).meets_segments(line[:, 0], line[:, 1], axis[lines])
-        rows, node = rows[~as_line], node[~as_line]
+        rows, node = np.delete(rows, as_line), np.delete(node, as_line)
         meets[rows] = separation.any_within(query[rows], solid.rows(rows), axis[rows], offset[rows], self.radius[node])
         return meets
 

@@ -50,7 +50,7 @@ def bounds(
 ) -> tuple[Array, Array]:
     """Lower and upper bounds (k,) mm of the distance between solids about unit axes (k, 3) and the hulls of points
     (k, c, 3), seen from the tips; they agree within CONVERGED, unless the distance is surely below `nearer`, or above
-    `farther`, both (k,) mm. 0 where the two meet. start: the ways (k, 3) `from_middles`, which only points go without."""
+    `farther`, both (k,) mm. 0 where the two meet. start: ways (k, 3) to begin with, `from_middles` by default."""
     count = len(points)
     low = np.zeros(count)
     nearer, farther = np.broadcast_to(nearer, count), np.broadcast_to(farther, count)
@@ -136,17 +136,23 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
     """(k,) as `within`, but of the hulls asked for by one query (k,) no more than needed to know whether any does: those
     with the nearest middle are looked at first, and the others where that does not, unless there are few."""
     deep = np.maximum(radius - CONVERGED, 0.0)
-    place = from_middles(solid, axis, points)
+    middle = middles(points)
+    place = solid.nearest(middle, axis) - middle
     gap = np.sqrt(dots(place, place))
     found: Mask = (gap < deep) | (gap == 0.0)
     met = np.zeros(query.max(initial=-1) + 1, dtype=bool)
     met[query[found]] = True
     # where the point nearest to a middle is, a plane touches the solid: the hull is no nearer than its corners are to that
-    away = points - middles(points)[:, None]
+    away = points - middle[:, None]
     nearer = largest(np.einsum("kcj,kj->kc", away, place)) / np.where(gap > 0.0, gap, 1.0)
     left = np.flatnonzero(~met[query] & (gap - nearer < np.maximum(deep, CONVERGED) + ROUNDING))
+    place[left] = ways = _from_corners(solid.rows(left), axis[left], points[left], place[left])
+    gap[left] = np.sqrt(dots(ways, ways))
+    touching = left[gap[left] < deep[left]]
+    found[touching] = True
+    met[query[touching]] = True
+    left = left[~met[query[left]]]
     left = left[np.lexsort(((gap - deep)[left], query[left]))]
-    place[left] = _from_corners(solid.rows(left), axis[left], points[left], place[left])
     first = np.diff(query[left], prepend=-1) != 0
     for some in (left[first], left[~first]) if len(left) > BATCH else (left,):
         now = some[~met[query[some]]]
