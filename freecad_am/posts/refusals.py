@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -224,6 +224,19 @@ def refuse_calls_of_own(program: Program, names: set[str], program_name: Callabl
             raise InputError(
                 "PROGRAM_NAME", block.where,
                 "{!r} is a program of this very job; call another one, or rename the job", block.program,
+            )
+
+
+def refuse_names_of_data(program: Program, names: Collection[str], data: Collection[str]) -> None:
+    """Raises InputError PROGRAM_NAME where the files of a program, or one that is called, have the name of `data` of the
+    controller that it uses: it would name two things."""
+    taken = {name.upper() for name in data}
+    called = {block.program: block.where for block in program.blocks if isinstance(block, Call)}
+    for name, where in {**called, **dict.fromkeys(sorted(names), "name")}.items():
+        if name.upper() in taken:
+            raise InputError(
+                "PROGRAM_NAME", where,
+                "{!r} is also the name of data or a signal that the program uses; call it otherwise", name,
             )
 
 

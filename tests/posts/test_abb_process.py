@@ -14,7 +14,7 @@ from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters, ScheduleParameters, TriggerParameters
 from freecad_am.core.planning.program import linear_approach
-from freecad_am.core.program import DepositOff, DepositOn, Moves, Weave
+from freecad_am.core.program import Call, DepositOff, DepositOn, Moves, WaitBelow, WaitInput, Weave
 from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
 from freecad_am.posts.abb import post as abb
@@ -235,6 +235,20 @@ def test_a_text_with_anything_else_is_refused(kind, pattern, change):
             text = files[name].decode()
             damaged = text[: found.start()] + found.expand(change) + text[found.end() :]
             assert damaged != text and codes(kind, {**files, name: damaged.encode()}, most), found[0]
+
+
+@pytest.mark.parametrize("name", ["Weld5", "seam5", "weave2", "d_am1", "v_am1", "z_am1", "do1", "di4", "ai2"])
+def test_no_module_and_no_routine_that_is_called_has_the_name_of_what_the_program_uses(name):
+    of = GOLDENS["arc"]
+    more = dataclasses.replace(of, blocks=(*of.blocks, WaitInput(4), WaitBelow(2, 1.0, 0, 0)))
+    for bad, where in (
+        (dataclasses.replace(more, name=name), "name"),
+        (dataclasses.replace(more, blocks=(*more.blocks, Call(name))), "process.between_layers.call"),
+    ):
+        with pytest.raises(InputError) as error:
+            abb.write(bad)
+        assert (error.value.code, error.value.where) == ("PROGRAM_NAME", where)
+    abb.write(dataclasses.replace(GOLDENS["arc-held"], name=f"{name}0"))
 
 
 def test_a_trigger_on_a_corner_is_not_read():

@@ -11,7 +11,18 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitBelow, WaitInput
+from freecad_am.core.program import (
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Schedule,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
 from freecad_am.posts import catalogue
 from freecad_am.posts.kuka import post as kuka
 
@@ -291,6 +302,16 @@ def test_names_the_controller_refuses(name, why, proposal):
     message = refusal(dataclasses.replace(JOB, name=name), code="PROGRAM_NAME", where="name")
     assert why in message and message.endswith(f"use {proposal!r}")
     kuka.write(dataclasses.replace(JOB, name=proposal))
+
+
+def test_no_module_has_the_name_of_what_it_declares_or_uses():
+    for name in ("WDAT3", "wdatoff4", "WSEAM", "ArcMainNG"):
+        assert "data" in refusal(dataclasses.replace(lit(JOB), name=name), code="PROGRAM_NAME", where="name")
+        kuka.write(dataclasses.replace(JOB, name=name))  # which uses none of it
+    told = dataclasses.replace(JOB, blocks=(JOB.blocks[0], Schedule(3), *JOB.blocks[1:]), schedule_output=20)
+    refusal(dataclasses.replace(told, name="AM_schedule"), code="PROGRAM_NAME", where="name")
+    called = dataclasses.replace(told, blocks=(*told.blocks, Call("am_schedule")))
+    refusal(called, code="PROGRAM_NAME", where="process.between_layers.call")
 
 
 def test_what_cannot_be_said_is_refused():

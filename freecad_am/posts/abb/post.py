@@ -42,6 +42,7 @@ from ..refusals import (
     refuse_cooling,
     refuse_external,
     refuse_incomplete,
+    refuse_names_of_data,
     refuse_schedules,
     refuse_triggers,
     refuse_weave,
@@ -103,6 +104,7 @@ def write(program: Program) -> dict[str, bytes]:
     words = process.Process(program, zones)
     groups = list(grouped(program, words, lambda block: _instructions(program, words, block)))
     remarks += text.remark(f"declare on the controller {' '.join(words.declared)}") if words.declared else []
+    refuse_names_of_data(program, {name}, _names_used(program, words, zones))
     module = _Module(program, words, zones)
     if size([piece for group in groups for piece in group])[0] <= program.max_points:
         (pieces,) = packed(groups, program.max_points, _NO_END, unbroken)
@@ -112,6 +114,7 @@ def write(program: Program) -> dict[str, bytes]:
     parts = with_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(parts))
     refuse_calls_of_own(program, {name, *names, *map(text.routine_of, names)}, program_name)
+    refuse_names_of_data(program, names, _names_used(program, words, zones))
     files = {}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         head = text.remark(f"part {number} of {len(parts)}")
@@ -204,6 +207,13 @@ def _switched(program: Program, words: process.Process, block: DepositOn | Depos
         word = words.arc_start(block.schedule) if on else words.arc_end(block.schedule)
         return _motion(moves, slice(len(moves) - 1, None), [word], program, straight=True)
     return [] if block.ahead is not None else [f"    SetDO do{program.deposit_output},{int(on)};"]
+
+
+def _names_used(program: Program, words: process.Process, zones: numbers.Words) -> list[str]:
+    """Names of the data and signals in the text, but for those that no program may have."""
+    kinds = {WaitInput: "di", WaitBelow: "ai"}
+    inputs = [f"{kinds[type(one)]}{one.number}" for one in program.blocks if isinstance(one, (WaitInput, WaitBelow))]
+    return [*words.names, *words.declared, *zones.zones.values(), f"do{program.deposit_output}", *inputs]
 
 
 @dataclass(frozen=True)

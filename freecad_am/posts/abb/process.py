@@ -200,6 +200,11 @@ class Process:
         return lines + switches
 
     @property
+    def names(self) -> list[str]:
+        """Names of the program's own data."""
+        return [*self._speeds.values(), *self._welds.values(), *self._feeds.values()]
+
+    @property
     def declared(self) -> list[str]:
         """Names of data that the controller has to have, as far as words were given."""
         schedules = sorted({schedule for schedule, _ in self._welds})

@@ -26,6 +26,13 @@ def after(block: DepositOn | DepositOff) -> str:
     return f"{CALL}#ArcOffAfterMoveStd,{OFF}{block.schedule},{SEAM})"
 
 
+def names(program: Program) -> list[str]:
+    """Names of the data and procedures of ArcTech that a program uses."""
+    schedules = {block.schedule for block in program.blocks if isinstance(block, DepositOn) and block.schedule is not None}
+    own = ["ArcMainNG", "ArcGetPath", "ArcGetDelay", SEAM] if schedules else []
+    return own + [f"{kind}{number}" for number in sorted(schedules) for kind in (ON, OFF)]
+
+
 def refuse_post_flow(program: Program) -> None:
     """Raises InputError SCHEDULE where a bead is to have a post-flow, which ArcTech has in its own data."""
     for block in program.blocks:

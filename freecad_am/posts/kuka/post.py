@@ -26,6 +26,7 @@ from ..refusals import (
     refuse_external,
     refuse_incomplete,
     refuse_named_track,
+    refuse_names_of_data,
     refuse_no_process,
     refuse_schedules,
     refuse_triggers,
@@ -87,11 +88,14 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [line for words in ("Robotic AM", *program.remarks, *_own_remarks(program)) for line in text.remark(words)]
     groups = list(grouped(program, text.Lines(program), lambda block: _instructions(program, block)))
     parts = packed(groups, program.max_points, _NO_END, whole)
+    used = [*([text.SCHEDULE] if _scheduled(program) else []), *arc.names(program)]
+    refuse_names_of_data(program, {name}, used)
     if len(parts) == 1:
         refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.src": text.module(name, [*remarks, *_body(program, parts[0])])}
     names = NAMING.parts(name, len(parts))
     refuse_calls_of_own(program, {name, *names}, program_name)
+    refuse_names_of_data(program, names, used)
     files = {}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         head = text.remark(f"part {number} of {len(parts)}")
