@@ -27,7 +27,7 @@ UNKNOWN = -1  # class of a bead
 MIDDLE, AT_START, AT_END = PHASES = range(3)  # of the segment of a bead that ends at a row
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Motion:
     """Columns of n rows. Points and directions in the part's own frame, mm; joints serial, rad.
 

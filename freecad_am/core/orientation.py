@@ -17,7 +17,7 @@ from .geometry import frames
 from .types import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Orientation:
     """numbers: what tells rotations (n, 3, 3). rotations: what numbers tell. degrees: whether pendants show degrees."""
 

@@ -26,7 +26,7 @@ JOINT_MOVE, LINEAR_MOVE = "joint", "linear"
 FIRST_SHARE, FIRST_TIME = 0.1, 10.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Moves:
     """A run of n moves without an event between.
 

@@ -28,7 +28,7 @@ class Event:
     ahead: float | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Configuration:
     """What a text says of the arm at each of n positions: flip (n,) bool, joint 5 above zero; up (n,) the elbow; front (n,)
     the shoulder; turns (n, 3) of axes, the last of them those of the last axis."""
@@ -39,7 +39,7 @@ class Configuration:
     turns: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ReadMoves:
     """What a post's reader found in a program's text, all moves in the order of execution.
 

@@ -38,7 +38,7 @@ def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
     return array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Bead:
     """One uninterrupted deposit of n points, n >= 2. A closed bead repeats its first point as its last.
 
@@ -261,7 +261,7 @@ class Layer:
     feature: int = 0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Toolpath:
     """All layers from the platform up.
 

@@ -15,7 +15,7 @@ from ..core.motion import Motion
 from ..core.toolpath import Toolpath
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Line:
     """Points (n, 3) mm in part coordinates, n >= 2, with the tool axis (n, 3) and the speed (n,) mm/s towards each of them.
 

@@ -18,7 +18,7 @@ LEAST = 700, 450  # pixels that words beside the map have room in
 FONT_SIZE = 8.0  # points
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cells:
     """colours (R, C, 3) 0..255, lowest row first; hatched (R, C). columns, rows: places, counted in cells, with the texts
     beside them. lines: columns and rows along which a line is drawn. curves: rows (C,) over the columns, NaN lifts the pen,

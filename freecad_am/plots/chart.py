@@ -31,7 +31,7 @@ class Quantity(NamedTuple):
         return f"{self.name}, {self.unit}" if self.unit else self.name
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Curve:
     """Values y over x, (n,) each; NaN lifts the pen.
 
@@ -49,7 +49,7 @@ class Curve:
     width: float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Bars:
     """A histogram: heights (n,) over the ranges between edges (n + 1,)."""
 
@@ -58,7 +58,7 @@ class Bars:
     heights: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Chart:
     """One frame with its scales.
 

@@ -20,7 +20,7 @@ TIMES: tuple[tuple[float, str], ...] = ((3600.0, "h"), (60.0, "min"), (1.0, "s")
 LENGTHS: tuple[tuple[float, str], ...] = ((1000.0, "m"), (1.0, "mm"))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rows:
     """k places along a job. index: (k,) the row of the motion each is about. x: (k,), never falling, in the unit of
     `quantity`. standing: (k,) bool, where the machine has stood at its row since the place before. borders: x of the

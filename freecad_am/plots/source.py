@@ -27,7 +27,7 @@ from ..core.simulation.timeline import Timeline, timeline
 from ..core.toolpath import Toolpath
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Source:
     """A job: its toolpath as it is run, and its motion, that of the deposit alone where there is no cell.
 

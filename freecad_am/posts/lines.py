@@ -15,7 +15,7 @@ _NUMBER = re.compile(r"\d+")
 _LOOP = re.compile(rb"for \w+=(\d+) to (\d+)")  # of VAL 3, about a single move
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Lines:
     """The lines of n moves, in the order of execution. files: names; file: (n,) which of them; line: (n,) from 0."""
 

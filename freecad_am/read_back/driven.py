@@ -18,7 +18,7 @@ from . import followed, text_path
 from .text_path import Path
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DrivenBead:
     """A bead of a motion, as those who look at collisions ask for it; it tells neither width nor height."""
 

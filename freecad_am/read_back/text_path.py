@@ -22,7 +22,7 @@ from ..core.read_moves import ReadMoves
 from .planned import COMPUTED_AXIS, COMPUTED_MM, pieces
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Path:
     """Where the text takes the tip, in part coordinates, with the error its digits allow. Rows are moves."""
 
@@ -32,7 +32,7 @@ class Path:
     tool_bound: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Joints:
     """The serial joints (n, axes) that a text asks for, rad and mm, and by how much each may be off (n, axes)."""
 

@@ -15,7 +15,7 @@ from freecad_am.core.types import Array
 from ...core.geometry.curves.sampling import Curve, sampled
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class AxisFrame:
     """A frame whose Z is an axis: origin (3,) mm, rotation (3, 3) with X Y Z as columns, in part coordinates."""
 

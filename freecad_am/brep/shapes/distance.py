@@ -22,7 +22,7 @@ OFF = 4.0  # deflections between the two feet of a point on a bent face, beyond 
 TURNED = 0.1  # and this share of its distance: triangles are turned against the face
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Skin:
     """Triangles of a shape, vertices (n, 3) mm and corners (m, 3), within `deflection` mm of it; `exact` gives distances
     (k,) of points (k, 3), outside with a plus, and the unit normals (k, 3) along which they count."""

@@ -22,7 +22,7 @@ SMOOTH = 1e-6  # rad of turn allowed where a closed surface meets itself
 _ANALYTIC = {"Part::GeomToroid": TORUS, "Part::GeomCylinder": CONE, "Part::GeomCone": CONE}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Tube:
     """A tube-like surface in part coordinates, u from 0 at its lower end to `end`. See `SurfaceWall` for the rest."""
 

@@ -16,7 +16,7 @@ from .tolerances import CONVERGED
 PARALLEL = 1e-9  # of the square of a sine
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlacedCylinders:
     """One rod in k places: where it starts (k, 3), its unit axes (k, 3), its length and radius; mm."""
 

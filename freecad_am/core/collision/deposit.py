@@ -98,7 +98,7 @@ def in_parts(points: Array, build: Array, width: Array, height: Array, starts: I
     return InParts(points, build, width, height, starts, what)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class InParts:
     """The deposit that `of_beads` makes, made part by part whenever it is asked: for few looks at a long one, whose pieces
     take more memory than its points. what: further arguments of `of_beads`."""

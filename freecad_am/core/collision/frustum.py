@@ -24,7 +24,7 @@ def side_height(radius: float, slope: float) -> float:
     return float(radius * (np.sqrt(slope * slope + 3.0 * (1.0 + slope * slope)) - slope) / (1.0 + slope * slope))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Frustum:
     """radius: a, mm, at the tip plane; slope: k; low, high: mm over the tip plane, low of all or (k,) of each row.
 

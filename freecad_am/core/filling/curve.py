@@ -15,7 +15,7 @@ NEXT, OVER = 0.7548776662, 0.5698402910  # of a length: starts of the next conto
 LEVEL = 1e-9  # of a ring's extent; points less apart are equally far out
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlaneCurve:
     """The middle of a bead: points (n, 2) mm; a closed one does not repeat its first point.
 
@@ -40,7 +40,7 @@ def on_plane(point: Array) -> str:
     return f"({point[0]:.4g}, {point[1]:.4g}) mm"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Beads:
     """How a region is filled: what all patterns ask for.
 

@@ -17,7 +17,7 @@ LEAST_LENGTH = 0.5  # pieces are no shorter than this share of the shape's width
 _ROUNDING = 1e-6  # mm
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cylinder:
     """A cylinder: the middles of its flat ends `start` and `end` (3,), its `radius`; mm."""
 

@@ -11,7 +11,7 @@ from ..types import Array, Index
 REMAINS = "SCAN_REMAINS"  # that the last layer is still off the plan
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fitted:
     """file: name of the scan. points: how many of its points were looked at, left_out: how many face another way than the
     layers grow. layer: number of the first layer that was fitted; layers: over how many, from that one, the deposit is led
@@ -35,7 +35,7 @@ class Fitted:
     motion: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DeviationMap:
     """places: (k, 3) mm on the faces of a part, spread over them. normals: (k, 3) out of it. beyond: (k,) mm that the
     deposit reaches beyond the faces there. worst: (w, 3) layer, bead and point nearest to each of the first w places, which
@@ -52,7 +52,7 @@ class DeviationMap:
     layers: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PredictedShape:
     """fed, laid: mm3 that the wire feeds, and that the predicted deposit holds. edge: mm of the cubes that it is told in.
     drift: (layers,) mm by which the surface of each layer ends above where the next one should begin, NaN where it has no

@@ -18,7 +18,7 @@ class Implicit(Protocol):
         """Values (...,), negative inside, and gradients (..., 3) at points (..., 3)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Round:
     """A cylinder, cone or sphere's distance from its surface (mm, along the radius), or a half space.
 
@@ -56,7 +56,7 @@ class Round:
         return reach - self.radius - self.slope * height, out - self.slope * self.axis
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class HalfSpace:
     """What lies below the plane through `origin` with the normal `normal`."""
 

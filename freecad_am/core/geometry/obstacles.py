@@ -14,7 +14,7 @@ from ..types import Array
 DISC_SIDES = 72
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Body:
     """A solid or mesh that the nozzle must not touch, in part coordinates.
 

@@ -19,7 +19,7 @@ from .obstacles import Body
 from .plane import Plane
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Base:
     """A cylinder, a cone, or the first plane of a stack or along a guide, in the part: name: what messages call it; frame:
     (4, 4) pose of its own frame in part coordinates, Z its axis, towards the apex of a cone."""
@@ -71,7 +71,7 @@ class Seat(NamedTuple):
     chosen: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Group:
     """Solids on one base, in the order of their azimuths. start: triangles (k, 3, 3) of the faces, in part coordinates, that
     curved layers start on; None: where the solids stand."""

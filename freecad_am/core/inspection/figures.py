@@ -23,7 +23,7 @@ FLAT = 0.1  # of a normal along the radius: a surface that lies flatter has no c
 ALL_ROUND = 0.25  # turns between neighbours on a circle beyond which it is not measured all round
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Spread:
     """Of the deviations that count: how many, mean, standard deviation, root mean square, extremes, and what 95 % of their
     amounts do not exceed, mm; the share within tolerance. edges: (k + 1,) mm of the bars of a histogram with counts (k,)."""

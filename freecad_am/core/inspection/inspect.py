@@ -37,7 +37,7 @@ UNLIKE = 8.0  # times smaller than the part points are hardly of all of it; cm, 
 SHIFTS = np.vstack([np.zeros((3, 3)), np.eye(3)])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Inspected:
     """Measured points laid onto the part.
 

@@ -22,7 +22,7 @@ FACETED = 0.03  # how much a turn of something round is felt at most where its s
 TOUCHING = 1e-9  # mm; nearer than this, what leads away from a surface is its normal
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Planned:
     """A surface in part coordinates, mm.
 

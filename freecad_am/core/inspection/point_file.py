@@ -26,7 +26,7 @@ _UNIT = re.compile(r"(?<![a-z])(mm|cm|m|um|µm|μm|inch|inches|in|millimet(?:er|
 _UNIT_NAMES = {"in": "inch", "inches": "inch", "µm": "um", "μm": "um"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Measured:
     """Points (n, 3) in mm as they were measured; label: the file's name; issues: how the file was understood."""
 

@@ -33,7 +33,7 @@ FREE = 1e-5  # of the stiffest motion's: a singular value of a motion that dista
 LEAST_POINTS = 6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Registration:
     """The fit of n measured points.
 

@@ -20,7 +20,7 @@ FLAT = 1e-6  # of the largest extent: points that are all in a line, or a plane,
 STILL = 1e-13  # of the radius
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Round:
     """A circle (two coordinates) or sphere (three) fitted to points.
 

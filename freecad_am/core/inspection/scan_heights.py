@@ -26,7 +26,7 @@ PIECE = 4000  # places that are looked at together
 TINY_MM = 1e-6  # mm
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Heights:
     """Of m places: how far (m,) mm along its direction the scan lies from each, how much it rises there per mm (m,), and
     whether the scan covers the place (m,). What is not covered has the height nan."""
@@ -36,14 +36,14 @@ class Heights:
     covered: Mask
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Patches(Heights):
     """wide: (m,) over a hole in the scan."""
 
     wide: Mask
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scan:
     """points: (n, 3) mm in part coordinates. label: of the file. within: mm from what was planned beyond which points are
     something else."""

@@ -22,7 +22,7 @@ ROUNDS = 12
 CORNER = 1e-6  # of the cosine: tangents that differ by more make a corner
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scanned:
     """A bead with directions (n, 3) and how far (n,) mm along these the scan is off."""
 

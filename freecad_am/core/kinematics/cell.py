@@ -39,7 +39,7 @@ UP = (0.0, 0.0, 1.0)
 _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cell:
     """A resolved cell. Frames are (4, 4) in mm.
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..types import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PoseFrames:
     """Flange poses as left . Rz(sign phi) . right; left and right are (n, 4, 4) or (1, 4, 4)."""
 

@@ -27,7 +27,7 @@ SAME_SIZE = 0.01  # of the distances between points
 _UNITS = ((25.4, "inches"), (1000.0, "m"), (10.0, "cm"), (1.0 / 25.4, "inches"), (1e-3, "m"), (0.1, "cm"))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class WorkOffset:
     """pose: (4, 4) of the part's coordinates in the maker's base frame. residual: (n,) mm, how far each point is from where
     it was touched."""

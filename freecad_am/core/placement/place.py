@@ -23,7 +23,7 @@ from .judge import Job, Judge, Judged
 JUDGING = 0.8  # of the time goes into all poses, the rest into planning the best ones whole
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Placed:
     """P poses of what is moved in the cell of these settings, poses (P, 6) in mm and rad, and what each came to.
 

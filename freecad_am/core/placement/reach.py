@@ -20,7 +20,7 @@ PIECE = 60  # places done together
 MOST_PLACES = 40_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Reach:
     """places: (n, 3) mm in base_link, those where the robot can be at all; share: (n,) of DIRECTIONS in which it can."""
 

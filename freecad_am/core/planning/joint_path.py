@@ -14,7 +14,7 @@ from ..toolpath import Bead, Toolpath
 from ..types import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BeadPath:
     """The joints of one bead of n points.
 

@@ -15,7 +15,7 @@ from ..types import Array
 UNREACHABLE = -np.inf
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LimitRows:
     """The limits as m rows lower <= matrix q <= upper, endless axes left out. Angles in rad."""
 

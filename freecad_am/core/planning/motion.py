@@ -31,7 +31,7 @@ SHORTEST = 0.05
 OF_ALL = ("layer", "bead", "bead_class")  # what is the same for all rows of a part
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Rows:
     """Some rows of a motion before they are joined."""
 

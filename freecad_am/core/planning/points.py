@@ -20,7 +20,7 @@ PIECE = 4096  # points whose poses and Jacobians are held together
 UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Points:
     """T points of B beads. position, tool: (T, 3) part frame. parameter: (T,). first: (B,) index of each bead's
     first point. bead: (T,) the bead a point belongs to. closed: (B,) bool, whether the bead ends where it starts.

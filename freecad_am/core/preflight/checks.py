@@ -26,7 +26,7 @@ OF_MOTION = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Evidence:
     """What a preflight looks at. toolpath: as it is run. issues: of all stages. motion: as the program runs it, None without
     a cell; condition, threshold: (n,) of its rows. arm: what the links touch, None where nobody has looked; true_shapes: by

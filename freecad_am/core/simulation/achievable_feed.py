@@ -30,7 +30,7 @@ _ANY = 1e9  # a change of p^2 that is as good as any
 _NO_TIME = 1e-12
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class AchievableFeed:
     """Columns of the n rows of a motion; each is about the segment that ends at the row.
 
@@ -112,7 +112,7 @@ def _accelerated(
     return result, limiting
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Way:
     """Segments (m,) and the m + 1 nodes at their ends. speed: (m, axes) q'. bend: (m + 1, axes) of q''. largest:
     (axes,). most: (m + 1,) of p^2 by speeds, 0 where it rests. bound: (m + 1,) of p^2 by bends, by_bend: the axis."""

@@ -19,7 +19,7 @@ from ..types import Array, Index, Mask
 STEP, SLIDE, MAX_LOOKS = float(np.radians(1.0)), 10.0, 40_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ArmTouches:
     """link: (n,) of the n rows of a motion the link that touches something on the segment that ends there, or at the row,
     NONE where none does: number of `links`. what: (n,) number of `names`, what it touches. step: rad between two places

@@ -22,7 +22,7 @@ from .table_links import standing_link
 _ROTATIONS = 24
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Placing:
     """Poses in the world, mm. links: (axes + 1, 4, 4), the robot's own. part: (4, 4), its own coordinates. nozzle: (4, 4),
     the tip, its Z pointing into the nozzle. platform: (4, 4), what the part stands on. beside: (k, 4, 4), the links of

@@ -20,7 +20,7 @@ STEP, SHARES = 0.5, np.linspace(0.0, 1.0, 9)
 PIECE = 2048  # moves or looks done together
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RapidsLooked:
     """How many rapids were driven and at how many places, so far apart (mm) at most; rows: (k,) those of the motion on the
     way to which the nozzle met something; place: layer, bead and point of the first of these, None without any."""

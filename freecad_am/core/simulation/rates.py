@@ -11,7 +11,7 @@ from ..motion import Motion
 from ..types import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rates:
     """Columns (n, axes) of the n rows of a motion, rad or mm per s, s^2 and s^3; NaN in rapid moves and where unreachable.
 

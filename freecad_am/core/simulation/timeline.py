@@ -22,7 +22,7 @@ from ..types import Array
 WITH_WITHDRAWAL = 3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class State:
     """Where the machine is at times (...,). All arrays have the shape of the times.
 
@@ -41,7 +41,7 @@ class State:
     speed: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Timeline:
     """The times of a motion of n rows, s from its first row.
 

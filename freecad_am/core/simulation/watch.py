@@ -44,7 +44,7 @@ class Finding:
     other: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Watch:
     """margin: (n,) the smallest to any limit, in degrees or mm, and `limit`, which of `Limits.labels`. condition,
     threshold: (n,), NaN where not known. findings: in the order of rows. touching: (n,) the link that touches something,

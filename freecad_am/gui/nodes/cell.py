@@ -40,7 +40,7 @@ _GHOST = 0.55  # how transparent a machine is that nothing but shows what is ent
 PLATFORM, NOZZLE = ((0.55, 0.58, 0.62), 0.2), ((0.8, 0.82, 0.85), 0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rest:
     """A machine at rest, in part coordinates: links (axes + 1, 4, 4), what they look like, and the meshes of files a user
     gave them. reached: whether it gets there; else all axes are at 0. limits, joints (axes,): as it stands. beside: the
@@ -57,7 +57,7 @@ class Rest:
     stands: Array = field(default_factory=lambda: np.zeros((0, 4, 4)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scenery:
     """What is drawn of a cell, poses (4, 4) in part coordinates. mount: what sits on the platform. nozzle: its tip, Z into
     it. rest: the machine, None where it is not to be seen."""

@@ -24,7 +24,7 @@ LOOK_EVERY = 15  # ms, whether the button has been let go
 DEEP = 1.5  # widths of a bead, by how much points may lie behind the foremost
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sight:
     """How a view shows a path. to_world, to_screen: (4, 4) for row vectors, the latter to -1..1. size: (2,) px of the view.
     toward: (3,) where its camera looks."""

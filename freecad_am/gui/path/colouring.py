@@ -39,7 +39,7 @@ _TOLERANCE = 1e-9
 _ROUNDED = 1e-9  # shares that differ by less are alike
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scale:
     """How to read colours: the ramp goes from low to high; `ticks` are numbers beside it with their texts.
 

@@ -19,7 +19,7 @@ SECTIONS, FINE, FINER = 50_000, 30_000, 12_000
 PIECE = 4096  # rows of a piece, about
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rows:
     """n points (n, 3) mm of m beads in order. starts: (m + 1,) first row of each bead, and n. layers: (m,) of each bead,
     rising. width: (n,) mm. read: gives the beads, asked for when more than lines is drawn or told. layer_height: mm of beads

@@ -25,7 +25,7 @@ GREY = (0.62, 0.64, 0.68)
 ROWS = 200
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Coloured:
     """shown: (m,) numbers of the poses that are drawn, the best of each place. colours: (m, 3). least, most: of the figures
     that colours tell, NaN where there is none."""

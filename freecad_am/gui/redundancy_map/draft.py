@@ -31,7 +31,7 @@ LIVE = 4000  # points that are looked at while the curve is dragged, about
 TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sampled:
     """Points of all beads at which curves are followed. kept: of each bead. lasts: (T,) s. planned: (T,) rotation of the
     plan. row: (T,) numbers of the points among all."""

@@ -18,7 +18,7 @@ from .run import Run
 _TOLERANCE_S = 1e-9  # s
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Moment:
     """One moment. state: of the timeline. row: the row told of. values, margins, ratios, bad: (axes,) joints and margins in
     the units shown, shares of the largest speeds, which are wrong. links: (axes + 1,) links to be marked. asked, achieved:

@@ -30,7 +30,7 @@ from ...objects.stage import stage_of
 from ...objects.staleness import STALE, UP_TO_DATE
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run:
     """All of a simulation but its pictures. title: what is played. objects: names of the objects it was made from. stale:
     whether these have changed since. laid: of the predicted deposit, as an inspection of the toolpath has it, where there

@@ -29,7 +29,7 @@ from ..path.rows import Rows
 from .toolpath import band_of, width_of
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Course:
     """Those columns of a motion of n rows that are drawn: to open a document they alone are read."""
 

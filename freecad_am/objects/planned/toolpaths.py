@@ -40,7 +40,7 @@ STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping 
 CHECKED = 0.92  # and what is left into last looks
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Given:
     """What a feature is planned of: its wall or its solids, which the feature object has found, and parameters. stands:
     (4, 4) in part coordinates, the frame that sits on the platform where an earlier feature says which; else None."""

@@ -21,7 +21,7 @@ from ...posts import catalogue
 from ..joint_path import Planned
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class AsRun:
     """A motion of n rows. condition, threshold: (n,), NaN where not known. issues: by its points."""
 

@@ -24,7 +24,7 @@ _FAST = 500.0, 5000.0, 1000.0
 _NO_ARC = [0] * 9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Frames:
     """A tool and a work object, (4, 4) in the world or on the flange: held says that it is the work object that the robot
     carries, and that the tool stands. unit: the mechanical unit that the work object is seen from, '' where it stands."""

@@ -20,7 +20,7 @@ Indices = NDArray[np.int64]
 _UNLIMITED = 99999.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Step:
     """Moves of one statement: letter j or l, and the rows of the arrays they take."""
 

@@ -28,7 +28,7 @@ _ROUND = 1e-9
 Rows = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Column:
     """Values (k,) of the rows that are shown, NaN where there is none."""
 
@@ -37,7 +37,7 @@ class Column:
     values: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shown:
     """What a page shows of a motion. rows: (k,) of the motion, in order; times: (k,) s at which they are reached. columns:
     what may colour the path; axes: the joints."""

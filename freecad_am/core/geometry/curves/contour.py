@@ -23,7 +23,7 @@ SQUARE = (np.radians(60.0), np.radians(120.0))  # corners between a wall and the
 RIM = 1.0 / 6.0  # of the contour; a longer piece is a wall
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Piece:
     """A smooth stretch of meridian: samples points (n, 2) mm and unit tangents (n, 2). flat: all at one height."""
 

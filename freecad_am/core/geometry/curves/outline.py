@@ -20,7 +20,7 @@ CORNER = np.radians(35.0)
 LENGTH_RATIO = 3.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Outline:
     """points: (n, 3) mm. leaving, arriving: (n - 1, 3) derivatives at the two ends of each segment, by its share."""
 

@@ -46,7 +46,7 @@ def turning(one: Array, other: Array) -> Array:
     return angle
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Meridian:
     """The generating curve from the platform up. Node i has the arc length s[i] mm, (radius, height) points[i]
     mm and the unit tangent tangents[i] towards rising s. Nodes are doubled at kinks: same s, other tangent.
@@ -168,7 +168,7 @@ def _bridge(points: list[Array], tangents: list[Array], lengths: list[float], to
         lengths.append(0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RevolvedWall:
     """A meridian turned about the Z of the feature frame.
 

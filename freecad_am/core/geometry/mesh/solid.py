@@ -25,7 +25,7 @@ SHARP = np.radians(20.0)  # facets that meet at more do not stand for something 
 PARALLEL = 1e-6  # of the cosine between the normals of triangles that lie the same way
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SolidMesh:
     """vertices (n, 3) mm, triangles (m, 3) counter-clockwise seen from outside."""
 
@@ -160,10 +160,15 @@ class Search:
         for which, slack in ((far, 0.3), (close, 0.0)):
             if len(which):
                 near[which] = self.of[np.asarray(self.tree.query(points[which], k=count, eps=slack)[1]).reshape(-1, count)]
-        corner = self.vertices[self.triangles[near]]
-        distance, share = closest(corner[:, :, 0], corner[:, :, 1], corner[:, :, 2], points[:, None])
+        fresh = np.ones(near.shape, dtype=bool)  # most parts next to a point are of the same few triangles
+        for k in range(1, count):
+            fresh[:, k] = (near[:, :k] != near[:, k : k + 1]).all(axis=1)
+        corner, owner = self.vertices[self.triangles[near[fresh]]], np.nonzero(fresh)[0]
+        apart, shares = closest(corner[:, 0], corner[:, 1], corner[:, 2], points[owner])
+        distance, place = np.full(near.shape, np.inf), np.zeros(near.shape, dtype=np.intp)
+        distance[fresh], place[fresh] = apart, np.arange(len(apart))
         row, best = np.arange(len(points)), np.argmin(distance, axis=1)
-        return distance[row, best], near[row, best], share[row, best]
+        return distance[row, best], near[row, best], shares[place[row, best]]
 
     @cached_property
     def _pseudo_normals(self) -> tuple[Array, Array, Index]:

@@ -27,7 +27,7 @@ class LevelLine(NamedTuple):
     rims: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """vertices (n, 3) mm, faces (m, 3) with one sense of rotation all over the wall."""
 

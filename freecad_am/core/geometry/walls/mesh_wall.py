@@ -35,7 +35,7 @@ PIECE = 1000  # places done together; bounds the memory
 REPORTED_FROM_MM = 0.02  # mm off the mesh that the smooth surface may be before it is told
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MeshWall(PatchWall):
     """A wall whose one piece is the smooth surface through a mesh. samples (n, 3): where the vertices were on its facets.
     between: mm that the surface is off these, at most, in the middles of triangles."""

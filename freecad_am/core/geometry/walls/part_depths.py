@@ -15,7 +15,7 @@ import numpy as np
 from ...types import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """Places (n, 3) spread over a surface, unit normals (n, 3) there to either side, and the area (n,) mm2 of each."""
 
@@ -24,7 +24,7 @@ class Surface:
     areas: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PartDepths:
     """label: what messages call the part. volume: mm3 of its solids, 0 of a part without. area: mm2 that beads run on.
     depths: (k,) mm, sorted: how wide a bead must be for each equal share of the part, inf for what lies under no bead.

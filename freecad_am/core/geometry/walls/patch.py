@@ -20,7 +20,7 @@ STILL = 1e-10  # mm; a step that is shorter ends the search of a nearest point
 SAMPLES = 6  # per span of knots, for the start of that search
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Patch:
     """A surface in part coordinates, mm and rad.
 

@@ -24,7 +24,7 @@ from .surface import dot
 NEAREST = 8  # triangles, by their middles, among which the nearest one of a point is sought
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FirstCurve:
     """A loop or chain in which layers start.
 
@@ -48,7 +48,7 @@ class FirstCurve:
         return SpaceCurve(w, points, into, out, self.closed)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rim:
     """A stretch of the wall's boundary, without corners.
 
@@ -66,7 +66,7 @@ class Rim:
         return bool((self.points[0] == self.points[-1]).all())
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PatchWall:
     """A wall in part coordinates, mm.
 

@@ -17,7 +17,7 @@ from .tabulated import Tabulated
 TORUS, CONE, TABLE = "torus", "cone", "table"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SurfaceWall:
     """A wall in part coordinates, mm and rad.
 
@@ -67,7 +67,7 @@ def own_surface(
     return Tabulated(u, v, table, period)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Placed:
     """A surface moved by a rigid pose (4, 4)."""
 

@@ -16,7 +16,7 @@ from .solids import BODY, BRIGHT, Solid
 Pieces = tuple[LinkShape | Solid, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Primitive(Solid):
     """A box or cylinder (`kind`) with its `size` as a machine file has them, mm, and where its middle is: pose (4, 4)."""
 

@@ -57,7 +57,7 @@ LINK_PIECE, SHARE = 50.0, 0.01  # longest edge of a triangle that links are look
 SLICES = 8  # cylinders about a deposit that moves
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Touches:
     """With k joint vectors. what: (k,) number in `ArmContact.names` of the first of those that a link touches; link: (k,)
     number in `ArmContact.links` of the link nearest to the base, 0, that touches it; NONE in both where nothing touches."""
@@ -71,7 +71,7 @@ class Touches:
         return np.asarray(self.link != NONE)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Group:
     """What links (numbers) are looked at against, within a ball, as it is seen from the part, the nozzle or the world."""
 
@@ -82,7 +82,7 @@ class Group:
     seen_from: str = PART
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ArmContact:
     """A robot in its cell. cylinders: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
     deposit: in part coordinates. clearance: mm, links that are nearer touch.

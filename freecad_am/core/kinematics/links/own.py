@@ -30,7 +30,7 @@ EVERY = 4  # one position in so many is looked at first
 REMEMBERED = 8  # robots whose pairs are known: a job asks while planning, for its rapids, and when all is looked at again
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class OwnLinks:
     """solids: of each link, base first, in its frame; balls: centre and radius of one about these; gap: mm, links that are
     nearer to each other touch; pairs: of links (outer, inner) that are looked at."""

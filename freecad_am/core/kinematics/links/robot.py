@@ -30,7 +30,7 @@ _NONE = 1e-6  # and shorter than this there is nothing to draw
 _PARALLEL = 1e-6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Skeleton:
     """Per axis of a chain at zero: unit `directions`, where the link before meets it (`enter`) and where its own link
     leaves it (`leave`), all (axes, 3) in base_link; the `flange` point and `size`, the length of the whole, mm."""

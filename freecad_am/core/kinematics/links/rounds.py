@@ -15,7 +15,7 @@ from ...types import Array
 NONE = -1  # no link
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solid:
     """A solid of revolution that a link is, or a piece of it: tip and unit axis (3,) in the frame of the link, and the ball
     about it."""

@@ -15,7 +15,7 @@ BODY, DARK, BRIGHT = "body", "dark", "bright"
 SIDES = 40
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solid:
     """points, normals: (n, 3) mm and unit vectors that point outwards; triangles: (m, 3) indices; tone: what it is like."""
 

@@ -40,7 +40,7 @@ class Deviation:
     angle: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Suspect:
     """A change that makes the machine give the poses. axes: those it is about, counted from 0. shown: how the controller
     would show the joints, None where the fault is elsewhere. pose: (4, 4) what the base frame is moved by in base_link, or,

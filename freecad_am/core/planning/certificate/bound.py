@@ -35,7 +35,7 @@ FEWEST = 4  # groups of steps of a bead
 GROUPED = 0.002  # of the objective, what may be lost by looking at groups of steps
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Optimality:
     """What a joint path costs and what no rotation can go below: objective and bound (B,) of each bead."""
 

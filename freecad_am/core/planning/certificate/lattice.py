@@ -26,7 +26,7 @@ COARSE = 60  # cells of a turn that are looked at first: those beside an impossi
 Mask = NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Lattice:
     """m points with N rotations from -pi on, N a multiple of COARSE. joints: (m, N, axes) rad or mm, NaN out of reach.
     possible: (m, N) whether a rotation between one and the next may keep limits and condition. weights: (axes,) of eq. 17.

@@ -148,7 +148,7 @@ def _at_best(
     return np.where(np.isfinite(guess[rows, first]), least, np.inf)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Near:
     """Steps to rotations near n of a lattice, in steps x of it from the middle of five, which is `shift` (n,) beside each:
     moved (5, n, axes) and later (5, n) the coefficients of what joints move by and of the sum ahead, off (n, axes) and

@@ -27,7 +27,7 @@ AMPLE = 0.75  # a margin to the condition that nobody asks for: its derivatives 
 STEEP = 0.9  # of its largest speed, what an external axis may be asked for
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Bound:
     """What holds at one set of changes of v numbers. objective, with `slope` (v,). margins: (r,), shares as limits and
     condition have them, 0 where just kept, with `margin_slopes` (r, v). hard: (h,), kept where >= 0, with `hard_slopes`."""
@@ -40,7 +40,7 @@ class Bound:
     hard_slopes: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Freedom:
     """points: of one bead, T of them. thresholds: (T,) the condition asked for. start: (degree + 1,) coefficients of the
     rotation. changes: (degree + 1, c) coefficients of what may be added. allowed: rad from the vertical. directions: (T, 3)

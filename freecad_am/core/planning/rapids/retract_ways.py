@@ -71,7 +71,7 @@ class Ways(NamedTuple):
         return Ways(*(column[rows] for column in self))  # type: ignore[arg-type]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Leg:
     """A way off a bead that the machine can go.
 
@@ -96,7 +96,7 @@ class Failure:
     bound: float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ends:
     """The first (even) and last (odd) points of all beads, n = twice their number: rows of points, directions, rotations
     (n,) rad and joints (n, axes)."""

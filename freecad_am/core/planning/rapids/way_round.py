@@ -28,7 +28,7 @@ PULLS = np.array([0.0, 0.03, 0.1, 0.3])  # of the way from a place to halfway be
 SHORTEST = 0.05  # s that a move takes at least
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ranges:
     """Where joints are looked for: low, high (axes,), and the largest speed of each axis."""
 

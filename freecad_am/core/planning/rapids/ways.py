@@ -30,7 +30,7 @@ from .retracts import Retracts, branch_of
 MORE_MOVES = 3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Way:
     """The rapid rows to a bead, or after the last one: joints (m, axes) and roles (m,). start: (axes,) where the first of
     them comes from, None before the first bead."""

@@ -25,7 +25,7 @@ from ..task import Task
 Progress = Callable[[float, str], None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Followed:
     """What a curve asks of the machine at T points of B beads.
 

@@ -33,7 +33,7 @@ ROWS, MAX_COLUMNS = 181, 300
 LEAST = 12  # points of a bead, fewer of which would not show what a curve does
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Columns:
     """Points of a path that are looked at. bead: (C,) which of the beads; point: (C,) which point of it; points: them,
     each standing for itself."""
@@ -46,7 +46,7 @@ class Columns:
         return len(self.bead)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RedundancyMap:
     """Cells of `values` (R,) rad by columns C. axis: what the values are, RZ or ROTATION.
 
@@ -64,7 +64,7 @@ class RedundancyMap:
     outside: Mask
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Picture:
     """One branch of a map. margin, condition: (R, C). threshold: (C,) smallest condition allowed. forbidden: (R, C) what is
     outside of the rotations allowed or where the nozzle touches. arm: (R, C) where a link of the robot touches something,

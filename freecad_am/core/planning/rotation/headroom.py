@@ -24,7 +24,7 @@ class Worst:
     label: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Judgement:
     """T points of beads. margin: (T,) share left to the nearest limit, 1 in the middle, less than 0 beyond. condition: (T,).
     ratio: (T,) largest joint speed on the segment that ends at the point, as a share of what the axis can do, where a bead

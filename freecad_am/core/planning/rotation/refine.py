@@ -32,7 +32,7 @@ STATIONARY = "stationary at the start found by the search"
 OUT_OF_LIMITS = "no polynomial found that keeps all limits"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Refined:
     """One polynomial per bead: coefficients (B, degree + 1), objective (B,), why and after how many iterations the
     optimiser stopped."""
@@ -78,7 +78,7 @@ def refine(
     return Refined(coefficients, objective, tuple(reasons), tuple(iterations))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Linear:
     """Constraints >= 0 at all points of a bead, about the values `at` (T,) of its polynomial there: `value` and `slope`
     (r, T), FAR_OFF and 0 of those that do not matter. reach: by how much the polynomial may change at most."""
@@ -99,7 +99,7 @@ def refine_along(
     return _slsqp(_Bead(task, points, thresholds, more), start, used)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Bead:
     """One bead alone, its points and the condition asked for at each; what else is to be kept, where that is asked for."""
 

@@ -19,7 +19,7 @@ from . import basis
 CONDITION_RESERVE = 1e-3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class State:
     """Everything eqs. 17 to 19 need at one set of coefficients; constraints are >= 0 where kept."""
 

@@ -37,7 +37,7 @@ LOOKS = 5
 BOUND_SPREAD = 6.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Found:
     """C candidates per bead: coefficients (C, B, degree + 1), objective and margin (C, B).
 

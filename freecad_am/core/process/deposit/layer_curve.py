@@ -33,7 +33,7 @@ _FIRST_TRIED = 5  # segments that are tried first
 _BEYOND = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Curve:
     """Segments start, end (m, 3) with the derivatives (m, 3) of their cubics there; `low` and `high` (m,) bound the
     cubics' variable, which is 0 at the start and 1 at the end."""

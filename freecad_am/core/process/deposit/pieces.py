@@ -12,7 +12,7 @@ from ...toolpath import Toolpath
 from ...types import Array, Index, Mask
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pieces:
     """Beads cut into n short pieces in the order of deposit: middles, build and travel directions (n, 3), lengths (n,) mm,
     widths (n,) mm; along: mm from the start of the bead; layer, bead (of all), point: where each begins; closing (n,)."""

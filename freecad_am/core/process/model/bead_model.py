@@ -41,7 +41,7 @@ class Fit:
         return value
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Asked:
     """speed (n,) mm/s; too_slow, too_fast, too_tight (n,) where the width asked for, or the radius, is outside the table."""
 

@@ -21,7 +21,7 @@ HEIGHTS = "BEAD_HEIGHT"
 DRIFT = 0.2  # of the layer height; layers that drift by more deserve a warning
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Segments:
     """The segments (n,) of some beads: length mm, travel speed mm/min, width and height mm halfway, wire mm/s or NaN."""
 

@@ -29,7 +29,7 @@ KNOWN_WIDTHS = 1.5  # widths from a first layer's bead, beyond which nothing is 
 AT_ONCE = 4_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Compared:
     """faces: the places that are to be covered. deviation: (n,) mm that the deposit reaches beyond them along their normals,
     less than 0 where the part sticks out; of open faces on the side where it is less. bare: (n,) where there is none within

@@ -22,7 +22,7 @@ SPACINGS = 1.0  # of places, between those that stand for the same face
 OUTSIDE, BOTH = "outside", "both"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Faces:
     """points: (n, 3) mm on the faces of a part. normals: (n, 3) unit vectors out of it. areas: (n,) mm2 that each stands
     for. open: (n,) of faces that enclose nothing: both sides of them count, and the side with less."""

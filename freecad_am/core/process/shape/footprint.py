@@ -18,7 +18,7 @@ FULL = 1.0 - 1e-9
 BRIDGED = 1.25  # widths: a melt closes what is left open between two beads that would be as wide as this
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Footprint:
     """k cubes of a layer. place: (k,) in the grid. piece: (k,) the nearest one; other: (k,) that of the bead beside
     it, the same where there is none, and share: (k,) how much of the cube is on the nearest one's side of the middle

@@ -45,7 +45,7 @@ LEFT = 1e-12  # of what a layer is fed; less has no place for rounding alone
 Report = Callable[[float, str], None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Part:
     """What a feature deposits: its toolpath, the numbers (k,) of its layers in the whole, and its process."""
 
@@ -54,7 +54,7 @@ class Part:
     process: ProcessParameters
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PredictedDeposit:
     """A deposit. grid: what is filled. fed, laid: mm3 that the wire fed, and that found a place. pieces: all that was laid,
     with level (n,): mm of the surface in their middle above the path, and bead_in_layer (n,). drift: (layers,) mm by which

@@ -18,7 +18,7 @@ PIECE = 0.25  # of a bead's width
 BEND = 0.25  # of a bead's width that its outer side gapes at most between two pieces that run into each other
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Strands:
     """n pieces in the order of deposit. middle: (n, 3) mm on the path. along, side, build: (n, 3) unit vectors, square to
     each other: the way of travel, to its left, and where the bead grows. length, width: mm. volume: mm3 that is fed there.

@@ -41,7 +41,7 @@ ON_FRONT_MM = 1e-4  # mm; vertices nearer to a front lie on it, so that the last
 NEIGHBOURS = 12  # vertices near a place of a first curve that tell on which side the wall is
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class State:
     """Where the deposit has come to: the fronts of the last layer, the vertices (n,) behind them, those (k,) that the last
     layer passed, and which of banded.WEIGHTS smooth fronts were made with."""

@@ -104,7 +104,7 @@ def smoothed(
     return best._replace(curve=on_wall(wall, best.curve))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Line:
     """A smooth line on a wall with rims: points (n, 3), unit vectors (n, 3) in the wall to its left, `bend` (n,) its own
     second differences along those. A closed one does not repeat its first point. sliding: (2,) whether the ends of an open

@@ -31,7 +31,7 @@ SHORTEST = 1e-9  # mm; points nearer together are one
 ROUNDING = 1e-12  # of what is added up; less is rounding
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Loop:
     """A closed cut: points (n, 3) mm in the hub's frame, the first not repeated, the solid to the left as seen from outside
     the hub. turns: how often it goes round the hub, counted with its sense; 0 for a contour of a blade."""

@@ -12,7 +12,7 @@ from ...geometry.walls.surface import Surface, dot
 from ...types import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class WallLayer:
     """u (m,) at the nodes of the curve; the curve's parameter is v, and its last node repeats the first."""
 

@@ -27,7 +27,7 @@ CAP = 1e-9  # rad
 SEAM = 1e-6  # rad that a closed bead's end may be past a turn
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Space:
     """Everything that decides whether an axis at a point is clear: points (n, 3) in the order of deposit, own (n,) the first
     point of those beads that each overlaps by intention where it is next to them."""

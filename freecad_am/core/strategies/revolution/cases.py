@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...types import Array, Index, Mask
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cases:
     """One row per case to be judged: bead (k,), build direction (k, 3), running sense (k,). chained: all are along one bead,
     on which directions run evenly from one to the next."""

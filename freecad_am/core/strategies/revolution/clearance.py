@@ -32,7 +32,7 @@ CHORD = 0.01  # mm; beads are looked at to this chord error, or their own where 
 CONVERGED = 0.01  # mm that the nozzle moves at most where directions are not settled to the last digit
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Deposit:
     """Points (k,) of all beads in the order of deposit, in the feature frame: radius, height mm, azimuth rad.
 
@@ -56,7 +56,7 @@ class Deposit:
         return _place(self.radius, self.azimuth, self.height)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Tips:
     """Where the nozzle is looked at, case by case: radius, height mm and azimuth rad (c,); the moment before which there is
     deposit, and the one from which it is of the layer being laid (c,)."""

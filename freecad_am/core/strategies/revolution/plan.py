@@ -29,7 +29,7 @@ from .tilt import Tilting
 SPACING_BAND = 0.2  # of the layer height (Chalvin 2020, section 2.1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Slices:
     """The beads of all layers in the order of deposit: layer index (m,), radius and height (m,) mm, tangent (m, 2)."""
 

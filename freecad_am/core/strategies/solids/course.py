@@ -25,7 +25,7 @@ WITHIN = 0.98  # of the turn asked for, so that points added later keep to it to
 LEAST_DEPARTURE = math.radians(0.1)  # a departure from what is asked that counts
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Course:
     """A bead laid flat (n, 2), and its surface; a closed one repeats its first point, or ends a period from it.
     spread: normals (n, 3) at its points that stand for those of the surface."""

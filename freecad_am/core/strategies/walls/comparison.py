@@ -24,7 +24,7 @@ FINER = 4  # places per arc at which the distance is measured
 SLACK = 1e-9  # of u; what lies past an edge by no more is on it
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Compared:
     """A wall cut by one method. Lengths mm, angles rad.
 

@@ -134,7 +134,7 @@ def _left(wall: PatchWall, kept: list[list[Piece]]) -> float:
     return float(feet(last, np.vstack(ends)).distance.max()) if ends and last else 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Way:
     """One way to run a piece: from where on, and whether against its curve."""
 

@@ -26,7 +26,7 @@ MOST_LABELS = 14
 ACROSS = 121  # columns of the values of an external axis
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cell:
     """One cell under the mouse. place: (layer, bead, point). joints: (axes,) rad, NaN out of reach. nearest: which limit."""
 

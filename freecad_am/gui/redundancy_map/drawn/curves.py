@@ -22,7 +22,7 @@ COLOURS = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Curve:
     """A line over the map: values (C,) rad, counted on along each bead; bold: the one that can be dragged."""
 

@@ -18,7 +18,7 @@ KINDS = (MARGIN, CONDITION)
 Pixels = NDArray[np.uint8]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Painted:
     """Colours (R, C, 3) 0..255 of cells, hatched (R, C) ones, the scale of the ramp, and classes that there are."""
 

@@ -14,7 +14,7 @@ from ....types import Array, Index
 TINY = 1e-150
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Curves:
     """Of n poses: `point` (3, 3, n) and `five` (3, 3, n) are constant, cosine and sine parts of the point where axes 4 and 5
     meet, from axis 1 at the shoulder's height, and of the direction of axis 5, by components. `lean` is cosine and sine of
