@@ -42,6 +42,8 @@ def _shared(pieces: Pieces, layer: slice, around: Array, level: float) -> float:
     pairs: Index = cKDTree(middle).query_pairs(float(width.max()), output_type="ndarray").astype(np.intp)
     one, other = np.vstack([pairs, pairs[:, ::-1]]).T
     kept = _side_by_side(pieces, layer.start + one, layer.start + other, around)
+    if not kept.any():  # of most layers with one bead
+        return 0.0
     one, other = one[kept], other[kept]
     build, travel = pieces.build[layer][one], pieces.travel[layer][one]
     way = middle[other] - middle[one]
