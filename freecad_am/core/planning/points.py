@@ -177,10 +177,18 @@ def steps(joints: Array, points: Points) -> Array:
 
 
 def unwrapped(joints: Array, points: Points) -> Array:
-    """(..., T, axes) joint values counted on from the first point of each bead."""
+    """(..., T, axes) joint values counted on from the first point of each bead, NaN from its first point without any on."""
     rising = steps(joints, points)
+    lost = np.isnan(rising)
+    some = bool(lost.any())
+    if some:  # a bead that is lost takes none of those after it along
+        rising[lost] = 0.0
+        lost = np.cumsum(lost, axis=-2)
+        lost = lost > points.spread(lost[..., points.first, :])
     np.cumsum(rising, axis=-2, out=rising)
     rising += points.spread(joints[..., points.first, :] - rising[..., points.first, :])
+    if some:
+        rising[lost] = np.nan
     return rising
 
 

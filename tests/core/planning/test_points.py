@@ -32,3 +32,19 @@ def test_by_whole_turns_joints_are_those_of_steps(counts, sliding):
         assert np.array_equal(found[:, points.first], given[:, points.first])
     if len(counts) > 2:
         assert np.abs(found - given).max() > TURN
+
+
+def test_a_bead_with_points_out_of_reach_takes_no_other_along():
+    rng = np.random.default_rng(3)
+    counts = [5, 1, 8, 3, 6]
+    points = points_of(counts)
+    joints = rng.uniform(-3.0, 3.0, (7, len(points), 2))
+    joints[rng.random(joints.shape[:-1]) < 0.1] = np.nan
+    found = unwrapped(joints, points)
+    assert np.isnan(found).any() and np.isfinite(found[:, -counts[-1] :]).any()
+    for start, count in zip(points.first, counts):
+        alone = unwrapped(joints[:, start : start + count], points_of([count]))
+        assert found[:, start : start + count] == pytest.approx(alone, abs=1e-12, nan_ok=True)
+        lost = np.isnan(joints[:, start : start + count]).any(axis=-1)
+        first = np.where(lost.any(axis=1), lost.argmax(axis=1), count)
+        assert (np.isnan(alone).any(axis=-1) == (np.arange(count) >= first[:, None])).all()
