@@ -59,7 +59,7 @@ from .macro.features import (
 )
 from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
-from .macro.suit import suit
+from .macro.suit import put_on_platform, suit
 from .objects import user_machines
 from .objects.cell import Cell
 from .objects.checks.controllers import post_of
@@ -191,9 +191,9 @@ def make_all(
 
 
 def _toolpath_on_platform(doc: Any, features: list[Any], cell: Any, process: Mapping[str, Any]) -> Any:
-    """The toolpath of a new job; what reaches below the platform is put on it, where mounting it by the cell does that."""
+    """The toolpath of a new job; what reaches below the platform, or begins above it, is put on it where a mount does that."""
     try:
-        return make_toolpath(doc, features, cell, **process)
+        return put_on_platform(cell, make_toolpath(doc, features, cell, **process))
     except InputError as error:
         if error.code != "OFF_PLATFORM" or not error.mended_by:
             raise

@@ -5,8 +5,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..core.strategies.support import ABOVE_PLATFORM
 from ..objects.fields import properties
 from ..objects.planned import suited_cell
+from ..objects.results.findings import issues_of
+from .changes import change
 from .steps import one_step, renew
 
 
@@ -20,3 +23,10 @@ def suit(cell: Any, *stages: Any) -> None:
             properties.write(cell, found)
             for stage in (cell, *stages):
                 renew(stage)
+
+
+def put_on_platform(cell: Any, toolpath: Any) -> Any:
+    """The toolpath object, of what stands on the platform where it began above it, over nothing."""
+    if any(issue.code == ABOVE_PLATFORM for issue in issues_of(toolpath)):
+        change(cell, mount="feature")
+    return toolpath

@@ -14602,6 +14602,11 @@
         <translation>{0} mm de la première couche dépassent du bord du plateau, jusqu&apos;à {1} mm au-delà ; déplacez la pièce, ou donnez à cell.platform_diameter sa vraie valeur (0 pour aucun)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/support.py"/>
+        <source>{0} mm of the first layer lie up to {1} mm above the platform, over nothing; put the part on it by cell.mount: feature, move it in its file, or name what it grows on as its substrate</source>
+        <translation>{0} mm de la première couche se trouvent jusqu&apos;à {1} mm au-dessus du plateau, au-dessus du vide ; posez la pièce dessus par cell.mount: feature, déplacez-la dans son fichier, ou donnez comme substrat ce sur quoi elle croît</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} mm of the height are left at the top, less than a layer</source>
         <translation>{0} mm de la hauteur restent en haut, moins qu&apos;une couche</translation>

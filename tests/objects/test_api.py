@@ -282,6 +282,20 @@ def test_with_the_part_mounted_by_its_own_frame_the_platform_is_there(doc, part)
     assert api.make_toolpath(doc, feature, api.make_cell(doc, limits="paper", mount="feature"))
 
 
+def test_a_solid_drawn_above_the_platform_is_put_on_it_by_a_new_job(doc):
+    box = doc.addObject("Part::Box", "Box")
+    box.Length, box.Width, box.Height = 30, 30, 6
+    box.Placement.Base = (40, 10, 20)
+    doc.recompute()
+    cell, _, toolpath, *_ = api.make_all(doc, box, kind="solid")
+    assert cell.Mount == "feature" and not {"ABOVE_PLATFORM", "UNSUPPORTED"} & {one.code for one in api.issues(toolpath)}
+    api.change(cell, mount="part")
+    found = {one.code: one for one in api.issues(toolpath)}
+    assert {"ABOVE_PLATFORM", "UNSUPPORTED"} <= set(found) and "20 mm above" in found["ABOVE_PLATFORM"].message
+    api.change(cell, platform_diameter=0)  # nobody knows what stands there
+    assert not {"ABOVE_PLATFORM", "UNSUPPORTED"} & {one.code for one in api.issues(toolpath)}
+
+
 def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypatch, root):
     """Its file lies in FreeCAD's folder of user data; a change of the file makes the cell stale at the next recompute."""
     folder = tmp_path / "RoboticAM" / "machines"

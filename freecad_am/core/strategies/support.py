@@ -22,7 +22,7 @@ from ..types import Array, Mask
 STEPS = 7  # places on the way down at which a body is looked for
 ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is
 FLUSH = 1e-6  # mm
-OVER_PLATFORM = "OVER_PLATFORM"
+OVER_PLATFORM, ABOVE_PLATFORM = "OVER_PLATFORM", "ABOVE_PLATFORM"
 BY_ITSELF = ("surface", "curves", "cladding")  # families whose first layer lies where it begins by its making
 
 
@@ -66,6 +66,24 @@ def over_edge(toolpath: Toolpath, frame: Array, diameter: float, bodies: Sequenc
             "beyond it; move the part, or set cell.platform_diameter to what there is (0 for none)",
             math.fsum(first.length[out]), beyond[worst]),
         0, int(first.bead[worst]), int(first.point[worst]),
+    )]
+
+
+def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issue]:
+    """A warning where most of the first layer lies above the plane of the platform, z = 0 of the frame (4, 4) in part
+    coordinates, and on none of the bodies."""
+    first = cut(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
+    height = (first.middle - frame[:3, 3]) @ frame[:3, 2]
+    up = np.flatnonzero(height > support.REACH * toolpath.layer_height)
+    up = up[~_Ground(toolpath, (), bodies, ())(first.middle[up], first.build[up])]
+    if 2.0 * first.length[up].sum() <= first.length.sum():
+        return []
+    highest = up[height[up].argmax()]
+    return [Issue(
+        WARNING, ABOVE_PLATFORM, Text("{:.4g} mm of the first layer lie up to {:.4g} mm above the platform, over nothing; "
+            "put the part on it by cell.mount: feature, move it in its file, or name what it grows on as its substrate",
+            math.fsum(first.length[up]), height[highest]),
+        0, int(first.bead[highest]), int(first.point[highest]),
     )]
 
 

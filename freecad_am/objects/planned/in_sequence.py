@@ -25,7 +25,7 @@ from ..checks.on_its_part import looked_at
 from ..shapes.bodies import Taken, bodies, taken
 from ..shapes.platforms import platforms
 from ..work import progress
-from .toolpaths import CHECKED, STRATEGY, Given, bases_of, kept_clear, layers_of, over_edge, with_wire
+from .toolpaths import CHECKED, STRATEGY, Given, above_platform, bases_of, kept_clear, layers_of, over_edge, with_wire
 
 OVERLAP = 0.01  # of the smaller part
 MM3 = 1000.0  # in a cm3
@@ -125,12 +125,12 @@ def _judged(
     ground = (*one.given.wall.surroundings, *plates)
     lengths, found = support.of_feature(toolpath, number, planes, ground, bases)
     sequence.refuse_floating(toolpath, number, lengths)
-    seen = looked_at(
-        part if planes else over_edge(part, dataclasses.replace(one.given, stands=stands)), one.given, one.sources
-    )
+    given = dataclasses.replace(one.given, stands=stands)
+    seen = looked_at(part if planes else over_edge(part, given), one.given, one.sources)
     balance = deposit_balance.of_toolpath(one.given.wall, part, one.given.process.bead_width)
     seen = dataclasses.replace(seen, unsupported=math.fsum(lengths.values()))
-    more = (*deposit_balance.issues(balance), *found, *sequence.renumbered(seen.issues, numbers))
+    own = (*(above_platform(part, given) if bases else ()), *seen.issues)
+    more = (*deposit_balance.issues(balance), *found, *sequence.renumbered(own, numbers))
     return sequence.with_feature(toolpath, number, seen, more)
 
 

@@ -15,7 +15,9 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
+from ...core.geometry.curves.guide import Guide
 from ...core.geometry.obstacles import Body
+from ...core.geometry.plane import Plane
 from ...core.issues import InputError, Issue
 from ...core.kinematics.cell import mounted
 from ...core.parameters.build_direction import BuildDirectionParameters
@@ -75,16 +77,32 @@ def planned(of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made
     if made.family == "revolution":
         stands = mounted(of.cell, made.frame, made.family) if of.cell is not None and plates else made.frame
         return support.with_support(made, (stands,), made.surroundings, ())
-    return over_edge(support.with_support(made, (), (*made.surroundings, *plates), bases_of(of)), of)
+    aloft = above_platform(made, of)
+    made = dataclasses.replace(made, issues=(*made.issues, *aloft))
+    made = support.with_support(made, (), (*made.surroundings, *plates), () if aloft else bases_of(of))
+    return over_edge(made, of)
 
 
 def over_edge(made: CoreToolpath, of: Given) -> CoreToolpath:
     """The toolpath with a warning where it begins beyond the edge of the platform."""
     if of.cell is None or of.cell.platform_diameter <= 0.0:
         return made
-    stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
-    found = support.over_edge(made, stands, of.cell.platform_diameter, made.surroundings)
+    found = support.over_edge(made, _stands(made, of, of.cell), of.cell.platform_diameter, made.surroundings)
     return dataclasses.replace(made, issues=(*made.issues, *found))
+
+
+def above_platform(made: CoreToolpath, of: Given) -> list[Issue]:
+    """A warning where a solid that stands on a plane begins above the platform: that plane carries nothing then."""
+    bases = bases_of(of)
+    if of.cell is None or of.cell.platform_diameter <= 0.0 or not bases:
+        return []
+    if not all(isinstance(base.surface, (Plane, Guide)) for base in bases):
+        return []
+    return support.above(made, _stands(made, of, of.cell), made.surroundings)
+
+
+def _stands(made: CoreToolpath, of: Given, cell: CellParameters) -> Array:
+    return mounted(cell, made.frame, made.family) if of.stands is None else of.stands
 
 
 def layers_of(of: Given) -> CoreToolpath:

@@ -307,3 +307,24 @@ def test_beside_the_edge_of_a_platform_nothing_carries():
 def square(half):
     corners = np.array([[x, y, 0.0] for x in (-half, half) for y in (-half, half)])
     return corners, np.array([[0, 2, 3], [0, 3, 1]], dtype=np.int64)
+
+
+@pytest.mark.parametrize(("lift", "told_of"), [(0.0, False), (1.4 * HEIGHT, False), (20.0, True)])
+def test_a_first_layer_above_the_platform_is_told_where_nothing_carries_it(lift, told_of):
+    frame = np.eye(4)
+    frame[:3, 3] = 10.0, -20.0, 5.0
+    path = toolpath([rod(-90, 110, 0.0, 5.0 + lift)], [rod(-90, 110, 0.0, 7.0 + lift)])
+    found = support.above(path, frame, ())
+    assert bool(found) == told_of
+    under = np.eye(4)
+    under[2, 3] = 5.0 + lift
+    assert not support.above(path, frame, (disc(400.0, under, "plate"),))
+    if told_of:
+        length, height = (float(word) for word in re.findall(r"([\d.]+) mm", found[0].message))
+        assert (found[0].code, found[0].level, found[0].layer) == ("ABOVE_PLATFORM", "warning", 0)
+        assert (length, height) == (pytest.approx(200.0), pytest.approx(20.0))
+
+
+def test_a_part_of_the_first_layer_on_the_platform_is_no_news():
+    path = toolpath([rod(0.0, 60.0, 0.0, 0.0), rod(0.0, 50.0, 20.0, 9.0)])
+    assert not support.above(path, np.eye(4), ())
