@@ -284,3 +284,18 @@ def test_a_narrow_rotation_range_is_kept_or_refused(sliced, cell_of):
         named = any(issue.level == "error" and issue.layer == path.layer for issue in found.issues)
         assert named or (np.abs(path.phi) <= 2.0 + 1e-9).all()
     assert dataclasses.asdict(parameters)["rotation_range"] == (-2.0, 2.0)
+
+
+def test_beads_after_one_that_is_out_of_reach_are_told_as_they_are(sliced, cell_of):
+    toolpath = sliced("sphere", 12.0)
+    planned = plan_joints(toolpath, cell_of(toolpath), JointParameters())
+    (first,), rest = toolpath.layers[1].beads, toolpath.layers[2:]
+    away = dataclasses.replace(first, points=first.points + np.array([0.0, 0.0, 1e4]))
+    lost = dataclasses.replace(toolpath.layers[1], beads=(away,))
+    torn, cell = dataclasses.replace(toolpath, layers=(toolpath.layers[0], lost, *rest)), cell_of(toolpath)
+    found = plan_joints(torn, cell, JointParameters())
+    assert planned.feasible and not found.feasible
+    assert [path.reachable for path in found.beads] == [k != 1 for k in range(len(found.beads))]
+    for path in found.beads[2:]:
+        tip, _ = cell.tip_in_part(cell.machine.chain.forward(path.joints))
+        assert np.abs(tip - path.bead.points).max() < 1e-6
