@@ -191,7 +191,7 @@ def make_all(
 
 
 def _toolpath_on_platform(doc: Any, features: list[Any], cell: Any, process: Mapping[str, Any]) -> Any:
-    """The toolpath of a new job; what reaches below the platform, or begins above it, is put on it where a mount does that."""
+    """The toolpath of a new job; what reaches below the platform, or begins above it, is put on it where `mount` does so."""
     try:
         return put_on_platform(cell, make_toolpath(doc, features, cell, **process))
     except InputError as error:
