@@ -17,8 +17,8 @@ class Event:
     kind and value: 'on' and 'off', number and word of the output, or the schedule that an arc instruction names, and ARC;
     'schedule', number of the output and what it is set to; 'wait', s; 'input', number; 'below', number and value of
     an analogue input; 'weave', its number, 0 where it ends; 'call', the program's name; 'layer', its number in a remark.
-    digits: half of the last digit. ahead: s before the end of the move before that it happens, with `digits`; None where
-    the machine stands there.
+    digits: half of the last digit. ahead: s before the end of the move before that it happens, with `digits`; before: mm of
+    the tip's way, in texts that tell these, `digits` too; both None where the machine stands there.
     """
 
     row: int
@@ -26,6 +26,7 @@ class Event:
     value: tuple[float | str, ...]
     digits: float = 0.0
     ahead: float | None = None
+    before: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -147,6 +147,17 @@ def lead_refused(before: Moves, seconds: float, lead: float) -> InputError:
     )
 
 
+def corner_refused(before: Moves, seconds: float, lead: float) -> InputError:
+    """The error for a deposit that is switched `lead` s before the end of the last of moves, of which the corner that is
+    rounded before it leaves only `seconds`."""
+    return InputError(
+        "TRIGGER_LEAD", place(before),
+        "the corner before the move at the end of which the deposit is switched is rounded, and leaves {:.3g} s of it, less "
+        "than the {:.3g} s that it would be switched ahead; use a program.trigger.lead no longer than that, a smaller "
+        "program.blend, or a larger strategy.chord_error", seconds, lead,
+    )
+
+
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:
     """Raises InputError NOTHING_TO_WRITE, UNSUPPORTED_AXES (other than `axes` of them) or UNREACHABLE."""
     moves = program.moves

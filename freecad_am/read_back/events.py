@@ -23,6 +23,7 @@ from ..core.program import (
     Weave,
 )
 from ..core.read_moves import ARC, Event, ReadMoves
+from .leads import speeds_of, timed
 from .planned import COMPUTED_AXIS, Planned
 
 # code and message of what is off, and the kinds of events that it is about
@@ -48,7 +49,7 @@ def event_issues(planned: Planned, program: Program, read: ReadMoves) -> list[Is
     issues = planned.issue("VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned")
     issues += planned.issue("VERIFY_WIRE", wrong, "the speed of the wire in the text is not the planned one")
     known = {issue.code for issue in issues}
-    found, due = _joined(read.events), _joined(_due(program))
+    found, due = _joined(timed(read.events, speeds_of(planned, read))), _joined(_due(program))
     for code, message, kinds in _FAMILIES:
         if code not in known:
             issues += _compared(planned, program, code, message, _of(found, kinds), _of(due, kinds))

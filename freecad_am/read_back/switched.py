@@ -13,6 +13,7 @@ from freecad_am.core.types import Array
 from ..core.issues import ERROR, Issue, Text
 from ..core.motion import Motion
 from ..core.read_moves import Event, ReadMoves
+from .leads import timed
 
 # s that a time in a text may be longer than that of its move: both are rounded to milliseconds
 MOST_LONGER = 0.002
@@ -30,7 +31,7 @@ def switching_issues(motion: Motion, read: ReadMoves) -> list[Issue]:
 
 def _issues(motion: Motion, read: ReadMoves) -> Iterator[Issue]:
     rows, on = np.flatnonzero(motion.moves), False
-    for event in read.events:
+    for event in timed(read.events, motion.speed[rows]):
         if event.kind not in ("on", "off"):
             continue
         if on and event.kind == "on":

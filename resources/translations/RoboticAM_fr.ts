@@ -11427,6 +11427,11 @@
         <translation>le programme de la commande règle les sorties analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the corner before the move at the end of which the deposit is switched is rounded, and leaves {0} s of it, less than the {1} s that it would be switched ahead; use a program.trigger.lead no longer than that, a smaller program.blend, or a larger strategy.chord_error</source>
+        <translation>le coin avant le mouvement à la fin duquel le dépôt est commuté est arrondi, et n&apos;en laisse que {0} s, moins que les {1} s d&apos;avance de la commutation ; utilisez un program.trigger.lead qui ne dépasse pas cette durée, un plus petit program.blend, ou une plus grande strategy.chord_error</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the deposit</source>
         <translation>le dépôt</translation>
@@ -12345,6 +12350,11 @@
         <location filename="../../freecad_am/read_back/times.py"/>
         <source>the times of a bead do not add up to the planned one</source>
         <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>the tip moves at {0} mm/s on the move at the end of which the deposit is switched, and the controller is told how far before it; give a retract distance, or leave program.trigger.lead out</source>
+        <translation>la pointe avance à {0} mm/s dans le mouvement à la fin duquel le dépôt est commuté, et l&apos;on indique au contrôleur à quelle distance de cette fin ; donnez une distance de retrait, ou omettez program.trigger.lead</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/external/level.py"/>

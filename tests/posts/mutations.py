@@ -193,6 +193,16 @@ TRIGGERS: dict[str, dict[str, tuple[str, Change]]] = {"fanuc": {
     "a trigger behind the end": (r" (TB) ", other("TA", "DB")),
     "a trigger on the next move": (rf"({_AHEAD})(    ;\r\n {{0,3}}\d+:[JL] [^\n;]*?)(?=    ;)", SWAP),
     "a trigger of its own": (rf"({_AHEAD})    ;", r"    ;\r\n   0:  \1 ;"),
+}, "abb": {
+    "a trigger dropped": (r"TriggL (\[[^\n]*),v_am\d+,g_o[nf]+\d", r"MoveL \1,v_am\\V:=5.000"),
+    "a trigger doubled": (r",(g_o[nf]+\d)(?=,fine)", r",\1\\T2:=\1"),
+    "a trigger at another place": (rf"TriggIO \w+,({NUMBER})", moved(0.05)),
+    "a trigger at a time": (rf"(TriggIO \w+,{NUMBER})", r"\1\\Time"),
+    "a trigger from the start": (rf"(TriggIO \w+,{NUMBER})", r"\1\\Start"),
+    "a trigger of another output": (r"TriggIO[^\n]*do(1)", one_more),
+    "a trigger the other way": (r"TriggIO[^\n]*,([01]);", other("0", "1")),
+    "another trigger": (r"(g_o[nf]+1)(?=,fine)", other("g_on1", "g_off1")),
+    "a trigger that is not set": (r"^    TriggIO[^\n]*\n", DROP),
 }}
 
 # machines with rotary axes: what both controllers have in common, and what each has of its own

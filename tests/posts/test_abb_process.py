@@ -15,10 +15,12 @@ from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.program import NcParameters, ProgramParameters, ScheduleParameters, TriggerParameters
 from freecad_am.core.planning.program import linear_approach
 from freecad_am.core.program import Call, DepositOff, DepositOn, Moves, WaitBelow, WaitInput, Weave
+from freecad_am.core.read_moves import Event
 from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
 from freecad_am.posts.abb import post as abb
 from freecad_am.posts.lines import lines_of as found_lines
+from freecad_am.read_back import leads
 from freecad_am.verify import verify
 from tests.posts.fanuc_programs import with_tool
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
@@ -32,6 +34,7 @@ FED = WireParameters(feed_mode="proportional")
 KINDS = {
     "arc": ("abb positioner", "cartesian"), "held": ("abb part-on-robot", "cartesian"),
     "ahead": ("abb tool-on-robot", "cartesian"), "joint": ("abb part-on-robot", "joint"),
+    "joint ahead": ("abb part-on-robot", "joint"), "turned ahead": ("abb positioner", "joint"),
     "wire": ("abb track", "cartesian"), "wire ahead": ("abb tool-on-robot", "cartesian"),
 }
 
@@ -55,7 +58,7 @@ def written(kind, most=2000, dry_run=False):
     if kind.startswith("wire"):
         motion = dataclasses.replace(motion, wire=np.where(motion.deposit, RATIO * motion.speed, np.nan))
         told["nc"] = NcParameters(wire_output=9, wire_gain=2.5)
-    if "ahead" in kind:
+    if "ahead" in kind and way == "cartesian":
         motion = linear_approach.with_short_approaches(motion, cell)
     parameters = ProgramParameters(post="abb", motion=way, max_points=most, dry_run=dry_run, **told)
     program = build(motion, cell, process, parameters, "job")
@@ -133,10 +136,11 @@ def test_each_bead_is_welded_at_its_speed_by_its_seam_and_weave_and_no_rapid_is(
     assert (kind == "arc") == ("weave2 weave4" in head)
 
 
-@pytest.mark.parametrize("kind", ["ahead", "joint", "wire ahead"])
+@pytest.mark.parametrize("kind", ["ahead", "joint", "wire ahead", "joint ahead", "turned ahead"])
 def test_the_deposit_is_switched_on_the_moves_onto_the_beads_and_at_their_ends(kind):
     _, motion, _, _ = written(kind)
-    on, off, row, triggered = [], [], 0, {}
+    on, off, row, triggered, early, lead = [], [], 0, {}, [], 0.0 if kind == "joint" else LEAD
+    rows = np.flatnonzero(motion.moves)
     for line in lines_of(kind):
         if found := re.match(r"TriggIO (\w+),(\S+?)\\DOp:=do1,([01]);", line):
             triggered[found[1]] = (found[2], found[3])
@@ -144,16 +148,18 @@ def test_the_deposit_is_switched_on_the_moves_onto_the_beads_and_at_their_ends(k
             used = [name for name in triggered if re.search(rf"[,=]{name}(?=[,\\])", line)]
             on += [row for name in used if triggered[name][1] == "1"]
             off += [row for name in used if triggered[name][1] == "0"]
+            early += [float(triggered[name][0]) - lead * motion.speed[rows][row] for name in used]
             assert len(used) < 2
             row += 1
-    when = "0" if kind == "joint" else f"{LEAD:.3f}\\Time"
-    assert {time for time, _ in triggered.values()} == {when} and len(triggered) == 2
+    # so far before the end of a move as the tip gets in the lead at the speed of that very move
+    assert np.abs(early).max() <= 0.00005 + lead * 0.0005 and len(early) == len(on + off)
+    assert (set(triggered) == {"g_on", "g_off"}) == (kind == "joint") == ({way for way, _ in triggered.values()} == {"0"})
     moved = motion.deposit[np.flatnonzero(motion.moves)]
     assert on == (np.flatnonzero(np.diff(moved.astype(int)) == 1)).tolist()
     assert off == (np.flatnonzero(np.diff(moved.astype(int)) == -1)).tolist()
     assert not any("SetDO" in line for line in lines_of(kind))
     # an IRC5 has no TriggAbsJ, so far as is known: Cartesian programs do without
-    assert any("TriggAbsJ" in line for line in lines_of(kind)) is (kind == "joint")
+    assert any("TriggAbsJ" in line for line in lines_of(kind)) is (KINDS[kind][1] == "joint")
 
 
 @pytest.mark.parametrize("kind", ["wire", "wire ahead"])
@@ -203,16 +209,24 @@ DAMAGE = [  # of which text, what is found in it, and what stands there then
     ("arc", r"d_am2(?=\\Weave:=weave4,fine)", "d_am1"),
     ("arc", r"(speeddata v_am1:=\[[^]]*,)5000", r"\g<1>2500"), ("arc", r"(speeddata v_am:=\[[^]]*,)1000(?=\])", r"\g<1>90"),
     ("held", r"(?m)^    ArcLEnd[^\n]*\n", ""), ("held", rf"(ArcLStart \[\[){N}", r"\g<1>0.100"),
-    ("ahead", r"0\.045\\Time", "0"), ("ahead", r"0\.045\\Time", "0.046\\\\Time"), ("ahead", r"(g_on,\S*do)1", r"\g<1>2"),
-    ("ahead", r"(g_off,\S*do1,)0", r"\g<1>1"), ("ahead", r"(?m)^    TriggIO g_off[^\n]*\n", ""),
-    ("ahead", r"TriggL (\[[^\n]*),v_am1,g_on", r"MoveL \1,v_am\\V:=100.000"), ("ahead", r"g_off(?=,fine)", "g_on"),
-    ("ahead", r"g_on(?=,fine)", "g_off"), ("ahead", r"(speeddata v_am1:=\[)[\d.]+", r"\g<1>8.100"),
+    ("ahead", rf"(TriggIO \w+,){N}", r"\g<1>0"), ("ahead", rf"(TriggIO \w+,){N}", r"\g<1>0.045\\Time"),
+    ("ahead", rf"(TriggIO \w+,{N})", r"\1\\Start"), ("ahead", r"(TriggIO \w+,)0(\.[1-9])\d+", r"\g<1>9\2"),
+    ("ahead", r"(TriggIO g_off\d+,\d+\.\d)(?!0+\\)\d+", r"\1"), ("ahead", r"(g_on\d+,\S*do)1", r"\g<1>2"),
+    ("ahead", r"(g_off\d+,\S*do1,)0", r"\g<1>1"), ("ahead", r"(?m)^    TriggIO g_off[^\n]*\n", ""),
+    ("ahead", r"g_off\d+(?=,fine)(?=[^\n]*\n(?:[^\n]*\n)*?[^\n]*(g_off\d+))", r"\1"),
+    ("ahead", r"TriggL (\[[^\n]*),v_am1,g_on", r"MoveL \1,v_am\\V:=100.000"), ("ahead", r"g_off\d+(?=,fine)", "g_on1"),
+    ("ahead", r"g_on\d+(?=,fine)", "g_off1"), ("ahead", r"(speeddata v_am1:=\[)[\d.]+", r"\g<1>8.100"),
     ("ahead", r"(?m)^    TriggL[^\n]*\n", ""), ("ahead", r"(?m)^(    Move[^\n]*\n)(    TriggL[^\n]*g_on[^\n]*\n)", r"\2\1"),
-    ("ahead", r"(?m)^(    TriggL [^\n]*g_on)", r"    SetDO do1,1;\r\n\1"), ("ahead", r"(g_off)(?=,fine)", r"\1\\T2:=g_on"),
+    ("ahead", r"(?m)^(    TriggL [^\n]*g_on)", r"    SetDO do1,1;\r\n\1"),
+    ("ahead", r"(g_off\d+)(?=,fine)", r"\1\\T2:=g_on1"),
     ("ahead", r"(?m)^  LOCAL VAR triggdata g_on[^\n]*\n", ""), ("ahead", rf"(TriggL \[\[){N}", r"\g<1>40.000"),
     ("joint", r"TriggAbsJ (\[[^\n]*T:=[\d.]+),g_on", r"MoveAbsJ \1"),
     ("joint", r"(?m)^(    TriggAbsJ \[)", r"    SetDO do1,1;\r\n\1"),
-    ("joint", r"(TriggIO g_off,)0(?=\\)", r"\g<1>0.002\\Time"), ("joint", rf"(TriggAbsJ \[\[){N}", r"\g<1>1.0000"),
+    ("joint", r"(TriggIO g_off,)0(?=\\)", r"\g<1>0.002\\Time"), ("joint", r"(TriggIO g_off,)0(?=\\)", r"\g<1>0.0100"),
+    ("joint ahead", rf"(TriggIO \w+,){N}", r"\g<1>0"), ("joint ahead", rf"(TriggIO \w+,){N}", r"\g<1>0.045\\Time"),
+    ("joint ahead", r"(TriggIO g_off\d+,\d+\.\d)(?!0+\\)\d+", r"\1"), ("joint ahead", r"g_off\d+(?=,fine)", "g_on1"),
+    ("joint ahead", r"(TriggIO \w+,\d+\.)\d", r"\g<1>91"), ("turned ahead", r"(TriggIO \w+,\d+\.)\d", r"\g<1>91"),
+    ("joint", rf"(TriggAbsJ \[\[){N}", r"\g<1>1.0000"),
     ("joint", r"(TriggAbsJ [^\n]*T:=)([\d.]+)", r"\g<1>0.77777"),
     ("wire", r"(ao9,)(\d\.\d+)", r"\g<1>0.6400000"), ("wire", r"ao9,0;", "ao8,0;"), ("wire", r"ao9", "ao8"),
     ("wire", r"\\T2:=s_off", ""),
@@ -220,7 +234,7 @@ DAMAGE = [  # of which text, what is found in it, and what stands there then
     ("wire", r"s_am1(?=,z)", r"s_am1\\T2:=s_off"), ("wire", r"v_am1(?=,s_am1)", "v_am2"), ("wire", r"(0\\Start)", "5"),
     ("wire", r"(?m)^    SetDO do1,1;\r\n", ""), ("wire", r"T2:=s_off", "T3:=s_off"),
     ("wire", r"(s_am1,0\\Start,)0", r"\g<1>0.1"),
-    ("wire ahead", r"\\T3:=g_off", ""), ("wire ahead", r"\\T2:=s_off\\T3:=g_off", r"\\T2:=g_off\\T3:=s_off,"),
+    ("wire ahead", r"\\T3:=g_off\d+", ""), ("wire ahead", r"\\T2:=s_off\\T3:=(g_off\d+)", r"\\T2:=\1\\T3:=s_off,"),
 ]  # fmt: skip
 
 
@@ -254,7 +268,7 @@ def test_no_module_and_no_routine_that_is_called_has_the_name_of_what_the_progra
 def test_a_trigger_on_a_corner_is_not_read():
     """By itself, without a plan: the time of a trigger counts from where the robot stops."""
     files = written("ahead")[3]
-    damaged = files["job.mod"].replace(b"g_on,fine", b"g_on,z_am1", 1)
+    damaged = files["job.mod"].replace(b"g_on1,fine", b"g_on1,z_am1", 1)
     with pytest.raises(InputError) as error:
         abb.read({"job.mod": damaged})
     assert "a corner has no end" in error.value.message
@@ -325,6 +339,43 @@ def test_what_does_not_go_together_is_refused_before_planning(process, program, 
     with pytest.raises(InputError) as error:
         refuse(planned(setup)[0], ProcessParameters(**process), asked)
     assert error.value.code == code and words in error.value.message
+
+
+def ending_at(of, speed):
+    """The program with the last moves of its beads at another speed of the tip, and the time that this takes."""
+    def slower(block):
+        if not isinstance(block, Moves) or block.kind != "deposit":
+            return block
+        last = np.arange(len(block)) == len(block) - 1
+        duration = np.where(last, block.duration * block.speed / speed, block.duration)
+        return dataclasses.replace(block, speed=np.where(last, speed, block.speed), duration=duration)
+
+    return dataclasses.replace(of, blocks=tuple(map(slower, of.blocks)))
+
+
+@pytest.mark.parametrize("of", [TOOL, JOINT])
+def test_rounding_moves_no_switch_by_more_than_half_a_millisecond_and_slower_moves_are_refused(of):
+    for speed in (0.1, 0.123, 0.7891, 7.7777):
+        for lead in (0.0007, 0.0123, 0.1, 0.15):
+            program = ending_at(told(of, "ahead", ahead=lead), speed)
+            kept = np.round(speed, 3) if of is TOOL else speed
+            (early,) = {event.before / kept for event in abb.read(abb.write(program)).events if event.kind == "off"}
+            assert abs(early - lead) <= leads.MOST_DIGITS + 1e-12
+    slow = ending_at(told(of, "ahead", ahead=0.02), 0.09)
+    with pytest.raises(InputError) as error:
+        abb.write(slow)
+    assert error.value.code == "TRIGGER" and "0.09 mm/s" in error.value.message
+    abb.write(ending_at(told(of, "ahead", ahead=0.0), 0.09))  # where it ends, whatever the speed
+
+
+def test_a_way_is_as_long_ahead_as_the_tip_takes_for_it_on_that_very_move():
+    ways = ((1, 0.5), (2, 0.5), (3, 0.5), (4, 0.0))
+    events = tuple(Event(row, "off", (1.0, "do"), 0.00005, before=way) for row, way in ways)
+    other = Event(2, "on", (1.0, "do"), 0.001, ahead=0.03)
+    first, second, third, fourth, fifth = leads.timed((*events, other), np.array([10.0, 0.05, 0.0, 0.0]))
+    assert (first.ahead, first.digits, first.before) == (0.05, 5e-6, None)
+    assert (second.ahead, second.digits) == (10.0, leads.MOST_DIGITS)  # digits explain no more than that
+    assert np.isnan(third.ahead) and (fourth.ahead, fourth.digits) == (0.0, 0.0) and fifth is other
 
 
 def many_speeds(block):

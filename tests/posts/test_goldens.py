@@ -15,6 +15,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.posts import catalogue
 from tests.posts import (
     test_abb,
+    test_abb_process,
     test_fanuc,
     test_fanuc_trigger,
     test_kuka,
@@ -75,6 +76,7 @@ OPTIONAL = {
     **{("fanuc", motion, setup, "trigger"): (EARLY[names], "fanuc", names) for motion, setup, names in (
         ("joint", TOOL, "EARLY.LS"), ("cartesian", TOOL, "EARLYTAB.LS"), ("joint", "positioner", "EARLYGRP*.LS"))},
     ("kuka", "cartesian", TOOL, "trigger"): (KUKA["trigger"], "kuka/trigger", "*"),
+    ("abb", "cartesian", TOOL, "trigger"): (test_abb_process.GOLDENS["ahead"], "abb/ahead", "*"),
 }
 ALL = GOLDENS | OPTIONAL
 EXTERNAL = {"positioner": {"rotary"}, "track": {"linear"}, BOTH: {"rotary", "linear"}}
@@ -111,12 +113,15 @@ def test_golden_files_are_what_is_written_and_come_back_as_its_numbers(root, cel
     read, joints = catalogue.load(post).read(files), column(of, "joints")
     deposit = np.repeat([run.kind == "deposit" for run in of.moves], [len(run) for run in of.moves])
     assert read.deposit.tolist() == deposit.tolist()
-    assert read.linear.tolist() == (deposit & (motion == "cartesian")).tolist()
+    # moves onto beads on which an ABB switches the deposit are linear ones too
+    straight = np.repeat([run.interpolation == "linear" for run in of.moves], [len(run) for run in of.moves])
+    linear = (deposit | straight) & (motion == "cartesian")
+    assert read.linear.tolist() == linear.tolist()
     slides = np.array([*(False,) * (joints.shape[1] - len(of.external_kinds)), *(
         kind == "linear" for kind in of.external_kinds)])
     if setup == TABLE:
         slides[:3] = True
-    by_joints = ~deposit if motion == "cartesian" and post != "yaskawa" else np.ones(len(joints), bool)
+    by_joints = ~linear if motion == "cartesian" and post != "yaskawa" else np.ones(len(joints), bool)
     if read.joints is None:
         assert (post, motion) == ("fanuc", "cartesian") or post == "ur"
     else:

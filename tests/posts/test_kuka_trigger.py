@@ -6,10 +6,12 @@ import dataclasses
 import functools
 import re
 
+import numpy as np
 import pytest
 
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.parameters.program import ProgramParameters, TriggerParameters
+from freecad_am.core.program import DepositOn
 from freecad_am.posts.kuka import post as kuka
 from freecad_am.verify import verify
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
@@ -70,3 +72,33 @@ def test_a_lead_longer_than_the_move_is_by_whole_percents_is_refused():
     with pytest.raises(InputError) as error:
         made(NAMES[0], 0.1999)
     assert (error.value.code, str(error.value.where)) == ("TRIGGER_LEAD", "layer 0 bead 0")
+
+
+@pytest.mark.parametrize("blend", [100, 30, 0])
+def test_a_delay_does_not_reach_back_into_the_corner_before_the_last_move_of_a_bead(blend):
+    """It would not come before that corner ends; where there is none, all of the move is before its end."""
+    cell, _, motion = planned(NAMES[0])
+
+    def ended(lead):
+        asked = ProgramParameters(post="kuka", motion="cartesian", blend=blend, trigger=TriggerParameters(lead=lead))
+        program = build(motion, cell, BARE, asked, "job")
+        blocks = [dataclasses.replace(one, ahead=None) if isinstance(one, DepositOn) else one for one in program.blocks]
+        return dataclasses.replace(program, blocks=tuple(blocks))
+
+    text = kuka.write(ended(0.0))["job.src"].decode()
+    corners = [float(size) for size in re.findall(r"APO\.CDIS=([\d.]+)", text)]
+    assert bool(corners) == bool(blend)
+    beads = [run for run in ended(0.0).moves if run.kind == "deposit"]
+    free = []
+    for run in beads:
+        corner = 0.005 * blend * (run.speed * run.duration).min()  # mm, of half the shortest move
+        assert not blend or min(abs(corner - size) for size in corners) <= 0.001
+        free.append(run.duration[-1] - corner / run.speed[-1])
+    least = min(free)
+    assert 0.05 < least < 0.45
+    kuka.write(ended(np.floor(1000.0 * least) / 1000.0))
+    with pytest.raises(InputError) as error:
+        kuka.write(ended(np.ceil(1000.0 * least) / 1000.0 + 0.002))
+    assert error.value.code == "TRIGGER_LEAD" and ("corner" in error.value.message) == bool(blend)
+    where = [f"layer {run.layer} bead {run.bead}" for run, there in zip(beads, free) if there <= least + 0.002]
+    assert str(error.value.where) in where

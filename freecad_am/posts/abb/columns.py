@@ -87,18 +87,18 @@ class Run:
         """Whether the last move passes through its end."""
         return bool(self.time_or_speed) and not np.isnan(self.rounding[-1])
 
-    def happens(self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None) -> None:
-        """Something happens before the next move."""
-        self.events.append(Event(len(self.time_or_speed), kind, value, digits, ahead))
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0, before: float | None = None) -> None:
+        """Something happens before the next move, or so far before the end of the last one."""
+        self.events.append(Event(len(self.time_or_speed), kind, value, digits, before=before))
 
     def keep_switch(
-        self, output: str, on: bool, word: str, where: str, digits: float = 0.0, ahead: float | None = None
+        self, output: str, on: bool, word: str, where: str, digits: float = 0.0, before: float | None = None
     ) -> None:
         """The deposit is switched by an output, or by a seam of the arc where it is ARC."""
         if self.output not in ("", output if word != ARC else ARC):
             raise unreadable(where, "a second output is switched")
         self.output, self.on, self.fed = ARC if word == ARC else output, on, False
-        self.happens("on" if on else "off", float(output), word, digits=digits, ahead=ahead)
+        self.happens("on" if on else "off", float(output), word, digits=digits, before=before)
 
     def keep_move(self, module: Module, move: Move, where: str) -> None:
         """Keep a move."""

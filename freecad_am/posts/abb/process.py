@@ -15,15 +15,18 @@ from typing import TypeVar
 
 from ...core.issues import InputError
 from ...core.program import Block, DepositOff, DepositOn, Moves, Program, Weave
+from ..parts import place
 from ..refusals import Asked, schedule_refused, weave_refused, wire_refused
 from . import text
 
-# names of a module's own data: speeds, weld data and triggers of the wire, by number; switching on and off
+# names of a module's own data, by number but for FEED_END: speeds, weld data, triggers of the wire, switching on and off
 SPEED, WELD, FEED, FEED_END, ON, OFF = "v_am", "d_am", "s_am", "s_off", "g_on", "g_off"
 TRIGGER_NAMES = (FEED_END, ON, OFF)
 MOST_NAMES = 500  # of speeds, or data of one kind, in a module: each is a line that the controller keeps
 ARC, CARTESIAN = "arc", "cartesian"
 LAST_WEAVE, LAST_SEAM = 255, 9999
+WAY_DECIMALS = 4  # of the mm before the end of a move at which an output is switched
+SLOWEST = 0.1  # mm/s of the tip at which these decimals tell a time to half a millisecond
 _Key = TypeVar("_Key")
 _NO_ARC = "[0,0,0,0,0,0,0,0,0]"
 
@@ -101,8 +104,7 @@ class Process:
         self._speeds: dict[str, str] = {}
         self._welds: dict[tuple[int, str], str] = {}
         self._feeds: dict[str, str] = {}
-        leads = [one.lead for one in self._aboard if one.lead is not None]
-        self._lead = leads[0] if leads else 0.0
+        self._switches: dict[str, dict[str, str]] = {ON: {}, OFF: {}}
 
     def __call__(self, moves: Moves) -> Sequence[str]:
         """Speed, process and zone of each move."""
@@ -117,8 +119,7 @@ class Process:
         if not fed and own.lead is None:
             return words
         last = len(words) - 1
-        at_end = [*([FEED_END] if fed and own.ends else []), *([ON] if own.on is not None else []),
-                  *([OFF] if own.off is not None else [])]
+        at_end = [*([FEED_END] if fed and own.ends else []), *self._switched(own, words[last])]
         rows = range(len(words)) if fed else (last,)
         words = list(words)
         for row in rows:
@@ -152,6 +153,24 @@ class Process:
         """The trigger by which the output follows the speed of the tip, mm/s: of wire in m/min there are `ratio` as many."""
         return _numbered(self._feeds, FEED, f"{0.06 * self._program.nc.wire_gain * ratio:#.7G}")
 
+    def _switched(self, own: Aboard, word: str) -> list[str]:
+        """The triggers that switch the deposit before the end of a run whose last word that is. RAPID counts a time from
+        where the robot stops, no farther back than it brakes; a way, at the speed of that very move, has no such end."""
+        if own.lead is None:
+            return []
+        kind = OFF if own.on is None else ON
+        if own.lead <= 0.0:
+            return [self._switches[kind].setdefault("0", kind)]
+        said = word.partition(",")[0]
+        speed = float(_speed_in(said)) if "\\V:=" in said else float(own.moves.speed[-1])
+        if not speed >= SLOWEST:
+            raise InputError(
+                "TRIGGER", place(own.moves),
+                "the tip moves at {:.2g} mm/s on the move at the end of which the deposit is switched, and the controller "
+                "is told how far before it; give a retract distance, or leave program.trigger.lead out", speed,
+            )
+        return [_numbered(self._switches[kind], kind, f"{own.lead * speed:.{WAY_DECIMALS}f}")]
+
     def arc_start(self, schedule: int) -> str:
         """The word of the instruction that strikes the arc where the next bead starts."""
         own = self._aboard[self._at]
@@ -169,8 +188,8 @@ class Process:
 
     def data(self, used: Collection[str]) -> list[str]:
         """Declarations of the data whose names are used. InputError MOVE_SPEED where a module would have too many."""
-        for all_names in (self._speeds, self._welds, self._feeds):
-            if len(set(all_names.values()) & set(used)) > MOST_NAMES:
+        for all_names in self._all_names:
+            if len(set(all_names) & set(used)) > MOST_NAMES:
                 raise InputError(
                     "MOVE_SPEED", "program.max_points", "a module would have more than {} speeds, each of which is data of "
                     "its own here; use fewer speeds, or a smaller program.max_points", MOST_NAMES,
@@ -179,7 +198,8 @@ class Process:
                   for speed, name in self._speeds.items() if name in used]
         welds = [f"LOCAL PERS welddata {name}:=[{speed},{speed},{_NO_ARC},{_NO_ARC}];"
                  for (_, speed), name in self._welds.items() if name in used]
-        names = [name for name in (*self._feeds.values(), *TRIGGER_NAMES) if name in used]
+        switches = [name for names in self._switches.values() for name in names.values()]
+        names = [name for name in (*self._feeds.values(), FEED_END, *switches) if name in used]
         return [*speeds, *welds, *(f"LOCAL VAR triggdata {name};" for name in names)]
 
     def setup(self, used: Collection[str]) -> list[str]:
@@ -193,16 +213,21 @@ class Process:
         lines += [f"    TriggSpeed {name},0\\Start,0,{analogue},{scale};"
                   for scale, name in self._feeds.items() if name in used]
         lines += [f"    TriggSpeed {FEED_END},0,0,{analogue},0;"] if FEED_END in used else []
-        when = f"{self._lead:.3f}\\Time" if self._lead > 0.0 else "0"
         output = f"do{self._program.deposit_output}"
-        switches = [f"    TriggIO {name},{when}\\DOp:={output},{value};" for name, value in ((ON, 1), (OFF, 0))
-                    if name in used]
+        switches = [f"    TriggIO {name},{way}\\DOp:={output},{int(kind == ON)};"
+                    for kind, names in self._switches.items() for way, name in names.items() if name in used]
         return lines + switches
 
     @property
     def names(self) -> list[str]:
         """Names of the program's own data."""
-        return [*self._speeds.values(), *self._welds.values(), *self._feeds.values()]
+        return [name for names in self._all_names for name in names]
+
+    @property
+    def _all_names(self) -> list[list[str]]:
+        """The same, each kind by itself."""
+        kinds = [self._speeds.values(), self._welds.values(), self._feeds.values()]
+        return [list(names) for names in (*kinds, *(switches.values() for switches in self._switches.values()))]
 
     @property
     def declared(self) -> list[str]:

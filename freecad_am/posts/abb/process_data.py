@@ -11,7 +11,7 @@ from .modules import Module, unreadable
 
 _TAKEN = re.compile(r"(\w+):=weld([1-9]\d*);$")
 _SPEED = re.compile(r"(\w+)\.(org_)?weld_speed:=(\d+\.(\d+));$")
-_SWITCH = re.compile(r"TriggIO (\w+),(?:0|(\d+\.(\d+))\\Time)\\DOp:=do(\d+),([01]);$")
+_SWITCH = re.compile(r"TriggIO (\w+),(\d+(?:\.(\d+))?)\\DOp:=do(\d+),([01]);$")
 _FEED = re.compile(r"TriggSpeed (\w+),0\\Start,0,ao(\d+),(\d+(?:\.(\d+))?)(?:E([-+]\d+))?;$")
 _FEED_END = re.compile(r"TriggSpeed (\w+),0,0,ao(\d+),0;$")
 
@@ -28,11 +28,11 @@ class Weld:
 
 @dataclass(frozen=True)
 class Switch:
-    """A digital output that is set so long, s, before the end of a move; digits: half of the last one."""
+    """A digital output that is set so far, mm of the tip's way, before the end of a move; digits: half of the last one."""
 
     output: str
     on: bool
-    ahead: float
+    before: float
     digits: float
 
 
@@ -62,7 +62,7 @@ class ProcessData:
             self._keep_speed(speed, module, where)
         elif switch := _SWITCH.match(line):
             digits = 0.5 * 10.0 ** -len(switch[3]) if switch[3] else 0.0
-            kept = Switch(switch[4], switch[5] == "1", float(switch[2] or 0.0), digits)
+            kept = Switch(switch[4], switch[5] == "1", float(switch[2]), digits)
             self._keep_trigger(switch[1], kept, module, where)
         elif feed := _FEED.match(line):
             power = 10.0 ** int(feed[5] or 0)

@@ -83,7 +83,7 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
         if isinstance(trigger, Switch):
             if run.moving:
                 raise unreadable(where, "a corner has no end from which the time of a trigger counts")
-            run.keep_switch(trigger.output, trigger.on, "do", where, trigger.digits, trigger.ahead)
+            run.keep_switch(trigger.output, trigger.on, "do", where, trigger.digits, trigger.before)
 
 
 def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:

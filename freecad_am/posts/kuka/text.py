@@ -16,7 +16,7 @@ from ...core.orientation import MOVING_ZYX
 from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 from ..names import plain
 from ..parts import place
-from ..refusals import lead_refused, speeds_within
+from ..refusals import corner_refused, lead_refused, speeds_within
 from . import arc, switching
 
 END_OF_LINE = "\r\n"
@@ -95,6 +95,8 @@ class Lines:
             assert moves.position is not None and moves.rotation is not None
             size = self._rounding(moves)
             corners = [_STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()]
+            if _ROUNDED in corners[-2:-1]:
+                self._refuse_in_corner(moves, size)
             speeds = [f"$VEL.CP={0.001 * speed:.6f}" for speed in speeds_within(moves, *SPEEDS).tolist()]
             rows = np.hstack((frames(moves.position, moves.rotation), values[:, self._own :])).tolist()
             lines = [f"{self._unhindered}{speed}|{self._lin % tuple(row)}{corner}"
@@ -138,6 +140,13 @@ class Lines:
         if lead > seconds + MILLISECOND and (self._before is not None or len(moves) > 1):
             raise lead_refused(moves, seconds, lead)
         return [int(value) for value in whole]
+
+    def _refuse_in_corner(self, moves: Moves, size: float) -> None:
+        """Raises InputError TRIGGER_LEAD where a delay would reach back into the corner, of so many mm, before the last
+        move: it would not reach farther than where that ends."""
+        lead, seconds = self._leads.get(id(moves), 0.0), float(moves.duration[-1] - size / moves.speed[-1])
+        if lead > seconds + MILLISECOND:
+            raise corner_refused(moves, seconds, lead)
 
     def _rounding(self, moves: Moves) -> float:
         """mm: corners are rounded within half the shortest move of the bead at most."""

@@ -9,26 +9,26 @@ MODULE wire
   LOCAL CONST speeddata v_am2:=[5.000,500,5000,1000];
   LOCAL VAR triggdata s_am1;
   LOCAL VAR triggdata s_off;
-  LOCAL VAR triggdata g_on;
-  LOCAL VAR triggdata g_off;
+  LOCAL VAR triggdata g_on1;
+  LOCAL VAR triggdata g_off1;
   PROC main()
     ConfL\Off;
     SingArea\Off;
     TriggSpeed s_am1,0\Start,0,ao1,0.2100000;
     TriggSpeed s_off,0,0,ao1,0;
-    TriggIO g_on,0.020\Time\DOp:=do1,1;
-    TriggIO g_off,0.020\Time\DOp:=do1,0;
+    TriggIO g_on1,0.1200\DOp:=do1,1;
+    TriggIO g_off1,0.1000\DOp:=do1,0;
     ! layer 0
     MoveAbsJ [[0.0000,-30.0000,120.0000,0.0000,60.0000,0.0000],[9E9,9E9,9E9,9E9,9E9,9E9]]\NoEOffs,v_am\T:=0.50000,fine,t_am\WObj:=w_am;
-    TriggL [[12.000,0.250,105.000],[0.7071068,0.0000000,0.0000000,0.7071068],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,g_on,fine,t_am\WObj:=w_am;
+    TriggL [[12.000,0.250,105.000],[0.7071068,0.0000000,0.0000000,0.7071068],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,g_on1,fine,t_am\WObj:=w_am;
     TriggL [[10.000,0.250,105.000],[1.0000000,0.0000000,0.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am2,s_am1,z_am1,t_am\WObj:=w_am;
     TriggL [[12.000,0.250,105.000],[0.7071068,0.0000000,0.0000000,0.7071068],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am2,s_am1,z_am1,t_am\WObj:=w_am;
-    TriggL [[14.000,0.500,105.000],[0.0000000,0.0000000,1.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am2,s_am1\T2:=s_off\T3:=g_off,fine,t_am\WObj:=w_am;
+    TriggL [[14.000,0.500,105.000],[0.0000000,0.0000000,1.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am2,s_am1\T2:=s_off\T3:=g_off1,fine,t_am\WObj:=w_am;
     ! layer 1
     MoveAbsJ [[0.5000,-30.0000,120.0000,0.0000,60.0000,0.0000],[9E9,9E9,9E9,9E9,9E9,9E9]]\NoEOffs,v_am\T:=0.50000,fine,t_am\WObj:=w_am;
-    TriggL [[12.000,0.250,106.000],[0.7071068,0.0000000,0.0000000,0.7071068],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,g_on,fine,t_am\WObj:=w_am;
+    TriggL [[12.000,0.250,106.000],[0.7071068,0.0000000,0.0000000,0.7071068],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am1,g_on1,fine,t_am\WObj:=w_am;
     TriggL [[10.000,0.250,105.000],[1.0000000,0.0000000,0.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am2,s_am1,z_am1,t_am\WObj:=w_am;
     TriggL [[12.000,0.250,106.000],[0.7071068,0.0000000,0.0000000,0.7071068],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am2,s_am1,z_am1,t_am\WObj:=w_am;
-    TriggL [[14.000,0.500,105.000],[0.0000000,0.0000000,1.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am2,s_am1\T2:=s_off\T3:=g_off,fine,t_am\WObj:=w_am;
+    TriggL [[14.000,0.500,105.000],[0.0000000,0.0000000,1.0000000,0.0000000],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v_am2,s_am1\T2:=s_off\T3:=g_off1,fine,t_am\WObj:=w_am;
   ENDPROC
 ENDMODULE
