@@ -31,7 +31,6 @@ LONG_FUNCTIONS = {
     "core/strategies/solids/filling.py filled": 47,
     "core/strategies/solids/lean.py _spread": 46,
     "core/strategies/solids/plan.py plan": 63,
-    "gui/panels/stage.py __init__": 41,
     "gui/redundancy_map/controls.py __init__": 50,
     "gui/tools/export_path.py __init__": 47,
     "objects/planned/proposed_family.py proposed": 66,

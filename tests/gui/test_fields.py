@@ -88,13 +88,16 @@ def test_another_number_is_shown_in_a_plain_line_and_read_as_it_is(person):
     assert field.read() == 9.0
 
 
-def test_a_field_that_cannot_show_another_value_says_so(person):
+def test_every_field_shows_another_value_and_an_expression(person):
     known = {row.key: row for row in rows(CellParameters)}
     field = fields.make(known["platform_diameter"], 120.0)
     field.show(30.5)
     assert (field.value, field.changed) == (30.5, True)
-    with pytest.raises(NotImplementedError, match="Platform"):
-        fields.make(known["platform"], 120.0).show(30.5)
+    field.show("=Sheet.height")
+    assert field.value == "=Sheet.height"
+    text = fields.make(known["platform"], 120.0)
+    text.show(30.5)
+    assert (text.value, text.changed) == ("30.5 mm", True)
 
 
 @pytest.mark.parametrize(("unit", "text"), [("mm/s", "7 mm"), ("mm/s", "20 s"), ("mm/s", "7 kg"), ("mm", "3 deg")])

@@ -9,6 +9,7 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
+from freecad_am.gui.panels import of_stages
 from freecad_am.objects.surface_feature import SurfaceFeature
 
 PANEL = "RoboticAM_RevolutionFeature"
@@ -41,6 +42,91 @@ def test_apply_makes_then_changes_in_a_step_each_and_cancel_leaves_it(person, he
     assert len(api.stages_of(document)) == 1
     person.gui.runCommand("Std_Undo")
     assert feature.LayerHeight.Value == 9.0
+
+
+def test_after_undo_and_redo_the_fields_show_what_the_document_has(person, hand, hemisphere):
+    document = hemisphere.Document
+    cell = api.make_cell(document, deposition_point="1000 50 900")
+    person.double_click(cell)
+    panel, steps = person.panel("RoboticAM_Cell"), document.UndoCount
+    y, branch, diameter = (person.field(panel, name) for name in ("DepositionPointY", "Branch", "PlatformDiameter"))
+    first = branch.currentText()
+    hand.enter(panel, "DepositionPointY", "60 mm")
+    person.type(panel, "Branch", "front up flip")
+    hand.click(applies(person))  # which has the keys then
+    person.until(lambda: document.UndoCount == steps + 1, "what is applied", 10)
+    assert (cell.DepositionPoint.Base.y, cell.Branch, document.UndoCount) == (60.0, "front up flip", steps + 1)
+    person.type(panel, "PlatformDiameter", "410 mm")  # and not applied
+    hand.undo()
+    person.until(lambda: y.property("rawValue") == 50.0, "what the document has", 5)
+    assert (branch.currentText(), diameter.property("rawValue")) == (first, 410.0)
+    hand.redo()
+    person.until(lambda: y.property("rawValue") == 60.0, "what is done again", 5)
+    hand.undo()
+    person.until(lambda: y.property("rawValue") == 50.0, "what is undone again", 5)
+    hand.enter(panel, "DepositionPointY", "60 mm")
+    person.press("Ok")
+    person.panel_closed()
+    assert (cell.DepositionPoint.Base.y, cell.Branch, cell.PlatformDiameter.Value) == (60.0, first, 410.0)
+
+
+def test_undo_shows_every_kind_of_field_and_input_as_a_panel_that_is_opened_then_does(person, hemisphere):
+    """Expressions, flags, counts, choices, lists, links and names."""
+    document = hemisphere.Document
+    first, second = (api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5) for _ in range(2))
+    cell = api.make_cell(document)
+    toolpath = api.make_toolpath(document, first, cell)
+    path = api.make_joint_path(document, toolpath, cell)
+    program = api.make_program(document, path)
+    other = api.make_toolpath(document, second, cell)
+    for obj, values in (
+        (second, {"layer_height": "=7 mm + 8 mm", "path": "spiral"}),
+        (other, {"feature": first, "travel_speed": "=5 mm/s"}),
+        (path, {"toolpath": other, "method": "point-by-point", "rotation_range_low": -90}),
+        (program, {"name": "other", "dry_run": True, "max_points": 1000}),
+    ):
+        name = f"RoboticAM_{type(obj.Proxy).__name__}"
+        of_stages.edit(obj)
+        person.idle()
+        panel = person.panel(name)
+        before = held(person, panel)
+        api.change(obj, **values)
+        person.press("Cancel")
+        person.panel_closed()
+        of_stages.edit(obj)
+        person.idle()
+        panel = person.panel(name)
+        after = held(person, panel)
+        assert len({key for key in after if after[key] != before[key]}) >= len(values) - 1, name
+        for command, wanted in (("Undo", before), ("Redo", after), ("Undo", before)):
+            person.gui.runCommand(f"Std_{command}")
+            person.idle(0.2)
+            assert held(person, panel) == wanted, f"{name}, {command}"
+        steps = document.UndoCount
+        person.press("Ok")
+        person.panel_closed()
+        assert document.UndoCount == steps, f"{name}: nothing is left to be changed"
+
+
+def applies(person):
+    """The button Apply of the panel that is open."""
+    boxes = [one for one in person.window.findChildren(person.widgets.QDialogButtonBox) if one.isVisible()]
+    return next(filter(None, (one.button(person.widgets.QDialogButtonBox.Apply) for one in boxes)))
+
+
+def held(person, panel):
+    """What the fields of a panel show."""
+    w = person.widgets
+    kinds = {w.QLineEdit: "text", w.QComboBox: "currentText", w.QCheckBox: "isChecked", w.QSpinBox: "value"}
+    found = {}
+    for kind, read in kinds.items():
+        for widget in panel.findChildren(kind):
+            name = widget.objectName() if not widget.objectName().startswith("qt_") else widget.parent().objectName()
+            if name and not name.startswith("qt_") and not name.endswith("Shown"):
+                found[name, read] = getattr(widget, read)()
+    for one in panel.findChildren(w.QListWidget, "FeatureOrder"):
+        found["FeatureOrder", ""] = [one.item(row).text() for row in range(one.count())]
+    return found
 
 
 def test_an_expression_is_typed_into_a_field_and_given_up_again(person, hand, hemisphere):

@@ -49,6 +49,13 @@ class ProposingPanel(PreviewPanel):
             self.put.update((place, self._holds(place)) for place in (POINT, BRANCH))
         self.proposing, self.suiting = Background(self.form), Background(self.form)
 
+    def follow_undo(self) -> None:
+        """What comes back is the user's, to which nothing is proposed."""
+        super().follow_undo()
+        self.proposing.cancel()
+        self.suiting.cancel()
+        self.before = (self.places[MACHINE][0].value, self._widget(SETUP).currentData())
+
     def _widget(self, place: str) -> Any:
         return self.places[place][0].widget
 

@@ -17,13 +17,13 @@ from ...objects.inspection import KINDS
 from ...objects.stage import stage_of
 from ...objects.stage_parts import Link
 from .. import recorded
-from ..picking import inputs
+from ..picking.an_input import Input
 from ..picking.picking import usable
 from ..picking.selection import meant
 from ..texts.translation import tr, translated
 
 
-class PlannedChoice(inputs.Input):
+class PlannedChoice(Input):
     """A feature, a toolpath, or an object with a shape or mesh: the present one, else the selected one or that of the job
     that is selected, else the last feature."""
 
@@ -55,6 +55,9 @@ class PlannedChoice(inputs.Input):
         stage = None if obj is None else stage_of(obj)
         return "" if stage is None else str(stage.kind)
 
+    def show_stored(self, stored: Any) -> None:
+        self.widget.setCurrentIndex(-1 if stored is None else self.widget.findData(stored.Name))
+
     @property
     def missing(self) -> str:
         return "" if self.widget.count() else tr("There is nothing to compare with in this document; open the part first.")
@@ -67,7 +70,7 @@ class PlannedChoice(inputs.Input):
         return {"planned": "None" if chosen is None else recorded.reference(chosen)}
 
 
-class FileChoice(inputs.Input):
+class FileChoice(Input):
     """The file of measured points, typed or chosen."""
 
     def __init__(self, path: str) -> None:
@@ -95,6 +98,12 @@ class FileChoice(inputs.Input):
         for widget in (self.line, self.button, self.predict):
             row.addWidget(widget)
         self.widget.setObjectName("File")
+
+    def stored(self, obj: Any) -> Any:
+        return obj.File
+
+    def show_stored(self, stored: Any) -> None:
+        self.line.setText(stored)
 
     @property
     def missing(self) -> str:

@@ -15,7 +15,7 @@ from ...core.parameters.field import check_value
 from ...objects.fields import expressions
 from ...objects.stage import Stage
 from ..colours import WRONG
-from ..picking import inputs
+from ..picking.an_input import Input
 from ..texts.translation import translated, translated_error
 from ..widgets import fields
 from ..widgets.fold import Fold
@@ -27,7 +27,7 @@ class Noted:
 
     draft = ""  # the name in errors of what is not made yet
     proxy: type[Stage]
-    choices: Sequence[inputs.Input]
+    choices: Sequence[Input]
     obj: Any
     document: Any
     form: Any

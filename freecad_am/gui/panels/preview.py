@@ -19,7 +19,8 @@ from ...objects.work import hooks
 from ..background.later import Background
 from ..background.worker import Worker
 from ..colours import WRONG
-from ..picking.inputs import Input, StageChoice
+from ..picking.an_input import Input
+from ..picking.inputs import StageChoice
 from ..texts.translation import tr, translated_error
 from ..views.preview import Draft, Preview
 from .stage import CLOSED, StagePanel

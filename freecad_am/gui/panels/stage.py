@@ -15,6 +15,7 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import AmError, InputError
 from ...objects.fields import expressions, preferences
+from ...objects.fields.link_targets import is_there
 from ...objects.fields.rows import group_of, rows
 from ...objects.results.findings import issues_of, message_of
 from ...objects.stage import Stage
@@ -22,14 +23,14 @@ from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.later import Later
 from ..colours import WRONG
-from ..picking import inputs
+from ..picking.an_input import Input
 from ..signals import connect
 from ..texts.translation import marked, tr, translated
 from ..widgets import fields, suggestions
 from ..widgets.fold import Fold
 from ..widgets.messages import Messages
 from ..widgets.wheel import scrolls
-from . import closing
+from . import closing, present
 from .noted import Noted, lines_of
 
 MOST_ISSUES = 6
@@ -48,7 +49,7 @@ class StagePanel(Noted):
     lines = 3  # that messages have room for above the fields
     draft = ""  # the name in errors of what is not made yet
 
-    def __init__(self, proxy: type[Stage], title: str, choices: Sequence[inputs.Input], obj: Any = None) -> None:
+    def __init__(self, proxy: type[Stage], title: str, choices: Sequence[Input], obj: Any = None) -> None:
         self.proxy, self.choices, self.obj = proxy, choices, obj
         self.document = App.ActiveDocument if obj is None else obj.Document
         self.form = QtGui.QWidget()
@@ -80,11 +81,9 @@ class StagePanel(Noted):
         self._show_findings()
         if obj is not None:
             self.messages.hold(self.findings)
-        self.later_entries = Later(self.form, self.judge_entries)
-        for widget in (*(field.widget for field, _, _ in self.places.values()), *(choice.widget for choice in choices)):
-            for line in lines_of(widget):
-                connect(line, "textChanged(QString)", self.later_entries.ask)
-        self.judge_entries()
+        self._watch_entries()
+        # what the document had when it was shown last
+        self.known = {} if obj is None else present.entries(obj, proxy, choices)
         scrolls(self.form)
         missing = [choice.missing for choice in choices if choice.missing]
         if obj is None and missing:
@@ -92,8 +91,16 @@ class StagePanel(Noted):
 
     # ---- what is shown
 
+    def _watch_entries(self) -> None:
+        """Judge what is entered, now and a moment after it was typed."""
+        self.later_entries = Later(self.form, self.judge_entries)
+        widgets = [*(field.widget for field, _, _ in self.places.values()), *(choice.widget for choice in self.choices)]
+        for line in (line for widget in widgets for line in lines_of(widget)):
+            connect(line, "textChanged(QString)", self.later_entries.ask)
+        self.judge_entries()
+
     def _add_section(self, section: Any) -> None:
-        current = None if self.obj is None else self._current(section)
+        current = None if self.obj is None else present.values_of(self.obj, section)
         folds: dict[str, Fold] = {}
         for row in rows(section.cls):
             nested = isinstance(row.path[-1], str) and len(row.path) > 1
@@ -115,15 +122,6 @@ class StagePanel(Noted):
             self.places[f"{section.prefix}_{row.key}"] = (field, name, folds[title])
         for fold in folds.values():
             self.column.addWidget(fold.widget)
-
-    def _current(self, section: Any) -> dict[str, Any]:
-        found = {}
-        for row in rows(section.cls):
-            try:
-                found[row.key] = row.inner(getattr(self.obj, row.name), row.name)
-            except AmError:  # what cannot be read is replaced by its default
-                found[row.key] = row.default
-        return found
 
     def _mark_driven(self, field: fields.Field) -> None:
         """What the window cannot let follow an expression may do so all the same, from a macro: it is not changed here."""
@@ -147,6 +145,18 @@ class StagePanel(Noted):
             lines.append(tr("and {} more").format(len(found) - MOST_ISSUES))
         self.findings.setText("\n".join([tr("Status: {}").format(translated(self.obj.Status)), *lines]))
         self.findings.show()
+
+    def follow_undo(self) -> None:
+        """Show what undo or redo has changed; what is entered elsewhere, and not applied, stays."""
+        if self.obj is None:
+            return
+        if not is_there(self.obj):
+            self.say(tr(CLOSED))
+            return
+        before, self.known = self.known, present.entries(self.obj, self.proxy, self.choices)
+        fields_of = [(place, field) for place, (field, _, _) in self.places.items()]
+        self.first_inputs.update(present.show_other(fields_of, self.choices, before, self.known))
+        self._show_findings()
 
     def _inputs(self) -> dict[str, str]:
         return {key: text for choice in self.choices for key, text in choice.arguments().items()}
@@ -185,6 +195,7 @@ class StagePanel(Noted):
         for choice in self.choices:
             choice.applied()
         self.first_inputs = self._inputs()
+        self.known = present.entries(self.obj, self.proxy, self.choices)
         self._show_findings()
         return True
 

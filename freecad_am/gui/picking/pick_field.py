@@ -11,7 +11,7 @@ from PySide import QtCore, QtGui
 from ...objects.stage_parts import Link
 from .. import recorded
 from ..texts.translation import tr, translated
-from .inputs import Input
+from .an_input import Input
 from .picking import EDGE, FACE, Pick, is_mesh
 
 _LIST = "App::PropertyLinkList"
@@ -122,6 +122,10 @@ class PickField(Input):
         if not self.picks:
             return None
         return (self.picks[0].obj, list(self.picks[0].names)) if self.element else self.picks[0].obj
+
+    def show_stored(self, stored: Any) -> None:
+        self.picks = self._present(stored)
+        self.show()
 
     def applied(self) -> None:
         self.explicit = self.explicit or bool(self.picks)

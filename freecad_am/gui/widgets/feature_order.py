@@ -11,7 +11,8 @@ from ...core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ...objects.stage import stage_of
 from ...objects.stage_parts import Link
 from .. import recorded
-from ..picking.inputs import Input, StageChoice
+from ..picking.an_input import Input
+from ..picking.inputs import StageChoice
 from ..picking.selection import selected
 from ..texts.translation import marked, tr, translated
 
@@ -97,6 +98,17 @@ class FeatureOrder(Input):
     def remove(self) -> None:
         """Take the chosen feature out."""
         self.list.takeItem(self.list.currentRow())
+        self._show()
+
+    def stored(self, obj: Any) -> Any:
+        return list(getattr(obj, self.link.name)), obj.Sequence
+
+    def show_stored(self, stored: Any) -> None:
+        objects, sequence = stored
+        self.list.clear()
+        for obj in objects:
+            self._put(obj)
+        self.sequence.setCurrentIndex(self.sequence.findData(sequence))
         self._show()
 
     def applied(self) -> None:

@@ -32,11 +32,11 @@ LEAST_MM = 1e-3  # FreeCAD shows shorter lengths in nm
 
 
 class Field:
-    """A widget, how to read it, and how to show another outer value in it where a panel does. `value` raises InputError
+    """A widget, how to read it, and how to show another outer value in it. `value` raises InputError
     naming the field for what cannot be read; it is a text that starts with `=` for an expression."""
 
     def __init__(
-        self, row: Row, widget: Any, read: Callable[[], Any], show: Callable[[Any], None] | None = None
+        self, row: Row, widget: Any, read: Callable[[], Any], show: Callable[[Any], None]
     ) -> None:
         self.row = row
         self.widget = widget
@@ -53,9 +53,7 @@ class Field:
         return self.read()
 
     def show(self, value: Any) -> None:
-        """Show another value, in outer units, in place of what is there."""
-        if self._show is None:
-            raise NotImplementedError(f"no panel shows another value in {self.row.name} yet")
+        """Show another value, in outer units, or an expression, in place of what is there."""
         self._show(value)
 
     @property
@@ -125,12 +123,12 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
     if row.form == f.FLAG:
         check = QtGui.QCheckBox()
         check.setChecked(shown)
-        return Field(row, check, check.isChecked)
+        return Field(row, check, check.isChecked, check.setChecked)
     if row.form == f.COUNT:
         box = QtGui.QSpinBox()
         box.setRange(-_LARGEST, _LARGEST)  # what is out of range is told by the core, not cut off here
         box.setValue(shown)
-        return Field(row, box, box.value) if not expression else _text(row, value, expression)
+        return Field(row, box, box.value, box.setValue) if not expression else _text(row, value, expression)
     if suggestions is not None:
         return _suggested(row, shown, suggestions())
     return _text(row, value, expression)
@@ -149,32 +147,42 @@ def _speed(row: Row, shown: float, expression: str) -> Field:
         value = quantity.read()
         return value if isinstance(value, str) else round(value / factor, 9)
 
-    return Field(row, quantity.box, read, lambda value: quantity.show(round(value * factor, 9)))
+    def show(value: float | str) -> None:
+        quantity.show(value if isinstance(value, str) else round(value * factor, 9))
+
+    return Field(row, quantity.box, read, show)
 
 
 def _text(row: Row, value: Any, expression: str = "") -> Field:
     edit = QtGui.QLineEdit()
+    numeric = row.spec.kind in (*_NUMBERS, f.POSE) or row.form == TEXT_LIST
+
+    def show(shown: Any) -> None:
+        text = _outer_text(row, shown)
+        edit.setText(_with_point(text, ".", _point(edit)) if numeric and not is_expression(text) else text)
+
+    show(expression or row.outer(value))
     if row.form == TEXT_LIST:
-        edit.setText(_with_point(" ".join(value), ".", _point(edit)))
-        return Field(row, edit, lambda: tuple(split(_with_point(str(edit.text()), _point(edit), "."), row.label)))
-    numeric = row.spec.kind in (*_NUMBERS, f.POSE)
-    text = row.text(value) if row.form in (MIXED, LENGTH_OR_POSE) else f"{row.outer(value)}"
-    edit.setText(_with_point(text, ".", _point(edit)) if numeric else text)
+        return Field(row, edit, lambda: tuple(split(_with_point(str(edit.text()), _point(edit), "."), row.label)), show)
     wanted = ([row.unit] if row.unit else []) + list(row.spec.words)
     if wanted or row.spec.optional:  # short enough for a narrow panel
         words = tr(" or ").join(wanted)
         none = tr("{} or empty").format(words) if words else tr("(empty: none)")
         edit.setPlaceholderText(none if row.spec.optional else words)
-    if expression:
-        edit.setText(expression)
 
     def entered() -> str:
         entry = str(edit.text()).strip()
         return _with_point(entry, _point(edit), ".") if numeric else entry
 
     if row.form == f.NUMBER:
-        return Field(row, edit, lambda: _number(entered(), row.label))
-    return Field(row, edit, entered, None if numeric else edit.setText)
+        return Field(row, edit, lambda: _number(entered(), row.label), show)
+    return Field(row, edit, entered, show)
+
+
+def _outer_text(row: Row, shown: Any) -> str:
+    if row.form == TEXT_LIST:
+        return " ".join(shown)
+    return row.outer_text(shown) if row.form in (MIXED, LENGTH_OR_POSE) else f"{shown}"
 
 
 def _point(edit: Any) -> str:

@@ -46,10 +46,7 @@ class QuantityField:
         self.line.setValidator(None)  # it refuses keys, unseen; `read` tells what is wrong
         self.show(shown)
         if expression:
-            self.shown = self.typed = expression
-            self.line.setText(expression)
-            self.line.setCursorPosition(0)
-            self.first_text = self.line.text()
+            self.show(expression)
         self._add_mark()
         connect(self.line, "textEdited(QString)", self._keep)
         connect(self.line, "textChanged(QString)", self._forget)
@@ -57,16 +54,25 @@ class QuantityField:
         connect(self.box, "editingFinished()", self._restore)
         connect(self.box, "editingFinished()", self._begin_in_sight)
 
-    def show(self, number: float) -> None:
-        """Show another number, in the field's unit, in place of what is there."""
+    def show(self, number: float | str) -> None:
+        """Show another number, in the field's unit, or an expression, in place of what is there."""
         self.shown: float | str = number
         self.typed: str | None = None
+        if isinstance(number, str):
+            self.typed = number
+            self._put(number)
+            return
         quantity = App.Units.Quantity(f"{number!r} {self.unit}")
         # the display would be cut to the decimals of the preferences, and the value with it
         quantity.Format = {"NumberFormat": "g", "Precision": _DIGITS, "Denominator": 8}
         self.box.setProperty("value", quantity)
         self.line.setCursorPosition(0)
         self.first_text = self.plain = self.line.text()  # plain: what the field goes back to by itself
+
+    def _put(self, text: str) -> None:
+        self.line.setText(text)
+        self.line.setCursorPosition(0)
+        self.first_text = self.line.text()
 
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)
@@ -160,19 +166,14 @@ class PlainQuantity(QuantityField):
         self.typed = None  # only a field of FreeCAD changes what was typed
         self.show(shown)
         if expression:
-            self.shown = expression
-            self._put(expression)
+            self.show(expression)
         self._add_mark()
 
-    def show(self, number: float) -> None:
-        """Show another number, in the field's unit, in place of what is there."""
+    def show(self, number: float | str) -> None:
+        """Show another number, in the field's unit, or an expression, in place of what is there."""
         self.shown: float | str = number
-        self._put(f"{number:.{_DIGITS}g} {self.unit}".replace(".", str(self.box.locale().decimalPoint())))
-
-    def _put(self, text: str) -> None:
-        self.line.setText(text)
-        self.line.setCursorPosition(0)
-        self.first_text = self.line.text()
+        plain = "" if isinstance(number, str) else f"{number:.{_DIGITS}g} {self.unit}"
+        self._put(plain.replace(".", str(self.box.locale().decimalPoint())) or str(number))
 
     def read(self) -> float | str:
         """The number in the field's unit, or the expression. InputError 'BAD_VALUE' for what is neither."""

@@ -111,7 +111,10 @@ class Row:
 
     def text(self, value: Any) -> str:
         """The value as a text with its unit: what a MIXED or LENGTH_OR_POSE property holds."""
-        shown = self.outer(value)
+        return self.outer_text(self.outer(value))
+
+    def outer_text(self, shown: Any) -> str:
+        """The same of a value in outer units."""
         if shown is None or isinstance(shown, str):
             return shown or ""
         if _is_list(shown):
