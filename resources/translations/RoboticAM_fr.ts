@@ -4022,7 +4022,7 @@
         <translation>Rien n’est déposé à côté de la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>Nothing is selected: click in the tree or the 3D view first.</source>
         <translation>Rien n&apos;est sélectionné : cliquez d&apos;abord dans l&apos;arbre ou la vue 3D.</translation>
     </message>
@@ -4927,7 +4927,7 @@
         <translation>Sélectionnez aussi, avec Ctrl, la pièce sur laquelle il croît.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>Select the shape to deposit, or its faces, and press Use selection.</source>
         <translation>Sélectionnez la forme à déposer, ou ses faces, et cliquez sur Prendre.</translation>
     </message>
@@ -5337,7 +5337,7 @@
         <translation>Commence sur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/stage.py"/>
+        <location filename="../../freecad_am/gui/panels/standing.py"/>
         <source>Status: {}</source>
         <translation>État : {}</translation>
     </message>
@@ -5422,7 +5422,7 @@
         <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>Takes what is selected now. {}</source>
         <translation>Prend ce qui est sélectionné maintenant. {}</translation>
     </message>
@@ -5947,7 +5947,7 @@
         <translation>{} est pris en entier ; Choisir prend des faces seules, clic par clic.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>The whole of {} is taken; Use selection takes faces alone.</source>
         <translation>{} est pris en entier ; Prendre la sélection prend des faces seules.</translation>
     </message>
@@ -6287,7 +6287,7 @@
         <translation>Utilisez des cordons plus larges de {0} mm de chaque côté, par process.bead_width, ou laissez moins à usiner</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>Use selection</source>
         <translation>Prendre</translation>
     </message>
@@ -7477,7 +7477,7 @@
         <translation>en {0} endroits courts, {1} mm en tout, le dépôt est ralenti, ici à {2} mm/s, car les axes ne vont pas plus vite ; jusqu&apos;à {3} mm de cordon de plus que prévu s&apos;y trouvent{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>auto</source>
         <translation>auto</translation>
     </message>
@@ -10982,7 +10982,7 @@
         <translation>section du fil fois sa vitesse, comparée à largeur x hauteur x vitesse des cordons de chaque classe, de leurs débuts et de leurs fins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>select</source>
         <translation>sélectionner</translation>
     </message>
@@ -15492,7 +15492,7 @@
         <translation>{} a échoué.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/recorded.py"/>
+        <location filename="../../freecad_am/gui/panels/standing.py"/>
         <source>{} failed: {}</source>
         <translation>{} a échoué : {}</translation>
     </message>
@@ -15527,7 +15527,7 @@
         <translation>{} n&apos;a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une, ou sélectionnez une autre tâche.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>{} is a mesh, which has no exact faces; select a part such as of a STEP file.</source>
         <translation>{} est un maillage, qui n&apos;a pas de faces exactes ; sélectionnez une pièce, par exemple d&apos;un fichier STEP.</translation>
     </message>
@@ -15557,7 +15557,7 @@
         <translation>{} est infaisable.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/recorded.py"/>
+        <location filename="../../freecad_am/gui/panels/standing.py"/>
         <source>{} is infeasible: {}</source>
         <translation>{} est infaisable : {}</translation>
     </message>
@@ -15567,7 +15567,7 @@
         <translation>{} manque : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/shape_inputs.py"/>
         <source>{} is missing: select it and press its Use selection.</source>
         <translation>{} manque : sélectionnez-le et cliquez sur Prendre.</translation>
     </message>

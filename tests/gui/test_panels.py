@@ -129,6 +129,26 @@ def held(person, panel):
     return found
 
 
+def test_apply_tells_in_the_panel_which_of_the_stages_that_follow_failed_and_why(person, hand, hemisphere):
+    document = hemisphere.Document
+    feature = api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5)
+    api.make_joint_path(document, api.make_toolpath(document, feature), api.make_cell(document))
+    person.double_click(feature)
+    panel = person.panel(PANEL)
+    following, findings = person.field(panel, "following"), person.field(panel, "findings")
+    assert not following.isVisible()
+    hand.enter(panel, "LayerHeight", "1e9 mm")
+    person.press("Apply")
+    assert following.isVisible() and following.text().startswith("Toolpath failed: "), following.text()
+    assert "more than the wall is long" in following.text() and "\n" not in following.text()  # the joint path waits for it
+    assert findings.text() == "Status: up to date"  # the feature is
+    hand.enter(panel, "LayerHeight", "15 mm")
+    person.press("Apply")
+    assert not following.isVisible() and document.JointPath.Status == "up to date"
+    person.press("Cancel")
+    person.panel_closed()
+
+
 def test_an_expression_is_typed_into_a_field_and_given_up_again(person, hand, hemisphere):
     document = hemisphere.Document
     sheet = document.addObject("App::FeaturePython", "Sheet")

@@ -17,7 +17,6 @@ from ...core.issues import AmError, InputError
 from ...objects.fields import expressions, preferences
 from ...objects.fields.link_targets import is_there
 from ...objects.fields.rows import group_of, rows
-from ...objects.results.findings import issues_of, message_of
 from ...objects.stage import Stage
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
@@ -30,10 +29,9 @@ from ..widgets import fields, suggestions
 from ..widgets.fold import Fold
 from ..widgets.messages import Messages
 from ..widgets.wheel import scrolls
-from . import closing, present
+from . import closing, present, standing
 from .noted import Noted, lines_of
 
-MOST_ISSUES = 6
 ADVANCED = marked("{}: advanced")
 BUTTON_PADDING = 26  # pixels beside its text
 CLOSED = marked("The document or object of this panel is gone; cancel and open the panel again.")
@@ -61,6 +59,7 @@ class StagePanel(Noted):
         self.messages = Messages(self.lines)
         self.column.addWidget(self.messages)
         self.error = self.messages.add("error", WRONG)
+        self.following = self.messages.add("following", WRONG)
         self.findings = self.messages.add("findings", "palette(text)")  # above all fields: some change what is deposited
         self.marked: dict[str, str] = {}  # places with an error of OK or Apply, and what was entered there
         self.remarks: dict[str, str] = {}  # those with what an expression gives or is wrong as typed, and that
@@ -134,16 +133,9 @@ class StagePanel(Noted):
     def _show_findings(self) -> None:
         if self.obj is None:
             return
-        found = issues_of(self.obj)
-        lines = [translated(message_of(self.obj))] if self.obj.Message and not found else []
-        lines += [
-            tr("{}: {}").format(
-                " ".join(filter(None, (translated(issue.level), translated(issue.where)))), translated(issue.message)
-            ) for issue in found[:MOST_ISSUES]
-        ]
-        if len(found) > MOST_ISSUES:
-            lines.append(tr("and {} more").format(len(found) - MOST_ISSUES))
-        self.findings.setText("\n".join([tr("Status: {}").format(translated(self.obj.Status)), *lines]))
+        self.findings.setText("\n".join(standing.own_lines(self.obj)))
+        self.following.setText("\n".join(standing.lines_of_followers(self.obj)))
+        self.following.setVisible(bool(self.following.text()))
         self.findings.show()
 
     def follow_undo(self) -> None:

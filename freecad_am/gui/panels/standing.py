@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How a stage stands, and what failed of those that follow it, in the words of a panel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ... import api
+from ...objects.results.findings import issues_of, message_of
+from ...objects.staleness import FAILED, INFEASIBLE
+from ..texts.translation import tr, translated
+
+MOST_ISSUES = 6
+
+
+def own_lines(obj: Any) -> list[str]:
+    """The status of a stage, its message and its findings."""
+    found = issues_of(obj)
+    lines = [translated(message_of(obj))] if obj.Message and not found else []
+    lines += [
+        tr("{}: {}").format(
+            " ".join(filter(None, (translated(issue.level), translated(issue.where)))), translated(issue.message)
+        ) for issue in found[:MOST_ISSUES]
+    ]
+    if len(found) > MOST_ISSUES:
+        lines.append(tr("and {} more").format(len(found) - MOST_ISSUES))
+    return [tr("Status: {}").format(translated(obj.Status)), *lines]
+
+
+def lines_of_followers(obj: Any) -> list[str]:
+    """Which of the stages that follow failed or cannot be carried out, and why; none that only waits for another one."""
+    followers = set(obj.InListRecursive)
+    wrong = [one for one in api.stages_of(obj.Document)
+             if one.Status in (FAILED, INFEASIBLE) and (one is obj or one in followers)]
+    first = [one for one in wrong if one is not obj and not set(one.OutListRecursive) & set(wrong)]
+    texts = {FAILED: tr("{} failed: {}"), INFEASIBLE: tr("{} is infeasible: {}")}
+    lines = [texts[one.Status].format(one.Label, translated(message_of(one))) for one in first[:MOST_ISSUES]]
+    if len(first) > MOST_ISSUES:
+        lines.append(tr("and {} more").format(len(first) - MOST_ISSUES))
+    return lines
