@@ -156,7 +156,7 @@ def test_what_cannot_be_woven_is_refused_before_planning(post, motion, setup, wh
     with pytest.raises(InputError) as error:
         refuse(cell, process, parameters)
     assert (error.value.code, error.value.where) == ("WEAVE", where)
-    assert words in error.value.message and "fanuc and yaskawa weave with motion: cartesian" in error.value.message
+    assert words in error.value.message and "fanuc, yaskawa; abb with program.schedule.by: arc" in error.value.message
 
 
 @pytest.mark.parametrize("post", SETUPS)
