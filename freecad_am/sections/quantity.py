@@ -3,7 +3,7 @@
 
 What everybody writes - one number, one unit, perhaps a second one after a slash - is read here, because
 starting FreeCAD takes longer than reading a whole job. Any other text goes to FreeCAD itself, so that both
-always mean the same. Percentages, 'inf' and a leading plus are ours; FreeCAD has no word for them.
+always mean the same. Percentages, 'inf', 'ms' and a leading plus are ours; FreeCAD has no word for them.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ UNITS: dict[str, tuple[float, Dimension]] = {
     "mm": (1.0, LENGTH), "cm": (10.0, LENGTH), "dm": (100.0, LENGTH), "m": (1e3, LENGTH), "km": (1e6, LENGTH),
     "in": (25.4, LENGTH), '"': (25.4, LENGTH), "ft": (304.8, LENGTH), "'": (304.8, LENGTH), "yd": (914.4, LENGTH),
     "thou": (0.0254, LENGTH), "mil": (0.0254, LENGTH),
-    "s": (1.0, TIME), "min": (60.0, TIME), "h": (3600.0, TIME),
+    "ms": (1e-3, TIME), "s": (1.0, TIME), "min": (60.0, TIME), "h": (3600.0, TIME),
     "deg": (1.0, ANGLE), "\u00b0": (1.0, ANGLE), "rad": (180.0 / math.pi, ANGLE), "gon": (0.9, ANGLE),
 }
 WANTED: dict[str, tuple[Dimension, str]] = {
     f.LENGTH: (LENGTH, "a length such as 1 mm"),
-    f.ANGLE: (ANGLE, "an angle such as 90 deg"),
+    f.ANGLE: (ANGLE, "an angle such as 30 deg"),
     f.SPEED: ((1, -1, 0), "a speed such as 6 mm/s or 360 mm/min"),
-    f.TIME: (TIME, "a time such as 2 s"),
+    f.TIME: (TIME, "a time such as 0.1 s"),
     f.RATIO: (NONE, "a percentage such as 20 %"),
     f.TURN_RATE: ((-1, 0, 1), "a turn per length such as 10 deg/mm"),
     f.NUMBER: (NONE, "a number without a unit such as 0.1"),

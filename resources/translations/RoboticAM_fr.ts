@@ -7068,8 +7068,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>a time such as 2 s</source>
-        <translation>un temps comme 2 s</translation>
+        <source>a time such as 0.1 s</source>
+        <translation>un temps comme 0.1 s</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -7288,8 +7288,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>an angle such as 90 deg</source>
-        <translation>un angle comme 90 deg</translation>
+        <source>an angle such as 30 deg</source>
+        <translation>un angle comme 30 deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
@@ -13632,7 +13632,7 @@
         <translation>{0} contient un 0 ; donnez les impulsions d&apos;un degré de chaque axe, négatives là où elles décroissent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/quantity.py"/>
+        <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} has a comma; write decimals with a point, such as {1}</source>
         <translation>{0} a une virgule ; écrivez les décimales avec un point, comme {1}</translation>
     </message>

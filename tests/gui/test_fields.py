@@ -79,6 +79,14 @@ def test_a_speed_is_typed_in_any_unit(person, window):
         assert field.read() == pytest.approx(speed, rel=1e-14), text
 
 
+def test_milliseconds_are_read_and_stay_as_they_were_typed(person, window):
+    field = QuantityField(1.0, "s", "Lead on")
+    window.addWidget(field.box)
+    typed(person, field, "50 ms")
+    person.until(lambda: field.line.text() == "50 ms", "what was typed", 5)
+    assert field.read() == 0.05
+
+
 def test_another_number_is_shown_in_a_plain_line_and_read_as_it_is(person):
     field = PlainQuantity(6.0, "mm/min", "Travel speed", "=Sheet.speed")
     assert field.read() == "=Sheet.speed"

@@ -4,6 +4,7 @@
 import dataclasses
 import math
 import random
+import re
 
 import FreeCAD as App
 import pytest
@@ -12,6 +13,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.filled import CladdingParameters, SolidParameters
 from freecad_am.core.parameters.inspection import InspectionParameters
 from freecad_am.core.parameters.joints import METHODS, JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
@@ -180,6 +182,32 @@ def test_bad_values_name_label_and_property(holder, cls, section, name, value, c
         properties.read(holder, cls, section)
     assert caught.value.code == code
     assert caught.value.where == f"Héros n° 1.{name}"
+
+
+@pytest.mark.parametrize(("text", "seconds"), [("50 ms", 0.05), (" 7.5ms", 0.0075), ("0.05 s", 0.05), ("0.05", 0.05)])
+def test_times_may_be_in_milliseconds(text, seconds):
+    lead = next(row for row in rows.rows(ProgramParameters) if row.key == "trigger_lead")
+    assert lead.inner(text, "program.trigger_lead") == pytest.approx(seconds, rel=1e-15)
+    stand_off = next(row for row in rows.rows(ProcessParameters) if row.key == "stand_off")
+    with pytest.raises(InputError, match="another dimension"):
+        stand_off.inner("50 ms", "process.stand_off")
+
+
+@pytest.mark.parametrize(("text", "says"), [("0,05", "such as 0.05"), ("0,05 s", "such as 0.05 s"), (",5s", "such as .5s")])
+def test_a_decimal_comma_is_told_how_to_be_written(text, says):
+    lead = next(row for row in rows.rows(ProgramParameters) if row.key == "trigger_lead")
+    with pytest.raises(InputError, match=f"has a comma; write decimals with a point, {says}$"):
+        lead.inner(text, "program.trigger_lead")
+
+
+@pytest.mark.parametrize("cls", [cls for cls, _ in (*CLASSES, (SolidParameters, ""), (CladdingParameters, ""))])
+def test_the_example_of_a_message_may_be_entered(cls):
+    for row in rows.rows(cls):
+        if row.spec.kind in rows._UNITS:
+            with pytest.raises(InputError) as caught:
+                row.inner("1 kg", row.key)
+            found = re.search(r"such as ([^ ]+ [^ ]+)", str(caught.value.message))
+            f.check_value(row.spec, row.inner(found[1], row.key), row.key)
 
 
 @pytest.mark.parametrize(

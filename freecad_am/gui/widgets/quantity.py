@@ -28,6 +28,7 @@ from ..signals import connect
 from ..texts.translation import tr
 
 _DIGITS = 10
+_OURS = re.compile(r"\d\s*ms\s*$")  # that FreeCAD's field does not know
 _LEAST_WIDTH = 70
 _SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.svg"  # of FreeCAD
 
@@ -133,12 +134,12 @@ class QuantityField:
             if self.typed is None or self.line.text() == self.typed:
                 return
             try:
-                if not is_expression(self.typed):
+                if not is_expression(self.typed) and not _OURS.search(self.typed):
                     self._number(self.typed)
                     return
             except InputError:
                 pass
-            self.line.setText(self.typed)  # an expression, or what is refused, stays to be seen
+            self.line.setText(self.typed)  # an expression, a unit of ours, or what is refused, stays to be seen
             self.line.setCursorPosition(0)
 
     # ---- expressions

@@ -21,17 +21,19 @@ from . import pendants
 
 TEXT_LIST, MIXED, LENGTH_OR_POSE = "text list", "mixed", "length or pose"
 ENDS = ("low", "high")
-_UNITS = {
+_UNITS = {  # with an example that all parameters of the kind may be
     f.LENGTH: (App.Units.Length, "a length such as 1 mm"),
-    f.ANGLE: (App.Units.Angle, "an angle such as 90 deg"),
+    f.ANGLE: (App.Units.Angle, "an angle such as 30 deg"),
     f.SPEED: (App.Units.Velocity, "a speed such as 6 mm/s or 360 mm/min"),
-    f.TIME: (App.Units.TimeSpan, "a time such as 2 s"),
+    f.TIME: (App.Units.TimeSpan, "a time such as 0.1 s"),
     f.TURN_RATE: (App.Units.Unit(-1, 0, 0, 0, 0, 0, 0, 1), "a turn per length such as 10 deg/mm"),
 }
 # what FreeCAD reads in a quantity beside the signs of ASCII
 _OTHER_SIGNS = "\N{DEGREE SIGN}\N{MICRO SIGN}\N{PRIME}\N{DOUBLE PRIME}\N{MINUS SIGN}"
 # a comma that may begin decimals, a no-break blank that may group digits
 _TWO_WAYS = re.compile(r"(?:^|\s),\d|\d,\d.*\s|\s.*\d,\d|\d[\u00a0\u2009\u202f]\d", re.DOTALL)
+_MILLISECONDS = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*ms\s*", re.ASCII)
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s,].*)?", re.ASCII)
 _ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
 _LABELS = {  # of parameters whose keys do not say it in words
     "given": "Given polynomials", "degree": "Degree of the polynomials", "parameter": "Polynomials give",
@@ -227,10 +229,12 @@ def plain_blanks(text: str) -> str:
 def quantity(text: str) -> Any:
     """FreeCAD's quantity of a text. ValueError for what is none, also where FreeCAD would end at a sign it does not know
     and leave out the rest, unit and all: of '1’234 mm' it takes the 1; or where a '[' begins a comment to it, which
-    all later quantities would be within."""
+    all later quantities would be within. 'ms', which FreeCAD does not know (0.20), is read here."""
     plain = plain_blanks(text).replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
     if "[" in plain or any(not sign.isascii() and sign not in _OTHER_SIGNS for sign in plain):
         raise ValueError(text)
+    if milliseconds := _MILLISECONDS.fullmatch(plain):
+        return App.Units.Quantity(float(milliseconds[1]) * 1e-3, App.Units.TimeSpan)
     return App.Units.Quantity(plain)
 
 
@@ -263,6 +267,9 @@ def _quantity(value: Any, where: str, example: str) -> Any:
         return quantity(value) if isinstance(value, str) else App.Units.Quantity(value)
     except (ValueError, TypeError, ArithmeticError, OSError):
         plain = plain_blanks(value) if isinstance(value, str) else value
+        if isinstance(plain, str) and _DECIMAL_COMMA.fullmatch(plain):
+            raise InputError("BAD_VALUE", where, "{} has a comma; write decimals with a point, such as {}", repr(plain),
+                             plain.replace(",", ".")) from None
         raise InputError("BAD_VALUE", where, "{!r} is not understood; give {}", plain, example) from None
 
 
