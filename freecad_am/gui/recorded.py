@@ -10,7 +10,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from .. import api
-from ..objects.results.findings import message_of
+from ..objects.results.findings import reason_of
 from ..objects.staleness import FAILED, INFEASIBLE
 from .background.busy import busy
 from .texts.translation import tr, translated
@@ -64,5 +64,5 @@ def _run(document: Any, function: str, first: str, arguments: dict[str, str]) ->
 
 def _wrong(document: Any) -> list[tuple[str, str, str]]:
     """Label, status and message of the stages that something is wrong with, inputs first."""
-    found = [(obj.Label, obj.Status, message_of(obj)) for obj in api.stages_of(document)]
+    found = [(obj.Label, obj.Status, reason_of(obj)) for obj in api.stages_of(document)]
     return [finding for finding in found if finding[1] in (FAILED, INFEASIBLE)]

@@ -25,7 +25,7 @@ from ..posts import catalogue, refusals
 from . import user_machines
 from .checks import controllers
 from .joint_path import Planned
-from .results.findings import message_of
+from .results.findings import reason_of
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
 from .work import progress
@@ -202,5 +202,5 @@ def files_of(obj: Any) -> dict[str, bytes]:
     files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.Key else {}
     if obj.Status != "up to date" or not files:
         raise InputError("NO_PROGRAM", obj.Label, "no program fits its inputs ({}); mend that and recompute it",
-                         message_of(obj) or obj.Status)
+                         reason_of(obj) or obj.Status)
     return files

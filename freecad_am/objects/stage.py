@@ -25,7 +25,7 @@ from .fields import expressions, properties
 from .fields.link_targets import broken_link, is_there
 from .fields.properties import HIDDEN, OUTPUT, READ_ONLY
 from .results import store
-from .results.findings import first_message, issues_of, message_of, say, store_issues
+from .results.findings import first_message, issues_of, reason_of, say, store_issues
 from .results.stored import Stored
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
@@ -293,8 +293,8 @@ def _checked(obj: Any, link: Link, linked: Any) -> Any:
         raise InputError("BAD_INPUT", f"{obj.Label}.{link.name}", "{} is not {} {}; choose one", linked.Label, Word(article),
                          link.kind)
     if linked.Status == INFEASIBLE:
-        why = Text("{} cannot be carried out: {}", linked.Label, message_of(linked))
+        why = Text("{} cannot be carried out: {}", linked.Label, reason_of(linked))
         raise InfeasibleError("INPUT_INFEASIBLE", obj.Label, why, issues=issues_of(linked))
     if linked.Status == FAILED or not linked.Key:
-        raise InputError("INPUT_FAILED", obj.Label, "waits for {}: {}", linked.Label, message_of(linked) or "recompute it")
+        raise InputError("INPUT_FAILED", obj.Label, "waits for {}: {}", linked.Label, reason_of(linked) or "recompute it")
     return linked

@@ -95,12 +95,17 @@ def test_parameters_follow_expressions(job):
     assert job.toolpath.Layers == 15 and statuses(job) == [OK] * 5
 
 
-def test_a_bad_parameter_fails_and_what_follows_waits(job, capfd):
+def test_a_bad_parameter_fails_and_what_follows_waits(job, capfd, tmp_path):
     job.feature.LayerHeight = 0
     job.doc.recompute()
     assert statuses(job) == [OK] + [FAILED] * 4
     assert job.feature.Message == "Feature.LayerHeight: 0 mm is out of range; give more than 0 mm"
     assert "waits for Feature" in job.toolpath.Message
+    assert job.program.Message == (  # each stage is named once
+        "Program: waits for Joint path: waits for Toolpath: waits for Feature: "
+        "Feature.LayerHeight: 0 mm is out of range; give more than 0 mm")
+    with pytest.raises(InputError, match=r"^Program: no program fits its inputs \(waits for Joint path: "):
+        api.export(job.program, str(tmp_path))
     assert "Traceback" not in "".join(capfd.readouterr())
     with pytest.raises(InputError, match="LayerHeight"):
         api.recompute(job.doc)

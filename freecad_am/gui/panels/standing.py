@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ... import api
-from ...objects.results.findings import issues_of, message_of
+from ...objects.results.findings import issues_of, message_of, reason_of
 from ...objects.staleness import FAILED, INFEASIBLE
 from ..texts.translation import tr, translated
 
@@ -34,7 +34,7 @@ def lines_of_followers(obj: Any) -> list[str]:
              if one.Status in (FAILED, INFEASIBLE) and (one is obj or one in followers)]
     first = [one for one in wrong if one is not obj and not set(one.OutListRecursive) & set(wrong)]
     texts = {FAILED: tr("{} failed: {}"), INFEASIBLE: tr("{} is infeasible: {}")}
-    lines = [texts[one.Status].format(one.Label, translated(message_of(one))) for one in first[:MOST_ISSUES]]
+    lines = [texts[one.Status].format(one.Label, translated(reason_of(one))) for one in first[:MOST_ISSUES]]
     if len(first) > MOST_ISSUES:
         lines.append(tr("and {} more").format(len(first) - MOST_ISSUES))
     return lines

@@ -22,6 +22,14 @@ def message_of(obj: Any) -> str:
     return _texts(obj).get(obj.Message, str(obj.Message))
 
 
+def reason_of(obj: Any) -> str:
+    """What the object says without its own name before it, for a sentence that has named it."""
+    message = message_of(obj)
+    if isinstance(message, Text) and message.template == "{0}: {1}" and message.values[0] == obj.Label:
+        return message.values[1]
+    return message.removeprefix(f"{obj.Label}: ")
+
+
 def store_issues(obj: Any, issues: Sequence[Issue]) -> None:
     """Store findings with the object."""
     obj.Issues = json.dumps([issue.as_dict() for issue in issues])
