@@ -10,6 +10,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.gui import registry
+from freecad_am.gui.program import window as program_window
 
 
 def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
@@ -281,6 +282,28 @@ def test_the_program_is_exported_from_its_window(person, hemisphere, coarse, tmp
     person.field(window, "export").click()
     assert "document is closed" in person.field(window, "state").text()
     person.field(window, "close").click()
+
+
+def test_a_program_that_failed_asks_for_no_folder(person, hemisphere, coarse, monkeypatch):
+    asked, doc = [], hemisphere.Document
+    monkeypatch.setattr(person.widgets.QFileDialog, "getExistingDirectory", lambda *_: asked.append(1) or "")
+    program = api.make_all(doc, hemisphere, name="CUP")[-1]
+    person.double_click(program)
+    button = person.field(person.panel("RoboticAM_ProgramText"), "export")
+    assert button.isEnabled() and button.toolTip() == "Writes all files of the program into a folder"
+    api.change(doc.Feature, layer_height=1e9)
+    assert program.Status == "failed"
+    person.until(lambda: not button.isEnabled(), "the button to be grey", 5)
+    assert "no program fits its inputs" in button.toolTip() and "more than the wall is long" in button.toolTip()
+    before = len(person.console())
+    assert "no program fits its inputs" in program_window.export(program)  # of the context menu
+    person.until(lambda: "no program fits its inputs" in person.console()[before:], "why, in the report view", 5)
+    assert not asked
+    api.change(doc.Feature, layer_height=15)
+    person.until(button.isEnabled, "the button to be lit", 5)
+    program_window.export(program)
+    assert asked == [1]
+    person.field(button.window(), "close").click()
 
 
 def test_the_open_window_of_a_program_follows_it(person, hemisphere, coarse):

@@ -15,6 +15,7 @@ from PySide import QtCore, QtGui
 from ... import api
 from ...core.issues import AmError
 from ...objects.fields import preferences
+from ...objects.program import files_of
 from ...objects.results.findings import message_of
 from ...objects.staleness import UP_TO_DATE
 from .. import icons
@@ -75,7 +76,8 @@ class ProgramWindow:
         self.choice.addItems(names)
         self.choice.setCurrentIndex(names.index(chosen) if chosen in names else 0)
         self.choice.blockSignals(False)
-        self.export_button.setEnabled(bool(names))
+        self.export_button.setEnabled(not self._refused())
+        self.export_button.setToolTip(self._refused() or tr("Writes all files of the program into a folder"))
         fits = self.obj.Status == UP_TO_DATE
         warning = "" if fits or not names else tr("This text is of an earlier plan; do not run it.")
         status = tr("Status: {}.").format(translated(self.obj.Status))
@@ -141,6 +143,11 @@ class ProgramWindow:
         if self.located is not None:
             self.place.setText(tr("Line {}: {}").format(line + 1, self.located.text_at(row)))
 
+    def _refused(self) -> str:
+        """Why there is nothing to export, '' where there is."""
+        refused = refusal(self.obj)
+        return "" if refused is None else translated_error(refused)
+
     def _export(self, *_: Any) -> None:
         try:
             self.state.setText(export(self.obj, self.window))
@@ -195,8 +202,22 @@ def _of(obj: Any) -> ProgramWindow | None:
     return next((shown for shown in _shown if shown.obj is obj), None)
 
 
+def refusal(obj: Any) -> AmError | None:
+    """Why a program cannot be exported, None where it can."""
+    try:
+        files_of(obj)
+    except AmError as error:
+        return error
+    return None
+
+
 def export(obj: Any, window: Any = None) -> str:
-    """Ask for a folder, first the one of last time or the document's, and write the files; says what came of it."""
+    """Ask for a folder, first the one of last time or the document's, and write the files; says what came of it, and why
+    there is nothing to write before a folder is asked for."""
+    if (refused := refusal(obj)) is not None:
+        App.Console.PrintError(error_line(refused))
+        Gui.getMainWindow().statusBar().showMessage(translated_error(refused), 5000)
+        return translated_error(refused)
     first = preferences.programs_folder() or os.path.dirname(obj.Document.FileName)
     folder = QtGui.QFileDialog.getExistingDirectory(window or Gui.getMainWindow(), tr("Export program"), first)
     if not folder:
