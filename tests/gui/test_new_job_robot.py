@@ -45,3 +45,30 @@ def test_a_positioner_is_proposed_in_new_job_and_the_robot_is_shown_there(person
     person.screenshot("new_job_positioner")
     joints = np.concatenate([bead.joints for bead in api.result(path).joint_path.beads])
     assert joints.shape[1] == 8 and np.ptp(joints[:, 6:], axis=0).max() > math.radians(20.0)
+
+
+def test_a_set_up_is_proposed_in_which_a_program_is_written_and_that_of_the_last_cell_is_kept(person, hand, hemisphere):
+    doc = hemisphere.Document
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    setup, without = person.field(panel, "Setup"), person.field(panel, "no_post")
+    assert setup.currentData() == "part-on-robot"
+    hand.enter(panel, "Machine", "kuka-kr16-2")
+    person.until(lambda: setup.currentData() == "tool-on-robot", "a set-up that programs are written in", 5)
+    assert not without.isVisible()
+    hand.enter(panel, "Machine", "abb-irb140")
+    person.until(lambda: setup.currentData() == "part-on-robot", "the usual one of a robot that has programs of it", 5)
+    hand.enter(panel, "Machine", "kuka-kr16-2")
+    person.choose(panel, "Setup", "part-on-robot")
+    person.until(without.isVisible, "that no program is written", 5)  # what is chosen all the same stays
+    assert setup.currentData() == "part-on-robot" and "need the tool on the robot" in without.text()
+    person.press("Cancel")
+    person.panel_closed()
+    for chosen in ("tool-on-robot", "part-on-robot"):
+        api.make_cell(doc, machine="fanuc-m710ic-12l", setup=chosen, branch="auto")
+        person.click("RoboticAM_NewJob")
+        panel = person.panel("RoboticAM_NewJob")
+        assert person.field(panel, "Setup").currentData() == chosen
+        person.press("Cancel")
+        person.panel_closed()

@@ -60,6 +60,7 @@ class HowItStands:
         for one in OF_ROBOTS:
             if one.planned:
                 self.setup.addItem(choices.worded(one.setup), one.setup)
+        self.proposed = str(self.setup.currentData())
         row = next(row for row in rows(BuildDirectionParameters) if row.key == LEANING)
         self.leaning = fields.make(row, row.default)
 
@@ -67,6 +68,13 @@ class HowItStands:
         """Leave out what means nothing for a machine that is no robot, or a saved cell."""
         self.setup.setEnabled(is_robot)
         self.leaning.widget.setEnabled(bool(self.chosen()))
+
+    def propose(self, setup: str) -> None:
+        """Put a set-up that suits the machine, unless another one was chosen than was proposed before."""
+        at = self.setup.findData(setup)
+        if at >= 0 and self.setup.currentData() == self.proposed:
+            self.proposed = setup
+            self.setup.setCurrentIndex(at)
 
     def chosen(self) -> str:
         """The set-up that was chosen, '' where it is the usual one, or there is none to choose."""

@@ -14,7 +14,6 @@ from PySide import QtCore, QtGui
 from ... import api
 from ...core.issues import AmError, Issue
 from ...core.parameters.filled import GEODESIC
-from ...objects.fields import preferences
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
 from ..background.busy import carry_out
@@ -29,7 +28,7 @@ from ..texts.translation import sentence, tr, translated, translated_error
 from ..widgets import choices, suggestions
 from ..widgets.fold import Fold
 from ..widgets.wheel import scrolls
-from . import after, proposal
+from . import after, before, proposal
 from .as_macro import arguments
 from .fields import HowItStands, label, machines, shown
 from .left_out import left_out
@@ -52,6 +51,7 @@ class JobPanel:
         self.found = JobProposal("", "")
         self.asked = ""  # the family the user chose, '' for the one that is proposed
         self.proposed = ""
+        self.followed = ""  # the machine that a set-up was proposed for
         self._lay_out()
         self.background = Background(self.form)
         self.form.destroyed.connect(self.close)
@@ -70,7 +70,7 @@ class JobPanel:
         self.kind = self._kinds()
         self.part = shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
         self.ground = shown("Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view"))
-        self.machine = machines(_machine_before(self.document), self.document)
+        self.machine = machines(before.machine(self.document), self.document)
         self.stands = HowItStands()
         self.name = inputs.NameChoice("")
         self.fold = Fold(tr("Inputs"), True)
@@ -222,8 +222,12 @@ class JobPanel:
         """What was wrong is no longer there; a machine without a post is told now, not when all is planned."""
         for place in self.notes:
             self._tell(place, "")
-        self.stands.follow(suggestions.is_robot(choices.entered(self.machine)))
-        without = suggestions.no_post(choices.entered(self.machine), self.stands.chosen())
+        name = choices.entered(self.machine)
+        self.stands.follow(suggestions.is_robot(name))
+        if name != self.followed:
+            self.followed = name
+            self.stands.propose(before.setup(self.document, name) or suggestions.setup_for(name))
+        without = suggestions.no_post(name, self.stands.chosen())
         self.no_post.setText(without)
         self.no_post.setVisible(bool(without))
 
@@ -238,7 +242,7 @@ class JobPanel:
             if self.found.missing or not self.found.parts:
                 self.say(self.found.missing or self.reason.text())
                 return False
-            before = {obj.Name for obj in self.document.Objects}
+            known = {obj.Name for obj in self.document.Objects}
             recorded.make(self.document, "make_all", self._arguments())
         except AmError as error:
             if error.where in self.notes:
@@ -251,7 +255,7 @@ class JobPanel:
             self.say(tr(CLOSED))
         else:
             self.close()
-            made = [obj for obj in api.stages_of(self.document) if obj.Name not in before]
+            made = [obj for obj in api.stages_of(self.document) if obj.Name not in known]
             after.show_alone(made)
             after.show_machine(made, bool(self.stands.chosen()))
             after.tell_next(made)
@@ -280,9 +284,3 @@ class JobPanel:
             self.is_open = False
             Gui.Selection.removeObserver(self)
             self.background.cancel()
-
-
-def _machine_before(document: Any) -> str:
-    """The machine of the last cell of a document, else the one by default."""
-    cells = api.stages_of(document, "cell")
-    return str(cells[-1].Machine) if cells else preferences.machine()

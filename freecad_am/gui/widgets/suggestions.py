@@ -74,6 +74,19 @@ def no_post(name: str, setup: str = "") -> str:
               "written. Export Path… writes its points as a table.")
 
 
+def setup_for(name: str) -> str:
+    """The set-up of a new job with a machine: the usual one, or where no post writes for that one in which its post does;
+    '' for a machine that cannot be read."""
+    try:
+        loaded = machine.load(name, user_machines.folders())
+    except InputError:
+        return ""
+    posts = written_by(loaded)
+    written = [] if posts is None else [
+        one.setup for one in loaded.arrangements if one.planned and writers(loaded, posts, one.setup)]
+    return [*written, loaded.arrangements[0].setup][0]
+
+
 def post_for(path: Any) -> tuple[str, str]:
     """Post and motion of a new program for the cell of a joint path, ('none', '') where nothing writes for its controller;
     ('', '') where those by default will do, or the machine says nothing."""
