@@ -108,6 +108,33 @@ def test_undo_shows_every_kind_of_field_and_input_as_a_panel_that_is_opened_then
         assert document.UndoCount == steps, f"{name}: nothing is left to be changed"
 
 
+def test_undo_shows_what_solids_claddings_and_curves_are_made_of(person):
+    document = App.newDocument("Features")
+    boxes = [document.addObject("Part::Box", f"Box{k}") for k in range(2)]
+    boxes[1].Placement.Base = App.Vector(40, 0, 0)
+    document.recompute()
+    coarse = {"layer_height": 5}
+    for make, first, fixtures in (
+        (api.make_solid_feature, (boxes[0],), [boxes[1]]), (api.make_cladding_feature, (boxes[0], ["Face6"]), [boxes[1]]),
+        (api.make_curves_feature, (boxes[0], ["Edge1"]), [boxes[1]]),
+    ):
+        obj = make(document, *first, **({} if make is api.make_curves_feature else coarse))
+        of_stages.edit(obj)
+        person.idle()
+        panel = person.panel(f"RoboticAM_{type(obj.Proxy).__name__}")
+        before = person.field(panel, "Fixtures").text()
+        api.change(obj, fixtures=fixtures)
+        person.gui.runCommand("Std_Undo")
+        person.gui.runCommand("Std_Redo")
+        person.until(lambda panel=panel: person.field(panel, "Fixtures").text() == "Box1", "what is done again", 5)
+        person.gui.runCommand("Std_Undo")
+        person.until(lambda panel=panel, before=before: person.field(panel, "Fixtures").text() == before, "undone", 5)
+        steps = document.UndoCount
+        person.press("Ok")
+        person.panel_closed()
+        assert document.UndoCount == steps
+
+
 def applies(person):
     """The button Apply of the panel that is open."""
     boxes = [one for one in person.window.findChildren(person.widgets.QDialogButtonBox) if one.isVisible()]

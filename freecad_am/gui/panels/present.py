@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -26,10 +25,10 @@ def values_of(obj: Any, section: Any) -> dict[str, Any]:
     return found
 
 
-def entries(obj: Any, proxy: type[Stage], choices: Sequence[Input]) -> dict[str, Any]:
+def entries(obj: Any, proxy: type[Stage], inputs: dict[str, Any]) -> dict[str, Any]:
     """What the fields of a panel show of an object: parameters by place, in outer units or as the expression that they
     follow, and inputs by label."""
-    found: dict[str, Any] = {choice.label: choice.stored(obj) for choice in choices}
+    found = dict(inputs)
     for section in proxy.sections:
         values = values_of(obj, section)
         for row in rows(section.cls):
@@ -39,20 +38,16 @@ def entries(obj: Any, proxy: type[Stage], choices: Sequence[Input]) -> dict[str,
 
 def show_other(
     fields: Iterable[tuple[str, Field]], choices: Sequence[Input], before: dict[str, Any], now: dict[str, Any]
-) -> dict[str, str]:
-    """Show what is another one now than before; what was entered elsewhere stays. Arguments of the inputs shown."""
+) -> None:
+    """Show what is another one now than before; what was entered elsewhere stays."""
     for place, field in fields:
         if now[place] != before[place]:
             field.show(now[place])
             field.applied()
-    found: dict[str, str] = {}
     for choice in choices:
         if now[choice.label] != before[choice.label]:
             choice.show_stored(now[choice.label])
             choice.applied()
-            with contextlib.suppress(AmError, ReferenceError):  # told by OK
-                found.update(choice.arguments())
-    return found
 
 
 def _followed(obj: Any, row: Row) -> str:

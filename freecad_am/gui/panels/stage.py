@@ -82,7 +82,7 @@ class StagePanel(Noted):
             self.messages.hold(self.findings)
         self._watch_entries()
         # what the document had when it was shown last
-        self.known = {} if obj is None else present.entries(obj, proxy, choices)
+        self.known = {} if obj is None else self._entries()
         scrolls(self.form)
         missing = [choice.missing for choice in choices if choice.missing]
         if obj is None and missing:
@@ -145,10 +145,23 @@ class StagePanel(Noted):
         if not is_there(self.obj):
             self.say(tr(CLOSED))
             return
-        before, self.known = self.known, present.entries(self.obj, self.proxy, self.choices)
+        before, self.known = self.known, self._entries()
         fields_of = [(place, field) for place, (field, _, _) in self.places.items()]
-        self.first_inputs.update(present.show_other(fields_of, self.choices, before, self.known))
+        with contextlib.suppress(AmError, ReferenceError):  # an input that is gone is told by OK
+            first, shown = self.first_inputs, self._inputs()
+            present.show_other(fields_of, self.choices, before, self.known)
+            self.first_inputs = {
+                key: first[key] if key in first and shown.get(key) == text != first[key] else text
+                for key, text in self._inputs().items()
+            }
         self._show_findings()
+
+    def _entries(self) -> dict[str, Any]:
+        return present.entries(self.obj, self.proxy, self._stored())
+
+    def _stored(self) -> dict[str, Any]:
+        """What the object has of the inputs, by their labels."""
+        return {choice.label: choice.stored(self.obj) for choice in self.choices}
 
     def _inputs(self) -> dict[str, str]:
         return {key: text for choice in self.choices for key, text in choice.arguments().items()}
@@ -187,7 +200,7 @@ class StagePanel(Noted):
         for choice in self.choices:
             choice.applied()
         self.first_inputs = self._inputs()
-        self.known = present.entries(self.obj, self.proxy, self.choices)
+        self.known = self._entries()
         self._show_findings()
         return True
 

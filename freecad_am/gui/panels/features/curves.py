@@ -36,17 +36,16 @@ class CurvesPanel(PickPanel):
     stage, icon, function, draft = CurvesFeature, "curves", "make_curves_feature", "Curves"
 
     def __init__(self, obj: Any = None) -> None:
-        source, names = (None, []) if obj is None or not obj.Source else obj.Source
-        chosen = {kind: [name for name in names if name.rsplit(".", maxsplit=1)[-1].startswith(kind)]
-                  for kind in (picking.EDGE, picking.FACE)}
-        self.curves = PickField(CURVES, tr("Curves"), None if source is None else (source, chosen[picking.EDGE]), self._arm,
-                                picking.EDGE, whole=True)
-        faces = (source, chosen[picking.FACE]) if chosen[picking.FACE] else None
+        curves, faces, substrate, fixtures = (None, None, None, ()) if obj is None else _present(obj)
+        self.curves = PickField(CURVES, tr("Curves"), curves, self._arm, picking.EDGE, whole=True)
         self.normals = PickField(NORMALS, tr("Faces"), faces, self._arm, picking.FACE)
-        self.substrate = PickField(SUBSTRATE, tr("Stands on"), None if obj is None else obj.Substrate, self._arm)
-        self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
+        self.substrate = PickField(SUBSTRATE, tr("Stands on"), substrate, self._arm)
+        self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
         picks = [self.curves, self.normals, self.substrate, self.fixtures]
         super().__init__(tr("Curves as beads") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
+
+    def _stored(self) -> dict[str, Any]:
+        return {pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)}
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         """What is selected first, with its edges."""
@@ -100,3 +99,11 @@ class CurvesPanel(PickPanel):
 
     def _draw_without(self) -> None:
         self.nodes.set_first([])
+
+
+def _present(obj: Any) -> tuple[Any, ...]:
+    """Curves, faces of their normals, substrate and fixtures as an object has them."""
+    source, names = obj.Source or (None, [])
+    edges, faces = ([name for name in names if name.rsplit(".", maxsplit=1)[-1].startswith(kind)]
+                    for kind in (picking.EDGE, picking.FACE))
+    return None if source is None else (source, edges), (source, faces) if faces else None, obj.Substrate, obj.Fixtures

@@ -64,6 +64,9 @@ class HubPanel(PickPanel):
                 fold.enable(field.widget, False)
                 field.widget.setToolTip(tr("Of walls alone: solids on a hub grow along the normals of its surface"))
 
+    def _stored(self) -> dict[str, Any]:
+        return {pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)}
+
     # ---- what is picked
 
     def _propose(self, picks: list[picking.Pick]) -> str:

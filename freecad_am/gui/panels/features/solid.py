@@ -76,17 +76,18 @@ class SolidPanel(PickPanel):
     kept: tuple[Any, Outcome] | None = None  # the solids read last: what of, and what
 
     def __init__(self, obj: Any = None) -> None:
-        solids = [] if obj is None or not obj.Source else [obj.Source[0], *obj.Further]
+        solids, substrate, guide, start, fixtures = ([], None, None, None, ()) if obj is None else _present(obj)
         self.solids = PickField(SOLIDS, tr("Solids"), solids, self._arm)
-        self.substrate = PickField(SUBSTRATE, tr("Stands on"), None if obj is None else obj.Substrate, self._arm)
-        self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
-        guide = None if obj is None else getattr(obj, "Guide", None)
+        self.substrate = PickField(SUBSTRATE, tr("Stands on"), substrate, self._arm)
+        self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
         self.guide = PickField(GUIDE, tr("Guide"), guide, self._arm, picking.EDGE, whole=True)
-        start = None if obj is None else getattr(obj, "StartFaces", None)
         self.start = PickField(START, tr("Starts on"), start, self._arm, picking.FACE)
         picks = [self.solids, self.substrate, self.guide, self.start, self.fixtures]
         super().__init__(tr("Solids in plane layers") if obj is None else obj.Label, picks, obj, SolidNodes())
         self._add_overhang()
+
+    def _stored(self) -> dict[str, Any]:
+        return {pick.label: stored for pick, stored in zip(self.picks, _present(self.obj), strict=True)}
 
     def _add_overhang(self) -> None:
         """The slider of the overhang view: a picture alone, it enters nothing."""
@@ -212,3 +213,9 @@ def _with_names(field: PickField) -> str:
         return "None"
     pick = field.picks[0]
     return f"({recorded.reference(pick.obj)}, {list(pick.names) or ['']!r})"
+
+
+def _present(obj: Any) -> tuple[Any, ...]:
+    """Solids, substrate, guide, start faces and fixtures as an object has them."""
+    solids = [obj.Source[0], *obj.Further] if obj.Source else []
+    return solids, obj.Substrate, getattr(obj, "Guide", None), getattr(obj, "StartFaces", None), obj.Fixtures
