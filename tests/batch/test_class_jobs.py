@@ -271,7 +271,7 @@ def test_a_weave_that_cannot_be_told_is_named_before_planning(workshop):
     job = (workshop.folder / "bar.yaml").read_text()
     (workshop.folder / "joint.yaml").write_text(job.replace("process:\n", "process:\n  weave: 2\n"))
     done = workshop.run("plan", "joint.yaml", "-o", "joint")
-    assert done.status == 2 and "error[WEAVE]" in done.err and "motion: cartesian" in done.err
+    assert done.status == 2 and "error[WEAVE]" in done.err and "program.motion to cartesian" in done.err
     assert not list((workshop.folder / "joint").glob("program/*"))
 
 
