@@ -164,6 +164,9 @@ def test_a_machine_without_a_post_is_told_as_it_is_chosen(person, hemisphere):
     told = person.field(panel, "no_post")
     assert not told.isVisible()
     person.choose(panel, "Machine", "kuka-kr16-2")
+    setup = person.field(panel, "Setup")
+    assert setup.currentData() == "tool-on-robot" and not told.isVisible()  # for which its programs are
+    person.choose(panel, "Setup", "part-on-robot")
     assert told.isVisible() and "no program is written" in told.text()
     person.choose(panel, "Machine", "table-xyzac")
     assert not told.isVisible()
