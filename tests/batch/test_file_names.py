@@ -7,7 +7,7 @@ import pytest
 
 from freecad_am.sections import paths
 
-AT = "/work/cup.yaml"
+AT = "/jobs/cup.yaml"
 
 
 def test_names_of_files_of_every_feature_are_absolute():
@@ -17,9 +17,9 @@ def test_names_of_files_of_every_feature_are_absolute():
         "strategy": {"guide": {"file": "e.step"}}, "process": {"bead_model": "own.csv", "material": "nowhere"},
     }
     wanted = {
-        "part": {"file": "/work/a.step"}, "substrate": {"file": "/b.step", "scan": "/work/c.csv"},
-        "fixtures": [{"file": "/d.stl"}, {}], "strategy": {"guide": {"file": "/work/e.step"}},
-        "process": {"bead_model": "/work/own.csv", "material": "nowhere"},
+        "part": {"file": "/jobs/a.step"}, "substrate": {"file": "/b.step", "scan": "/jobs/c.csv"},
+        "fixtures": [{"file": "/d.stl"}, {}], "strategy": {"guide": {"file": "/jobs/e.step"}},
+        "process": {"bead_model": "/jobs/own.csv", "material": "nowhere"},
     }
     values = {**feature, "features": [feature, {"name": "top"}], "name": "cup.step"}
     before = copy.deepcopy(values)
@@ -44,13 +44,13 @@ def test_a_material_in_the_folder_of_the_job_comes_before_those_built_in(tmp_pat
 
 @pytest.mark.parametrize("machine, wanted", [
     ("fanuc-arcmate120ic", "fanuc-arcmate120ic"),
-    ("mine.json", "/work/mine.json"),
-    ("robots/mine", "/work/robots/mine"),
-    ("robot.urdf base=base_link", "/work/robot.urdf base=base_link"),
-    ("ur-ur10e calibration=my.yaml", "ur-ur10e calibration=/work/my.yaml"),
-    ({"file": "robot.urdf", "tip": "tool0"}, {"file": "/work/robot.urdf", "tip": "tool0"}),
+    ("mine.json", "/jobs/mine.json"),
+    ("robots/mine", "/jobs/robots/mine"),
+    ("robot.urdf base=base_link", "/jobs/robot.urdf base=base_link"),
+    ("ur-ur10e calibration=my.yaml", "ur-ur10e calibration=/jobs/my.yaml"),
+    ({"file": "robot.urdf", "tip": "tool0"}, {"file": "/jobs/robot.urdf", "tip": "tool0"}),
     ({"file": "robot.urdf base=arm"}, {"file": "robot.urdf base=arm"}),  # which is refused, and told as it stands
-    ({"name": "mine.json", "calibration": "my.yaml"}, {"name": "/work/mine.json", "calibration": "/work/my.yaml"}),
+    ({"name": "mine.json", "calibration": "my.yaml"}, {"name": "/jobs/mine.json", "calibration": "/jobs/my.yaml"}),
 ])
 def test_machines_of_a_cell(machine, wanted):
     assert paths.of_cell({"machine": machine, "external": [{"machine": machine}]}, AT) == {
@@ -59,10 +59,10 @@ def test_machines_of_a_cell(machine, wanted):
 
 
 def test_other_files_of_a_cell():
-    assert paths.of_cell(" hall.yaml ", AT) == "/work/hall.yaml"
+    assert paths.of_cell(" hall.yaml ", AT) == "/jobs/hall.yaml"
     section = {"obstacles": [{"file": "table.step"}, {"box": [1, 2, 3]}], "nozzle": {"shape": {"file": "torch.stl"}}}
     assert paths.of_cell(section, AT) == {
-        "obstacles": [{"file": "/work/table.step"}, {"box": [1, 2, 3]}], "nozzle": {"shape": {"file": "/work/torch.stl"}},
+        "obstacles": [{"file": "/jobs/table.step"}, {"box": [1, 2, 3]}], "nozzle": {"shape": {"file": "/jobs/torch.stl"}},
     }
     for shape in ("none", 3, None):
         assert paths.of_cell({"nozzle": {"shape": shape}}, AT) == {"nozzle": {"shape": shape}}

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from ..types import Array, Index, Mask
+from .by_numbers import ByNumbers
 from .deposit import of_beads
 from .frustum import side_height
 from .nozzle import Nozzle, exempt_height, travelling
@@ -127,21 +128,11 @@ class BeadEnds:
 
 
 @dataclass(frozen=True, eq=False)
-class _Asked:
+class _Asked(ByNumbers):
     """What ends of beads follow from; the same numbers are the same question."""
 
     beads: Beads
     size: Size
-
-    @cached_property
-    def _numbers(self) -> tuple[bytes, ...]:
-        return tuple(column.tobytes() for column in (*self.beads, np.array(self.size)))
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Asked) and self._numbers == other._numbers
-
-    def __hash__(self) -> int:
-        return hash(self._numbers)
 
 
 @lru_cache(maxsize=1)

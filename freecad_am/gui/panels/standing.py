@@ -16,15 +16,13 @@ MOST_ISSUES = 6
 def own_lines(obj: Any) -> list[str]:
     """The status of a stage, its message and its findings."""
     found = issues_of(obj)
-    lines = [translated(message_of(obj))] if obj.Message and not found else []
-    lines += [
+    message = [translated(message_of(obj))] if obj.Message and not found else []
+    lines = [
         tr("{}: {}").format(
             " ".join(filter(None, (translated(issue.level), translated(issue.where)))), translated(issue.message)
-        ) for issue in found[:MOST_ISSUES]
+        ) for issue in found
     ]
-    if len(found) > MOST_ISSUES:
-        lines.append(tr("and {} more").format(len(found) - MOST_ISSUES))
-    return [tr("Status: {}").format(translated(obj.Status)), *lines]
+    return [tr("Status: {}").format(translated(obj.Status)), *message, *_first(lines)]
 
 
 def lines_of_followers(obj: Any) -> list[str]:
@@ -34,7 +32,10 @@ def lines_of_followers(obj: Any) -> list[str]:
              if one.Status in (FAILED, INFEASIBLE) and (one is obj or one in followers)]
     first = [one for one in wrong if one is not obj and not set(one.OutListRecursive) & set(wrong)]
     texts = {FAILED: tr("{} failed: {}"), INFEASIBLE: tr("{} is infeasible: {}")}
-    lines = [texts[one.Status].format(one.Label, translated(reason_of(one))) for one in first[:MOST_ISSUES]]
-    if len(first) > MOST_ISSUES:
-        lines.append(tr("and {} more").format(len(first) - MOST_ISSUES))
-    return lines
+    return _first([texts[one.Status].format(one.Label, translated(reason_of(one))) for one in first])
+
+
+def _first(lines: list[str]) -> list[str]:
+    """As many lines as there is room for, and how many more there are."""
+    left = len(lines) - MOST_ISSUES
+    return lines if left <= 0 else [*lines[:MOST_ISSUES], tr("and {} more").format(left)]

@@ -8,12 +8,13 @@ limits allow, as the links of a wrist do to a clearance wider than the wrist. No
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, fields, is_dataclass
-from functools import cached_property, lru_cache
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from ...collision.by_numbers import ByNumbers
 from ...collision.cylinders_apart import PlacedCylinders, axes_apart, nearer
 from ...collision.tolerances import ABOUT_FACES
 from ...geometry import frames
@@ -102,23 +103,13 @@ class OwnLinks:
 
 
 @dataclass(frozen=True, eq=False)
-class _Asked:
+class _Asked(ByNumbers):
     """What the links of a robot follow from; the same numbers are the same question."""
 
     chain: Chain
     limits: Limits
     cylinders: Sequence[Sequence[Cylinder]]
     clearance: float
-
-    @cached_property
-    def _numbers(self) -> Hashable:
-        return _numbers((self.chain, self.limits, self.cylinders, self.clearance))
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Asked) and self._numbers == other._numbers
-
-    def __hash__(self) -> int:
-        return hash(self._numbers)
 
 
 @lru_cache(REMEMBERED)
@@ -140,18 +131,6 @@ def _found(asked: _Asked) -> OwnLinks:
         and found.often(pair, links, middles, LEFT_OUT)
     }
     return OwnLinks(solids, found.balls, gap, tuple(pair for pair in every if pair not in usual))
-
-
-def _numbers(value: object) -> Hashable:
-    """All numbers and names in a value, to be compared."""
-    if isinstance(value, np.ndarray):
-        return value.shape, value.tobytes()
-    if isinstance(value, (list, tuple)):
-        return tuple(_numbers(each) for each in value)
-    if is_dataclass(value):
-        return tuple(_numbers(getattr(value, each.name)) for each in fields(value))
-    assert isinstance(value, Hashable)
-    return value
 
 
 def positions(limits: Limits, axes: int) -> Array:
