@@ -25,8 +25,6 @@ LONG_FUNCTIONS = {
     "core/process/model/bead_table.py measured": 44,
     "core/process/deposit/support.py _alone": 49,
     "core/simulation/rapid_look.py looked_at": 45,
-    "core/slicing/fronts/closing.py closing": 42,
-    "core/slicing/fronts/curve.py exact": 48,
     "core/strategies/cladding.py plan": 47,
     "core/strategies/solids/filling.py filled": 47,
     "core/strategies/solids/lean.py _spread": 46,

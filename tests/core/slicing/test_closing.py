@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.implicit import HalfSpace
 from freecad_am.core.slicing.fronts import layers as fronts
+from freecad_am.core.slicing.fronts.feet import local_distances
 from tests.core.patch_walls import ball, samples, sheet, tube
 
 FLOOR = HalfSpace(np.array([0.0, 0.0, -5.0]), np.array([0.1, 0.3, 1.0]))
@@ -65,7 +66,7 @@ def test_gaps_are_closed(case):
         for curve in gaps:  # on the wall, over the layer below, and no stub
             points = curve.at(curve.refined(5))[0]
             assert np.linalg.norm(wall.project(points)[0] - points, axis=1).max() < 0.01 * height
-            low = fronts.local_distances(curve, found.fronts[index - 1], 5)
+            low = local_distances(curve, found.fronts[index - 1], 5)
             assert low.min() > 0.3 * height and low.max() < 1.01 * height
             assert curve.length > 0.4 * height
 

@@ -9,6 +9,7 @@ from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.slicing.first_layer import on_implicit
 from freecad_am.core.slicing.fronts import layers as fronts
+from freecad_am.core.slicing.fronts.feet import local_distances
 from freecad_am.core.slicing.fronts.rims import Rims
 from freecad_am.core.slicing.tubes import constant_distance
 from freecad_am.core.slicing.tubes.wall_layer import even_grid
@@ -23,7 +24,7 @@ def assert_spacing(layers, height):
     """At the nodes within a hundredth of what is promised, between them, on a grid ten times finer, as promised."""
     for below, above in zip(layers, layers[1:]):
         for front in above:
-            assert fronts.local_distances(front, below) == pytest.approx(height, abs=1e-5)
+            assert local_distances(front, below) == pytest.approx(height, abs=1e-5)
             assert brute(front.at(front.refined(10))[0], below) == pytest.approx(height, abs=1e-3)
 
 

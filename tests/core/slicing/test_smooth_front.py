@@ -7,7 +7,8 @@ import pytest
 from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.slicing.fronts import layers as fronts
 from freecad_am.core.slicing.fronts.rims import Rims
-from freecad_am.core.slicing.fronts.smooth import Smoothing, turn
+from freecad_am.core.slicing.fronts.slicing import Smoothing
+from freecad_am.core.slicing.fronts.smooth import turn
 from tests.core.patch_walls import ball, bend, brute, sheet
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])

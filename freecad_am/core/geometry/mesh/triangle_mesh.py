@@ -14,6 +14,9 @@ from scipy.spatial import cKDTree
 
 from ...issues import InputError
 from ...types import Array, Index, Mask
+from .triangles import cut_evenly
+
+DECIMALS = 6  # decimals of mm to which vertices of a finer mesh are told apart
 
 
 class LevelLine(NamedTuple):
@@ -120,6 +123,14 @@ class Mesh:
         """The mesh of some faces (k,) alone, and the numbers (m,) that its vertices have here."""
         vertices, corners = np.unique(self.faces[faces], return_inverse=True)
         return Mesh(self.vertices[vertices], np.ravel(corners).reshape(-1, 3).astype(np.intp)), vertices
+
+    def finer(self, longest: float) -> Mesh:
+        """The mesh cut evenly so that no edge is longer than `longest` mm."""
+        points, parts = cut_evenly(self.vertices[self.faces], longest)
+        every = (np.arange(len(self.faces))[:, None, None] * points.shape[1] + parts[None]).reshape(-1, 3)
+        points = points.reshape(-1, 3)
+        _, first, same = np.unique(np.round(points, DECIMALS) + 0.0, axis=0, return_index=True, return_inverse=True)
+        return Mesh(points[first], np.ravel(same)[every].astype(np.intp))
 
     def level_lines(self, values: Array, faces: Index) -> list[LevelLine]:
         """The lines on the faces (k,) along which the values (n,) are zero, interpolated along edges.

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points and triangles: the nearest of the one to the other."""
+"""Triangles: their nearest points, and the points of parts that they are cut into."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...types import Array
+from ...types import Array, Index
 from ..walls.surface import dot
 
 
@@ -32,3 +32,21 @@ def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:
     best = np.argmin(square, axis=0)[None]
     v, w, least = (np.take_along_axis(each, best, axis=0)[0] for each in (vs, ws, square))
     return np.sqrt(np.maximum(least, 0.0)), np.stack([1.0 - v - w, v, w], axis=-1)
+
+
+def cut_evenly(corners: Array, longest: float) -> tuple[Array, Index]:
+    """Triangles (m, 3, 3) cut so that no edge is longer than `longest` mm: the points (m, k, 3) in each, and the points
+    (l, 3) that the parts of any have as corners."""
+    edge = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
+    n = max(1, int(np.ceil(edge / longest)))
+    i, j = (k.ravel() for k in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
+    i, j = i[i + j <= n], j[i + j <= n]
+    number = np.full((n + 2, n + 2), -1)
+    number[i, j] = np.arange(len(i))
+    up, down = i + j < n, i + j < n - 1
+    parts = np.vstack([
+        np.stack([number[i[up], j[up]], number[i[up] + 1, j[up]], number[i[up], j[up] + 1]], axis=1),
+        np.stack([number[i[down] + 1, j[down]], number[i[down] + 1, j[down] + 1], number[i[down], j[down] + 1]], axis=1),
+    ])
+    share = np.stack([n - i - j, i, j], axis=1) / n
+    return np.einsum("sk,mkc->msc", share, corners), parts.astype(np.intp)

@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A front on a wall made exact: points brought onto the wall and to their distance, corners found, arcs refined."""
+"""Curves made exact: fronts brought onto the wall and to their distance, corners found, arcs refined; other curves brought
+onto the wall."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.frames import unit
 from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
-from ...types import Array, Index
+from ...types import Array, Index, Mask
+from .feet import Feet, feet
+from .rims import Line
+from .slicing import Slicing
 
 STEPS = 12
 ROUNDS = 12
@@ -25,87 +28,56 @@ INSIDE = np.array([1.0 / 3.0, 2.0 / 3.0])
 SAME_FOOT = 1e-3  # of the height; branches whose nearest points lie closer than this are one
 
 
-class Feet(NamedTuple):
-    """Distances (n,) to the fronts below, unit vectors away from the nearest points (n, 3), and where these lie:
-    front (n,), parameter w (n,), point (n, 3)."""
+def exact(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[SpaceCurve]:
+    """The front at the layer height from those below that runs near a line.
 
-    distance: Array
-    away: Array
-    front: Index
-    w: Array
-    point: Array
-
-
-def feet(fronts: list[SpaceCurve], points: Array) -> Feet:
-    """The nearest of all places on the fronts for each point (n, 3)."""
-    found = [front.nearest(points) for front in fronts]
-    distances = np.stack([one[0] for one in found])
-    which = np.argmin(distances, axis=0)
-    row = np.arange(len(points))
-    foot = np.stack([one[1] for one in found])[which, row]
-    return _feet(points, foot, which, np.stack([one[2] for one in found])[which, row])
-
-
-def _feet(points: Array, foot: Array, front: Index, w: Array) -> Feet:
-    gap = points - foot
-    distance = np.linalg.norm(gap, axis=1)
-    return Feet(distance, gap / np.maximum(distance, 1e-300)[:, None], front, w, foot)
-
-
-def inside(curve: SpaceCurve) -> Array:
-    """The parameters at INSIDE of each arc, (2 (m - 1),), rising."""
-    places: Array = (curve.w[:-1, None] + curve.span[:, None] * INSIDE).ravel()
-    return places
-
-
-def exact(
-    wall: PatchWall, fronts: list[SpaceCurve], height: float, points: Array, closed: bool, rims: Array, ends: Array
-) -> list[SpaceCurve]:
-    """The front at `height` mm from the fronts below that runs near the chain of points (n, 3).
-
-    A closed chain does not repeat its first point; the curve does. Nodes lie on the wall and at the height to rounding,
-    arcs to WITHIN; corners are nodes. The deposit below lies on the curve's right as seen from where the wall's normals
-    point to. ends: (2, 3) where an open front ends; where that is not known, not a number, its end moves along the wall's
-    edge, whose directions there are the unit vectors rims (2, 3). None or several pieces where points of the chain do
-    not find their distance: between fronts that meet.
+    Nodes lie on the wall and at the height to rounding, arcs to WITHIN; corners are nodes. The deposit below lies on the
+    curve's right as seen from where the wall's normals point to. Where the end of an open line is not known, that of the
+    front moves along the wall's edge. None or several pieces where points of the line do not find their distance: between
+    fronts that meet.
     """
-    start = points
-    points, normal, below = _converged(wall, fronts, height, points, None if closed else rims)
-    far = 2.0 * np.median(np.linalg.norm(np.diff(start, axis=0), axis=1))
-    sound = (np.abs(below.distance - height) < CONVERGED * height) & (np.linalg.norm(points - start, axis=1) < 4.0 * far)
-    known = np.flatnonzero(np.isfinite(ends).all(axis=1))
-    if not closed and len(known):
-        place = np.array([0, len(points) - 1])[known]
-        points[place], normal[place] = ends[known], wall.project(ends[known])[1]
-        below, sound[place] = feet(fronts, points), True
-    if sound.sum() < (4 if closed else 2):
+    offset = _Offset(slicing.wall, below, slicing.height)
+    nodes = offset.nodes_near(line)
+    if nodes is None:
         return []
-    points, normal = points[sound], normal[sound]
-    below = _those(below, sound)
-    tangent = unit(np.cross(below.away, normal))
-    chord = np.diff(np.vstack([points, points[:1]]), axis=0)[: len(points) if closed else -1]
-    nodes = _Nodes(points, tangent, tangent, below)
-    if dot(tangent[: len(chord)], chord).sum() < 0.0:
-        nodes = _Nodes(points[::-1], tangent[::-1], tangent[::-1], _those(below, np.arange(len(points))[::-1]))
     for _ in range(ROUNDS):
-        nodes = _forward(nodes, closed)
-        curve = _curve(nodes, closed)
-        inner = curve.at(inside(curve))[0]
-        on_wall = wall.project(inner)[0]
-        off = np.maximum(np.abs(feet(fronts, on_wall).distance - height), np.linalg.norm(on_wall - inner, axis=1))
-        bad = np.flatnonzero((off.reshape(-1, len(INSIDE)).max(axis=1) > WITHIN) & (curve.span > 1e-6 * curve.period))
+        nodes = nodes.forward()
+        curve = nodes.curve()
+        bad = offset.bad_arcs(curve)
         if not len(bad):
             return [curve]
-        corner = _corners(wall, fronts, height, nodes, bad)
-        rest = bad[~np.isin(bad, corner[0])]
-        middle = curve.at(curve.w[rest] + 0.5 * curve.span[rest])[0]
-        spot, spot_normal, spot_below = _converged(wall, fronts, height, middle, None)
-        sound = np.abs(spot_below.distance - height) < CONVERGED * height
-        rest, spot, spot_normal = rest[sound], spot[sound], spot_normal[sound]
-        spot_below = _those(spot_below, sound)
-        along = unit(np.cross(spot_below.away, spot_normal))
-        nodes = _inserted(nodes, [corner, (rest, _Nodes(spot, along, along, spot_below))])
+        corners = offset.corners(nodes, bad)
+        nodes = nodes.inserted([corners, offset.middles(curve, bad[~np.isin(bad, corners[0])])])
     return _without(curve, bad)
+
+
+def on_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
+    """The curve with further nodes where its arcs are off the wall between the nodes."""
+    for _ in range(ROUNDS):
+        points = curve.at(_inside(curve))[0]
+        bad = _bad(curve, np.linalg.norm(wall.project(points)[0] - points, axis=1))
+        if not len(bad):
+            break
+        w = curve.w[bad] + 0.5 * curve.span[bad]
+        points, slope, _ = curve.at(w)
+        points, normal = wall.project(points)
+        slope = slope - dot(slope, normal)[:, None] * normal
+        curve = SpaceCurve(
+            np.insert(curve.w, bad + 1, w), np.insert(curve.points, bad + 1, points, axis=0),
+            np.insert(curve.into, bad + 1, slope, axis=0), np.insert(curve.out, bad + 1, slope, axis=0), curve.closed,
+        )
+    return curve
+
+
+def _inside(curve: SpaceCurve) -> Array:
+    """The parameters at INSIDE of each arc, (2 (m - 1),), rising."""
+    w: Array = (curve.w[:-1, None] + curve.span[:, None] * INSIDE).ravel()
+    return w
+
+
+def _bad(curve: SpaceCurve, off: Array) -> Index:
+    """The arcs that are off by more than WITHIN at one of INSIDE, (2 (m - 1),) mm, and not too short to be cut."""
+    return np.flatnonzero((off.reshape(-1, len(INSIDE)).max(axis=1) > WITHIN) & (curve.span > 1e-6 * curve.period))
 
 
 def _without(curve: SpaceCurve, bad: Index) -> list[SpaceCurve]:
@@ -118,127 +90,171 @@ def _without(curve: SpaceCurve, bad: Index) -> list[SpaceCurve]:
 
 
 class _Nodes(NamedTuple):
+    """Nodes of a front: points (n, 3), unit tangents (n, 3) that arrive and leave, the nearest places below. Those of a
+    closed one do not repeat the first."""
+
     points: Array
     into: Array
     out: Array
-    below: Feet
+    foot: Feet
+    closed: bool
+
+    def of(self, which: Mask | Index | slice) -> _Nodes:
+        """Some of them."""
+        return _Nodes(self.points[which], self.into[which], self.out[which], self.foot.of(which), self.closed)
+
+    def inserted(self, more: list[tuple[Index, _Nodes]]) -> _Nodes:
+        """The nodes with others behind those that begin the arcs named."""
+        order = np.argsort(np.concatenate([np.arange(len(self.points))] + [arcs + 0.5 for arcs, _ in more]), kind="stable")
+        every = [self, *(nodes for _, nodes in more)]
+        points, into, out = (np.concatenate([nodes[k] for nodes in every]) for k in range(3))
+        foot = Feet(*(np.concatenate(columns) for columns in zip(*(nodes.foot for nodes in every))))
+        return _Nodes(points, into, out, foot, self.closed).of(order)
+
+    def forward(self) -> _Nodes:
+        """Without the nodes that lie behind their predecessor or on it: next to corners points may settle in a tangle."""
+        nodes, closed = self, self.closed
+        while True:
+            n = len(nodes.points)
+            chord = np.roll(nodes.points, -1, axis=0) - nodes.points
+            length = np.linalg.norm(chord, axis=1)
+            turned = (dot(chord, nodes.out) <= 0.0) | (dot(chord, np.roll(nodes.into, -1, axis=0)) <= 0.0)
+            alike = dot(nodes.out, np.roll(nodes.into, -1, axis=0)) > 0.5  # else a corner is still to be found between them
+            bad = (turned & alike) | (length < SAME_PLACE)
+            if not closed:
+                bad[-1] = False
+            corner = dot(nodes.into, nodes.out) < SMOOTH
+            drop = np.zeros(n, dtype=bool)
+            at = np.flatnonzero(bad)
+            after = (at + 1) % n
+            # of the two ends of an arc that runs backwards a corner stays, and the ends of an open front stay
+            kept = corner[after] | ((after == n - 1) & (not closed))
+            loser = np.where(kept, at, after)
+            drop[loser[~(corner[loser])]] = True
+            if not closed:
+                drop[[0, -1]] = False
+            if not drop.any() or n - drop.sum() < 4:
+                return nodes
+            nodes = nodes.of(~drop)
+
+    def curve(self) -> SpaceCurve:
+        """The curve through them."""
+        points, into, out = self[:3]
+        if self.closed:
+            points, into, out = (np.vstack([column, column[:1]]) for column in (points, into, out))
+        w = np.r_[0.0, np.cumsum(np.maximum(np.linalg.norm(np.diff(points, axis=0), axis=1), 1e-12))]
+        return SpaceCurve(w, points, into, out, self.closed)
 
 
-def _converged(
-    wall: PatchWall, fronts: list[SpaceCurve], height: float, points: Array, rims: Array | None
-) -> tuple[Array, Array, Feet]:
-    """Points moved within the wall, straight away from the front below, until their distance is the height; the ends of
-    an open chain along the rims."""
-    points, normal = wall.project(points)
-    for _ in range(STEPS):
-        below = feet(fronts, points)
-        slope = below.away - dot(below.away, normal)[:, None] * normal
-        error = height - below.distance
-        if np.abs(error).max(initial=0.0) < 1e-11 * height:
-            break
-        step = (error / np.maximum(dot(slope, slope), 0.05))[:, None] * slope
-        if rims is not None:
-            rate = dot(below.away[[0, -1]], rims)
-            least = np.where(rate < 0.0, -0.1, 0.1)
-            step[[0, -1]] = (error[[0, -1]] / np.where(np.abs(rate) < 0.1, least, rate))[:, None] * rims
-        points, normal = wall.project(points + step)
-    return points, normal, feet(fronts, points)
+class _Offset(NamedTuple):
+    """What an offset front is: all that lies at `height` mm from the fronts below, on a wall."""
+
+    wall: PatchWall
+    below: list[SpaceCurve]
+    height: float
+
+    def nodes_near(self, line: Line) -> _Nodes | None:
+        """Nodes near the points of a line, in the front's sense of direction; none where too few find their distance."""
+        points, normal, foot = self._converged(line.points, None if line.closed else line.rims)
+        typical = np.median(np.linalg.norm(np.diff(line.points, axis=0), axis=1))
+        found = self._reached(foot) & (np.linalg.norm(points - line.points, axis=1) < 8.0 * typical)
+        known = np.flatnonzero(np.isfinite(line.ends).all(axis=1))
+        if not line.closed and len(known):
+            end = np.array([0, len(points) - 1])[known]
+            points[end], normal[end] = line.ends[known], self.wall.project(line.ends[known])[1]
+            foot, found[end] = feet(self.below, points), True
+        if found.sum() < (4 if line.closed else 2):
+            return None
+        nodes = _smooth_nodes(points[found], normal[found], foot.of(found), line.closed)
+        chord = np.diff(np.vstack([nodes.points, nodes.points[:1]]), axis=0)[: len(nodes.points) if line.closed else -1]
+        return nodes.of(slice(None, None, -1)) if dot(nodes.out[: len(chord)], chord).sum() < 0.0 else nodes
+
+    def bad_arcs(self, curve: SpaceCurve) -> Index:
+        """The arcs of a curve that are off the wall or the height between the nodes."""
+        points = curve.at(_inside(curve))[0]
+        foot = self.wall.project(points)[0]
+        off = np.abs(feet(self.below, foot).distance - self.height)
+        return _bad(curve, np.maximum(off, np.linalg.norm(foot - points, axis=1)))
+
+    def middles(self, curve: SpaceCurve, arcs: Index) -> tuple[Index, _Nodes]:
+        """The middles of arcs (k,) of a curve: the arcs whose middle finds its distance, and these as nodes."""
+        points, normal, foot = self._converged(curve.at(curve.w[arcs] + 0.5 * curve.span[arcs])[0], None)
+        found = self._reached(foot)
+        return arcs[found], _smooth_nodes(points[found], normal[found], foot.of(found), curve.closed)
+
+    def corners(self, nodes: _Nodes, arcs: Index) -> tuple[Index, _Nodes]:
+        """Corners on those of the arcs (k,) whose ends belong to two branches: the arcs that have one, and the corners."""
+        ends = [nodes.of(arcs), nodes.of((arcs + 1) % len(nodes.points))]
+        both = [end.foot for end in ends]
+        chord = np.linalg.norm(ends[1].points - ends[0].points, axis=1)
+        middle = 0.5 * (ends[0].points + ends[1].points)
+        points, normal = self.wall.project(middle)
+        for _ in range(STEPS * 2):
+            both = [self._walked(points, foot) for foot in both]
+            slopes = [foot.away - dot(foot.away, normal)[:, None] * normal for foot in both]
+            step = _step(slopes, [self.height - foot.distance for foot in both], np.maximum(chord, 0.3 * self.height))
+            points, normal = self.wall.project(points + step)
+            if np.abs(step).max(initial=0.0) < 1e-12:
+                break
+        both = [self._walked(points, foot) for foot in both]
+        found = np.linalg.norm(both[0].point - both[1].point, axis=1) > SAME_FOOT * self.height
+        for foot in both:
+            found &= np.abs(foot.distance - self.height) < 1e-8
+        found &= np.linalg.norm(points - middle, axis=1) < np.maximum(1.5 * chord, 4.0 * self.height)
+        for end in ends:  # one of the ends may be that corner already
+            corner = dot(end.into, end.out) < SMOOTH
+            found &= ~corner | (np.linalg.norm(points - end.points, axis=1) > SAME_PLACE)
+        found[found] = np.abs(feet(self.below, points[found]).distance - self.height) < 1e-7
+        into, out = (unit(np.cross(foot.away, normal)) for foot in both)
+        return arcs[found], _Nodes(points, into, out, both[0], nodes.closed).of(found)
+
+    def _reached(self, foot: Feet) -> Mask:
+        reached: Mask = np.abs(foot.distance - self.height) < CONVERGED * self.height
+        return reached
+
+    def _converged(self, points: Array, rims: Array | None) -> tuple[Array, Array, Feet]:
+        """Points moved within the wall, straight away from the front below, until their distance is the height; the ends of
+        an open line along the rims."""
+        points, normal = self.wall.project(points)
+        for _ in range(STEPS):
+            foot = feet(self.below, points)
+            slope = foot.away - dot(foot.away, normal)[:, None] * normal
+            off = self.height - foot.distance
+            if np.abs(off).max(initial=0.0) < 1e-11 * self.height:
+                break
+            step = (off / np.maximum(dot(slope, slope), 0.05))[:, None] * slope
+            if rims is not None:
+                rate = dot(foot.away[[0, -1]], rims)
+                least = np.where(rate < 0.0, -0.1, 0.1)
+                step[[0, -1]] = (off[[0, -1]] / np.where(np.abs(rate) < 0.1, least, rate))[:, None] * rims
+            points, normal = self.wall.project(points + step)
+        return points, normal, feet(self.below, points)
+
+    def _walked(self, points: Array, foot: Feet) -> Feet:
+        """The nearest points on the branches that the feet of other points lie on."""
+        w, moved = foot.w.copy(), np.empty_like(points)
+        for k in np.unique(foot.front):
+            own = foot.front == k
+            w[own] = self.below[k].walked(points[own], w[own])
+            moved[own] = self.below[k].at(w[own])[0]
+        return Feet.between(points, moved, foot.front, w)
 
 
-def _corners(
-    wall: PatchWall, fronts: list[SpaceCurve], height: float, nodes: _Nodes, arcs: Index
-) -> tuple[Index, _Nodes]:
-    """Corners on those of the arcs (k,) whose ends belong to two branches: the arcs that have one, and the corners."""
-    n = len(nodes.points)
-    ends = [arcs, (arcs + 1) % n]
-    start = [nodes.below.w[end] for end in ends]
-    front = [nodes.below.front[end] for end in ends]
-    span = np.linalg.norm(nodes.points[ends[1]] - nodes.points[ends[0]], axis=1)
-    middle = 0.5 * (nodes.points[ends[0]] + nodes.points[ends[1]])
-    longest = np.maximum(span, 0.3 * height)
-    point, normal = wall.project(middle)
-    for _ in range(STEPS * 2):
-        both = [_walked(fronts, point, front[k], start[k]) for k in (0, 1)]
-        slopes = [one.away - dot(one.away, normal)[:, None] * normal for one in both]
-        a, b, c = dot(slopes[0], slopes[0]), dot(slopes[0], slopes[1]), dot(slopes[1], slopes[1])
-        p, q = (height - one.distance for one in both)
-        determinant = a * c - b * b
-        sharp = determinant > 1e-9
-        safe = np.where(sharp, determinant, 1.0)
-        step = ((c * p - b * q) / safe)[:, None] * slopes[0] + ((a * q - b * p) / safe)[:, None] * slopes[1]
-        length = np.linalg.norm(step, axis=1)
-        step *= (np.where(sharp, 1.0, 0.0) * np.minimum(1.0, longest / np.maximum(length, 1e-300)))[:, None]
-        point, normal = wall.project(point + step)
-        start = [one.w for one in both]
-        if np.abs(step).max(initial=0.0) < 1e-12:
-            break
-    both = [_walked(fronts, point, front[k], start[k]) for k in (0, 1)]
-    apart = np.linalg.norm(both[0].point - both[1].point, axis=1)
-    right = apart > SAME_FOOT * height
-    for one in both:
-        right &= np.abs(one.distance - height) < 1e-8
-    right &= np.linalg.norm(point - middle, axis=1) < np.maximum(1.5 * span, 4.0 * height)
-    for end in ends:  # one of the ends may be that corner already
-        known = dot(nodes.into[end], nodes.out[end]) < SMOOTH
-        right &= ~known | (np.linalg.norm(point - nodes.points[end], axis=1) > SAME_PLACE)
-    right[right] = np.abs(feet(fronts, point[right]).distance - height) < 1e-7
-    into, out = (unit(np.cross(one.away, normal)) for one in both)
-    return arcs[right], _Nodes(point[right], into[right], out[right], _those(both[0], right))
+def _smooth_nodes(points: Array, normal: Array, foot: Feet, closed: bool) -> _Nodes:
+    """Nodes with the front below on their right, seen against the normals (n, 3)."""
+    tangent = unit(np.cross(foot.away, normal))
+    return _Nodes(points, tangent, tangent, foot, closed)
 
 
-def _walked(fronts: list[SpaceCurve], points: Array, front: Index, w: Array) -> Feet:
-    """The nearest points on the branches that the places (front, w) lie on."""
-    new, foot = w.copy(), np.empty_like(points)
-    for k in np.unique(front):
-        one = front == k
-        new[one] = fronts[k].walked(points[one], w[one])
-        foot[one] = fronts[k].at(new[one])[0]
-    return _feet(points, foot, front, new)
-
-
-def _inserted(nodes: _Nodes, more: list[tuple[Index, _Nodes]]) -> _Nodes:
-    """The nodes with others behind the nodes that begin the arcs named."""
-    key = np.concatenate([np.arange(len(nodes.points))] + [arcs + 0.5 for arcs, _ in more])
-    order = np.argsort(key, kind="stable")
-    all_ = [nodes, *(one for _, one in more)]
-    points, into, out = (np.concatenate([one[k] for one in all_])[order] for k in range(3))
-    below = Feet(*(np.concatenate(parts)[order] for parts in zip(*(one.below for one in all_))))
-    return _Nodes(points, into, out, below)
-
-
-def _forward(nodes: _Nodes, closed: bool) -> _Nodes:
-    """Without the nodes that lie behind their predecessor or on it: next to corners points may settle in a tangle."""
-    while True:
-        n = len(nodes.points)
-        chord = np.roll(nodes.points, -1, axis=0) - nodes.points
-        length = np.linalg.norm(chord, axis=1)
-        turned = (dot(chord, nodes.out) <= 0.0) | (dot(chord, np.roll(nodes.into, -1, axis=0)) <= 0.0)
-        alike = dot(nodes.out, np.roll(nodes.into, -1, axis=0)) > 0.5  # else a corner is still to be found between them
-        bad = (turned & alike) | (length < SAME_PLACE)
-        if not closed:
-            bad[-1] = False
-        corner = dot(nodes.into, nodes.out) < SMOOTH
-        drop = np.zeros(n, dtype=bool)
-        at = np.flatnonzero(bad)
-        after = (at + 1) % n
-        # of the two ends of an arc that runs backwards a corner stays, and the ends of an open front stay
-        kept = corner[after] | ((after == n - 1) & (not closed))
-        loser = np.where(kept, at, after)
-        drop[loser[~(corner[loser])]] = True
-        if not closed:
-            drop[[0, -1]] = False
-        if not drop.any() or n - drop.sum() < 4:
-            return nodes
-        nodes = _Nodes(nodes.points[~drop], nodes.into[~drop], nodes.out[~drop], _those(nodes.below, ~drop))
-
-
-def _those(below: Feet, which: NDArray[np.bool_] | Index) -> Feet:
-    return Feet(below.distance[which], below.away[which], below.front[which], below.w[which], below.point[which])
-
-
-def _curve(nodes: _Nodes, closed: bool) -> SpaceCurve:
-    points, into, out = nodes[:3]
-    if closed:
-        points, into, out = (np.vstack([column, column[:1]]) for column in (points, into, out))
-    w = np.r_[0.0, np.cumsum(np.maximum(np.linalg.norm(np.diff(points, axis=0), axis=1), 1e-12))]
-    return SpaceCurve(w, points, into, out, closed)
+def _step(slopes: list[Array], off: list[Array], longest: Array) -> Array:
+    """The steps (k, 3) that change two distances with these slopes (k, 3) by what they are off (k,), no longer than
+    `longest`; none where the slopes are too much alike to tell."""
+    a, b, c = dot(slopes[0], slopes[0]), dot(slopes[0], slopes[1]), dot(slopes[1], slopes[1])
+    p, q = off
+    determinant = a * c - b * b
+    sharp = determinant > 1e-9
+    safe = np.where(sharp, determinant, 1.0)
+    step = ((c * p - b * q) / safe)[:, None] * slopes[0] + ((a * q - b * p) / safe)[:, None] * slopes[1]
+    length = np.linalg.norm(step, axis=1)
+    step *= (np.where(sharp, 1.0, 0.0) * np.minimum(1.0, longest / np.maximum(length, 1e-300)))[:, None]
+    return step

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Polylines spread evenly and rounded."""
+"""Polylines spread evenly and rounded, and smooth curves through them."""
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from ...types import Array
 
@@ -29,3 +30,9 @@ def rounded(points: Array, closed: bool, wide: float) -> Array:
         first, last = points[:1], points[-1:]
         padded = np.vstack([2.0 * first - points[reach:0:-1], points, 2.0 * last - points[-2 : -reach - 2 : -1]])
     return np.column_stack([np.convolve(column, share, mode="valid") for column in padded.T])
+
+
+def spline(points: Array, closed: bool) -> tuple[Array, Array]:
+    """Parameters (n,) and derivatives (n, 3) of a smooth curve through points; a closed one repeats its first."""
+    w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    return w, CubicSpline(w, points, bc_type="periodic" if closed else "not-a-knot")(w, 1)

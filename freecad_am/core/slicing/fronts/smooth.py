@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.patch_wall import PatchWall
@@ -20,10 +19,11 @@ from ...geometry.walls.surface import dot
 from ...types import Array, Mask
 from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest
 from ..directions.wall_turn import turns_in_wall
-from .curve import feet
-from .even_line import even, rounded
-from .on_wall import on_wall
-from .rims import ON_RIM, Rims
+from .curve import on_wall
+from .even_line import even, rounded, spline
+from .feet import feet, local_distances
+from .rims import ON_RIM
+from .slicing import Slicing
 
 PLACES = 8  # per layer height along a front
 FEWEST = 48  # of a front
@@ -37,15 +37,6 @@ FINER = 4  # places per arc at which the result is measured
 ENDS = np.array([0, -1])
 SPREAD = 4.0  # layer heights over which the slide of an end is spread
 SLIDES = 0.3  # share of a way along a rim that leads across the front; less, and the end stays
-
-
-@dataclass(frozen=True)
-class Smoothing:
-    """band: largest departure of the local distance, as a share of the height. limit: rad/mm, turn within the wall that
-    fronts are to stay below where the band allows."""
-
-    band: float
-    limit: float
 
 
 class SmoothFront(NamedTuple):
@@ -69,19 +60,19 @@ def turn(wall: PatchWall, curve: SpaceCurve) -> float:
 
 
 def smoothed(
-    wall: PatchWall, rims: Rims, below: list[SpaceCurve], front: SpaceCurve, others: list[SpaceCurve], height: float,
-    smoothing: Smoothing, weight: int = HEAVY,
+    slicing: Slicing, below: list[SpaceCurve], front: SpaceCurve, others: list[SpaceCurve], weight: int = HEAVY
 ) -> SmoothFront:
-    """The front near an exact one, as near to `height` mm as a turn within the wall of smoothing.limit allows.
+    """The front near an exact one, as near to the layer height as a turn within the wall of smoothing.limit allows.
 
     Its ends move along the rims that they lie on. others: the further fronts of the layer, which it leaves room. weight:
     where the search begins, best that of the layer below. Where the band is too narrow for the limit, the band holds;
     where no smooth front is found within it, the exact one comes back.
     """
+    wall, height, smoothing = slicing.wall, slicing.height, slicing.smoothing
     kept = SmoothFront(front, turn(wall, front), weight)
-    if kept.turn <= AIM * smoothing.limit:
+    if smoothing is None or kept.turn <= AIM * smoothing.limit:
         return kept
-    line = _Line.of(wall, rims, front, height)
+    line = _Line.of(slicing, front)
     shares = np.array([1.0, 1.0 - smoothing.band * (1.0 - MARGIN), 1.0 + smoothing.band * (1.0 - MARGIN)])
     levels = line.levels(below, height * shares)
     if levels is None:
@@ -93,7 +84,7 @@ def smoothed(
 
     def trial(index: int) -> SmoothFront | None:
         curve = line.curve(line.smooth(wanted, low, high, float(WEIGHTS[index])))
-        distance = feet(below, curve.at(curve.refined(FINER))[0]).distance
+        distance = local_distances(curve, below, FINER)
         if distance.min() < least or distance.max() > most:
             return None
         return SmoothFront(curve, float(turns_in_wall(curve, wall.project(curve.points)[1]).max()), index)
@@ -111,8 +102,7 @@ class _Line:
     one lie on rims, along which their `across` is then, as long as leads as far to the left, and theirs near there lean
     likewise; other ends stay."""
 
-    wall: PatchWall
-    rims: Rims
+    slicing: Slicing
     points: Array
     across: Array
     bend: Array
@@ -120,13 +110,14 @@ class _Line:
     sliding: Mask
 
     @classmethod
-    def of(cls, wall: PatchWall, rims: Rims, front: SpaceCurve, height: float) -> _Line:
-        """The front, rounded, with equally spread places."""
+    def of(cls, slicing: Slicing, front: SpaceCurve) -> _Line:
+        """The front, rounded, with equally spread points."""
+        height = slicing.height
         count = max(FEWEST, int(np.ceil(front.length * PLACES / height)))
-        line = even(front.at(front.refined(FINER))[0], front.closed, count)
+        points = even(front.at(front.refined(FINER))[0], front.closed, count)
         wide = min(ROUND * height / (front.length / count), WIDEST * count)
-        points = even(rounded(line, front.closed, wide), front.closed, count)
-        points, normal = wall.project(points)
+        points = even(rounded(points, front.closed, wide), front.closed, count)
+        points, normal = slicing.wall.project(points)
         if front.closed:
             before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
         else:
@@ -136,20 +127,20 @@ class _Line:
         across /= np.linalg.norm(across, axis=1, keepdims=True)
         bend, sliding = dot(after - 2.0 * points + before, across), np.zeros(2, dtype=bool)
         if not front.closed:
-            off, _, along = rims.nearest(points[ENDS])
+            distance, _, along = slicing.rims.nearest(points[ENDS])
             rate = dot(along, across[ENDS])
-            sliding = (off < ON_RIM) & (np.abs(rate) > SLIDES)
+            sliding = (distance < ON_RIM) & (np.abs(rate) > SLIDES)
             length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
-            away = np.linspace(0.0, length, len(points)) / min(SPREAD * height, 0.5 * length)
-            for end, s in ((0, away), (1, away[::-1])):
+            share = np.linspace(0.0, length, len(points)) / min(SPREAD * height, 0.5 * length)
+            for end, s in ((0, share), (1, share[::-1])):
                 if sliding[end]:  # what the end slides along the front is spread over its neighbours
-                    aside = along[end] / rate[end] - across[ENDS[end]]
-                    across = across + np.maximum(1.0 - s, 0.0)[:, None] * aside
-        return cls(wall, rims, points, across, bend, front.closed, sliding)
+                    slide = along[end] / rate[end] - across[ENDS[end]]
+                    across = across + np.maximum(1.0 - s, 0.0)[:, None] * slide
+        return cls(slicing, points, across, bend, front.closed, sliding)
 
     def levels(self, below: list[SpaceCurve], distances: Array) -> Array | None:
-        """How far across the line (k, n) mm the places at the distances (k,) from the fronts below lie; none where some
-        place is not found."""
+        """How far across the line (k, n) mm the points at the distances (k,) from the fronts below lie; none where some
+        point is not found."""
         goal = np.repeat(distances, len(self.points))
         start, across = (np.tile(column, (len(distances), 1)) for column in (self.points, self.across))
         x = np.zeros(len(goal))
@@ -157,11 +148,11 @@ class _Line:
         low, high = x - farthest, x + farthest
         todo = np.arange(len(goal))
         for _ in range(STEPS):
-            place = feet(below, self.wall.project(start[todo] + x[todo, None] * across[todo])[0])
-            off = place.distance - goal[todo]
+            foot = feet(below, self.slicing.wall.project(start[todo] + x[todo, None] * across[todo])[0])
+            off = foot.distance - goal[todo]
             above = off > 0.0
             high[todo[above]], low[todo[~above]] = x[todo[above]], x[todo[~above]]
-            step = off / np.maximum(dot(place.away, across[todo]), 0.2)
+            step = off / np.maximum(dot(foot.away, across[todo]), 0.2)
             new = x[todo] - step
             inside = (new > low[todo]) & (new < high[todo])
             moving = np.abs(off) > FOUND * goal[todo]
@@ -182,18 +173,12 @@ class _Line:
 
     def curve(self, x: Array) -> SpaceCurve:
         """The curve at heights (n,) over the line."""
-        points, normal = self.wall.project(self.points + x[:, None] * self.across)
+        points, normal = self.slicing.wall.project(self.points + x[:, None] * self.across)
         if self.closed:
             points, normal = (np.vstack([column, column[:1]]) for column in (points, normal))
         else:
-            slid = self.rims.nearest(points[ENDS])[1] if self.sliding.any() else points[ENDS]
+            slid = self.slicing.rims.nearest(points[ENDS])[1] if self.sliding.any() else points[ENDS]
             points[ENDS] = np.where(self.sliding[:, None], slid, self.points[ENDS])
-        w, slope = _spline(points, self.closed)
+        w, slope = spline(points, self.closed)
         slope -= dot(slope, normal)[:, None] * normal
         return SpaceCurve(w, points, slope, slope, self.closed)
-
-
-def _spline(points: Array, closed: bool) -> tuple[Array, Array]:
-    """Parameters (n,) and derivatives (n, 3) of a smooth curve through points; a closed one repeats its first."""
-    w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    return w, CubicSpline(w, points, bc_type="periodic" if closed else "not-a-knot")(w, 1)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...geometry.curves.space_curve import SpaceCurve
 from ...issues import NOTE, Issue, Text
-from ...slicing.fronts.curve import feet
+from ...slicing.fronts.feet import feet
 from ...slicing.fronts.rims import Rims
 
 SAMPLES = 100  # places along a front at which it is asked what it lies on

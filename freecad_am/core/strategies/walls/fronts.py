@@ -21,9 +21,9 @@ from ...parameters.strategy import SurfaceParameters
 from ...process import classes
 from ...slicing.curve_points import within_chord
 from ...slicing.fronts import layers as fronts
-from ...slicing.fronts.curve import feet
-from ...slicing.fronts.rims import Rims
-from ...slicing.fronts.smooth import Smoothing, turn
+from ...slicing.fronts.feet import feet, local_distances
+from ...slicing.fronts.slicing import Smoothing
+from ...slicing.fronts.smooth import turn
 from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array
 from .. import size
@@ -55,13 +55,13 @@ def plan(
     normal = surface_directions.plane(wall, build)
     height = strategy.layer_height
     smooth = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
-    curves, closing = fronts.layers(wall, height, smooth, lambda done, text: progress(FINDING * done, text))
-    pieces = tree(curves, Rims.of(wall.rims))
+    curves, closing, rims = fronts.layers(wall, height, smooth, lambda done, text: progress(FINDING * done, text))
+    pieces = tree(curves, rims)
     full = [len(layer) for layer in pieces]
     pieces, notes = _kept(wall, pieces, strategy)
     deposited = [[piece.curve for piece in layer] for layer in pieces]  # what is not deposited is nobody's concern
     distances = [
-        np.concatenate([fronts.local_distances(front, below, FINER) for front in layer])
+        np.concatenate([local_distances(front, below, FINER) for front in layer])
         for below, layer in zip(curves, deposited[1:])
     ]
     issues = spacing_issues(distances, strategy) + _turns(wall, deposited, strategy) + events(pieces)
