@@ -35,26 +35,26 @@ def within_chord(curve: SpaceCurve, low: float, high: float, chord_error: float)
     nodes = curve.refined(CLOSER)
     if curve.closed:
         nodes = np.concatenate([nodes[:-1] + turn * curve.period for turn in (-1, 0, 1, 2)])
-    pieces = [_piece(curve, nodes, a, b, chord_error)[:-1] for a, b in zip(breaks[:-1], breaks[1:])]
-    return _outlining(curve, np.concatenate([*pieces, [high]]), np.cumsum([0, *map(len, pieces)]))
+    stretches = [_spaced(curve, nodes, a, b, chord_error)[:-1] for a, b in zip(breaks[:-1], breaks[1:])]
+    return _outlining(curve, np.concatenate([*stretches, [high]]), np.cumsum([0, *map(len, stretches)]))
 
 
 def _outlining(curve: SpaceCurve, w: Array, ends: Index) -> Array:
-    """The places (n,), and more, so that points added between them later by their outline lie on the curve. ends: (m,)
-    numbers of those where smooth pieces begin and end, the first and the last of all too."""
+    """The parameters (n,), and more, so that points added between them later by their outline lie on the curve. ends: (m,)
+    numbers of those where smooth stretches begin and end, the first and the last of all too."""
     asked = np.ones(len(w) - 1, dtype=bool)
     for _ in range(HALVINGS):
-        points, along, _ = curve.at(w)
-        along /= np.linalg.norm(along, axis=1, keepdims=True)
-        # at the end of a piece the curve may have a corner, where it is that of the next
-        last = curve.at(w[ends[1:]] - 1e-9 * (w[ends[1:]] - w[ends[1:] - 1]))[1]
-        tangents = np.stack([along, along], axis=1)
-        tangents[ends[1:], 0] = last / np.linalg.norm(last, axis=1, keepdims=True)
+        points, slope, _ = curve.at(w)
+        slope /= np.linalg.norm(slope, axis=1, keepdims=True)
+        tangents = np.stack([slope, slope], axis=1)
+        # at the end of a stretch the curve may have a corner, where it is that of the next
+        slope = curve.at(w[ends[1:]] - 1e-9 * (w[ends[1:]] - w[ends[1:] - 1]))[1]
+        tangents[ends[1:], 0] = slope / np.linalg.norm(slope, axis=1, keepdims=True)
         some = np.repeat(np.flatnonzero(asked), len(INSIDE))
         share = np.tile(INSIDE, int(asked.sum()))
-        drawn = outline(points, tangents).at(some, share)[0]
-        place, slope, _ = curve.at(curve.walked(drawn, w[some] + share * np.diff(w)[some]))
-        off = np.linalg.norm(np.cross(drawn - place, slope), axis=1) / np.linalg.norm(slope, axis=1)
+        added = outline(points, tangents).at(some, share)[0]
+        foot, slope, _ = curve.at(curve.walked(added, w[some] + share * np.diff(w)[some]))
+        off = np.linalg.norm(np.cross(added - foot, slope), axis=1) / np.linalg.norm(slope, axis=1)
         bad = np.unique(some[off > WITHIN])
         if not len(bad):
             break
@@ -66,22 +66,9 @@ def _outlining(curve: SpaceCurve, w: Array, ends: Index) -> Array:
     return w
 
 
-def chord_errors(curve: SpaceCurve, w: Array) -> Array:
-    """Largest distance (n - 1,) mm of the curve from each chord, measured at places between."""
-    ends = curve.at(w)[0]
-    chord = np.diff(ends, axis=0)
-    places = w[:-1, None] + np.diff(w)[:, None] * BETWEEN
-    points = curve.at(places.ravel())[0].reshape(*places.shape, 3)
-    offset = points - ends[:-1, None]
-    square = np.maximum(dot(chord, chord), 1e-300)[:, None]
-    share = np.clip(dot(offset, chord[:, None]) / square, 0.0, 1.0)
-    distance: Array = np.linalg.norm(offset - share[..., None] * chord[:, None], axis=-1).max(axis=1)
-    return distance
-
-
-def _piece(curve: SpaceCurve, nodes: Array, low: float, high: float, chord_error: float) -> Array:
-    """A stretch without corners inside: places equally spread by what the curvature asks for. nodes: (n,), rising, between
-    which that is taken."""
+def _spaced(curve: SpaceCurve, nodes: Array, low: float, high: float, chord_error: float) -> Array:
+    """Parameters of a stretch without corners inside, equally spread by what the curvature asks for. nodes: (n,), rising,
+    between which that is taken."""
     w = np.r_[low, nodes[np.searchsorted(nodes, low, side="right") : np.searchsorted(nodes, high)], high]
     _, slope, bend = curve.at(0.5 * (w[1:] + w[:-1]))
     rate = np.linalg.norm(slope, axis=1)
@@ -92,7 +79,17 @@ def _piece(curve: SpaceCurve, nodes: Array, low: float, high: float, chord_error
     total = np.r_[0.0, np.cumsum(wanted)]
     count = max(1, int(np.ceil(total[-1])))
     while True:
-        places: Array = np.interp(np.linspace(0.0, total[-1], count + 1), total, w)
-        if chord_errors(curve, places).max() <= chord_error:
-            return places
+        spaced: Array = np.interp(np.linspace(0.0, total[-1], count + 1), total, w)
+        if _off_chords(curve, spaced) <= chord_error:
+            return spaced
         count = int(np.ceil(MORE * count)) + 1
+
+
+def _off_chords(curve: SpaceCurve, w: Array) -> float:
+    """Largest distance, mm, of the curve from the chords between the parameters (n,)."""
+    ends = curve.at(w)[0]
+    chord = np.diff(ends, axis=0)
+    between = w[:-1, None] + np.diff(w)[:, None] * BETWEEN
+    away = curve.at(between.ravel())[0].reshape(*between.shape, 3) - ends[:-1, None]
+    share = np.clip(dot(away, chord[:, None]) / np.maximum(dot(chord, chord), 1e-300)[:, None], 0.0, 1.0)
+    return float(np.linalg.norm(away - share[..., None] * chord[:, None], axis=-1).max())

@@ -74,7 +74,36 @@ def of_wall(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
     """That of a wall on an existing part."""
     from ..geometry.walls.patch_wall import PatchWall  # no part of revolution needs it, and what it imports takes long
 
-    return _of_patches(wall, strategy) if isinstance(wall, PatchWall) else _of_tube(wall, strategy)
+    return of_fronts(wall, strategy) if isinstance(wall, PatchWall) else of_tube(wall, strategy)
+
+
+def of_tube(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
+    """That of a wall around a closed direction."""
+    surface = wall.surface()
+    v = np.linspace(0.0, wall.period, PLACES)
+    top = surface.point(np.full(PLACES, wall.end), v)[:-1]
+    low, at = surface.inverse(wall.first[:: max(1, len(wall.first) // PLACES)])
+    share = np.linspace(0.0, 1.0, PLACES)[:, None]
+    lines = surface.point(low + share * (wall.end - low), np.broadcast_to(at, (PLACES, len(at))))
+    layers = float(np.linalg.norm(np.diff(lines, axis=0), axis=2).sum(axis=0).mean()) / strategy.layer_height
+    chords = 0.5 * (_chords(wall.first, True, strategy.chord_error)[0] + _chords(top, True, strategy.chord_error)[0])
+    return Size(layers, layers * max(FEWEST, chords))
+
+
+def of_fronts(wall: PatchWall, strategy: SurfaceParameters) -> Size:
+    """That of a wall of any connected pieces."""
+    corners = wall.vertices[wall.triangles[~wall.behind[wall.triangles].any(axis=1)]]
+    area = 0.5 * float(np.linalg.norm(doubled_areas(corners), axis=1).sum())
+    points = wall.vertices[~wall.behind]
+    first = cKDTree(np.vstack([curve.points for curve in wall.first]))
+    distance = np.max(first.query(points[:: max(1, len(points) // ASKED)])[0], initial=0.0)
+    layers = float(distance) / strategy.layer_height
+    # beads are bent as the first ones are, or as a circle through the whole wall would be, whichever is less
+    chords = [_chords(curve.points, curve.closed, strategy.chord_error) for curve in wall.first]
+    of_first = sum(count for count, _ in chords) / sum(length for _, length in chords)
+    extent = float(np.linalg.norm(np.ptp(wall.vertices, axis=0)))
+    rate = min(of_first, 1.0 / math.sqrt(4.0 * strategy.chord_error * extent))
+    return Size(layers, max(FEWEST * layers, rate * area / strategy.layer_height))
 
 
 def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | None = None) -> Size:
@@ -213,52 +242,14 @@ def _causes(strategy: LayerParameters, width: float | None) -> list[_Cause]:
     return found
 
 
-def _of_tube(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
-    surface = wall.surface()
-    v = np.linspace(0.0, wall.period, PLACES)
-    top = surface.point(np.full(PLACES, wall.end), v)[:-1]
-    low, at = surface.inverse(wall.first[:: max(1, len(wall.first) // PLACES)])
-    share = np.linspace(0.0, 1.0, PLACES)[:, None]
-    lines = surface.point(low + share * (wall.end - low), np.broadcast_to(at, (PLACES, len(at))))
-    layers = float(np.linalg.norm(np.diff(lines, axis=0), axis=2).sum(axis=0).mean()) / strategy.layer_height
-    chords = 0.5 * (_chords(wall.first, True, strategy.chord_error) + _chords(top, True, strategy.chord_error))
-    return Size(layers, layers * max(FEWEST, chords))
-
-
-def _of_patches(wall: PatchWall, strategy: SurfaceParameters) -> Size:
-    kept = ~wall.behind[wall.triangles].any(axis=1)
-    corner = wall.vertices[wall.triangles[kept]]
-    area = 0.5 * float(np.linalg.norm(doubled_areas(corner), axis=1).sum())
-    vertices = wall.vertices[~wall.behind]
-    start = cKDTree(np.vstack([one.points for one in wall.first]))
-    away = np.max(start.query(vertices[:: max(1, len(vertices) // ASKED)])[0], initial=0.0)
-    layers = float(away) / strategy.layer_height
-    # beads are bent as the first ones are, or as a circle through the whole wall would be, whichever is less
-    length = sum(_length(one.points, one.closed) for one in wall.first)
-    first = sum(_chords(one.points, one.closed, strategy.chord_error) for one in wall.first) / length
-    size = float(np.linalg.norm(np.ptp(wall.vertices, axis=0)))
-    dense = min(first, 1.0 / math.sqrt(4.0 * strategy.chord_error * size))
-    return Size(layers, max(FEWEST * layers, dense * area / strategy.layer_height))
-
-
-def _sides(points: Array, closed: bool) -> Array:
-    """The vectors (k, 3) from point to point."""
-    sides = np.diff(np.vstack([points, points[:1]]) if closed else points, axis=0)
-    apart: Array = sides[np.linalg.norm(sides, axis=1) > 0.0]
-    return apart
-
-
-def _length(points: Array, closed: bool) -> float:
-    return float(np.linalg.norm(_sides(points, closed), axis=1).sum())
-
-
-def _chords(points: Array, closed: bool, chord_error: float) -> float:
-    """About how many chords a smooth curve through points (m, 3) takes within the chord error."""
-    sides = _sides(points, closed)
-    length = np.linalg.norm(sides, axis=1)
-    cosine = np.einsum("ij,ij->i", sides[:-1], sides[1:]) / (length[:-1] * length[1:])
+def _chords(points: Array, closed: bool, chord_error: float) -> tuple[float, float]:
+    """About how many chords a smooth curve through points (m, 3) takes within the chord error, and its length."""
+    chord = np.diff(np.vstack([points, points[:1]]) if closed else points, axis=0)
+    chord = chord[np.linalg.norm(chord, axis=1) > 0.0]
+    length = np.linalg.norm(chord, axis=1)
+    cosine = np.einsum("ij,ij->i", chord[:-1], chord[1:]) / (length[:-1] * length[1:])
     turn = np.arccos(np.clip(cosine, -1.0, 1.0))
-    return float(np.sqrt(turn * 0.5 * (length[:-1] + length[1:]) / (8.0 * chord_error)).sum())
+    return float(np.sqrt(turn * 0.5 * (length[:-1] + length[1:]) / (8.0 * chord_error)).sum()), float(length.sum())
 
 
 def _volume(body: Body) -> float:

@@ -257,9 +257,9 @@ def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body
 
 def _wall_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     from ...core.strategies.clearance import tilt_back as wall_clearance
-    from ...core.strategies.walls import directions as surface_directions
+    from ...core.strategies.walls.directions import symmetry_plane
 
-    plane = surface_directions.plane(of.wall, of.build)
+    plane = symmetry_plane(of.wall, of.build)
     return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, plane, feature, _tell_tilting())
 
 

@@ -56,18 +56,18 @@ def in_plane(directions: Array, plane: Array, label: str = "build_direction") ->
     return unit(flat)
 
 
-def held(build: Array, forward: Array, outside: Array, lead: float, tilt: float) -> Array:
+def held(build: Array, forward: Array, normal: Array, lead: float, tilt: float) -> Array:
     """Tool axes (n, 3): build directions turned by `lead` forward along the bead, then by `tilt` to the outside, rad.
 
-    forward: (n, 3) unit vectors along the bead. outside: (n, 3) normals of the wall that point to its outside.
+    forward: (n, 3) unit vectors along the bead. normal: (n, 3) of the wall, to its outside.
     """
     if lead == 0.0 and tilt == 0.0:
         return build
     forward = unit(forward - dot(forward, build)[:, None] * build)
-    out = np.cross(build, forward)
-    out *= np.sign(dot(out, outside))[:, None]
+    outward = np.cross(build, forward)
+    outward *= np.sign(dot(outward, normal))[:, None]
     leaning = np.cos(lead) * build + np.sin(lead) * forward
-    return unit(np.cos(tilt) * leaning + np.sin(tilt) * out)
+    return unit(np.cos(tilt) * leaning + np.sin(tilt) * outward)
 
 
 def capped(vectors: Array, most: float) -> tuple[Array, float]:
@@ -104,11 +104,18 @@ def limited(
     fast = turn_rates(points, directions) > rate
     if not fast.any():
         return Limited(directions, np.zeros(len(points)))
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    s = np.r_[0.0, np.cumsum(steps)]
-    away = _distance_along(s, fast, closed)
+    s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    distance = _distance_along(s, fast, closed)
+
+    def spread(half: float) -> Array | None:
+        found = _spread(s, directions, closed, np.maximum(half - distance, 0.0))
+        if found is None:
+            return None
+        found = capped(found, most)[0]  # a mean of directions beyond the level leans over more than they do
+        return None if (turn_rates(points, found) > rate).any() else found
+
     low, high = 0.0, 1e-3 * s[-1]  # narrow ones first
-    while (good := _checked(points, s, directions, closed, high - away, rate, most)) is None:
+    while (best := spread(high)) is None:
         low, high = high, 1.5 * high
         if high > 2.0 * s[-1]:
             raise InputError(
@@ -119,23 +126,12 @@ def limited(
         if high - low < 1e-4 * high:
             break
         middle = 0.5 * (low + high)
-        tried = _checked(points, s, directions, closed, middle - away, rate, most)
-        if tried is None:
+        if (found := spread(middle)) is None:
             low = middle
         else:
-            high, good = middle, tried
-    cross = np.linalg.norm(np.cross(directions, good), axis=1)
-    return Limited(good, np.arctan2(cross, dot(directions, good)))
-
-
-def _checked(
-    points: Array, s: Array, directions: Array, closed: bool, half: Array, rate: float, most: float
-) -> Array | None:
-    found = _spread(s, directions, closed, np.maximum(half, 0.0))
-    if found is None:
-        return None
-    found = capped(found, most)[0]  # a mean of directions beyond the level leans over more than they do
-    return None if (turn_rates(points, found) > rate).any() else found
+            high, best = middle, found
+    cross = np.linalg.norm(np.cross(directions, best), axis=1)
+    return Limited(best, np.arctan2(cross, dot(directions, best)))
 
 
 def _spread(s: Array, directions: Array, closed: bool, half: Array) -> Array | None:

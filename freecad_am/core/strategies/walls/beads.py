@@ -11,49 +11,54 @@ from ...geometry.angles import TURN
 from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.frames import unit
 from ...issues import NOTE, WARNING, Issue, Text, Word
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
+from ...process import classes
 from ...slicing.directions.wall import local
 from ...toolpath import Bead
 from ...types import Array
-from .directions import Along, Directions
+from .directions import Along, Directions, directions
 
 NEAREST = 1e-3  # mm; nearer points of a bead are one: no controller tells the time between them
 
 
 class Traced(NamedTuple):
-    """Points (n, 3) of a bead and its unit tangents (n, 2, 3), arriving at and leaving each."""
+    """Points (n, 3) of a bead and its unit tangents (n, 2, 3), arriving at and leaving each. A closed one ends where it
+    starts."""
 
     points: Array
     tangents: Array
+    closed: bool
 
     def reversed(self) -> Traced:
         """Run the other way."""
-        return Traced(self.points[::-1], -self.tangents[::-1, ::-1])
+        return Traced(self.points[::-1], -self.tangents[::-1, ::-1], self.closed)
 
 
 def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
-    """The bead through the places w (n,) of a curve, points nearer than NEAREST made one; a closed one ends where it starts,
-    to the bit."""
-    points, leaving, _ = curve.at(w)
+    """The bead through the parameters w (n,) of a curve, points nearer than NEAREST made one; a closed one ends where it
+    starts, to the bit."""
+    points, out, _ = curve.at(w)
     if closed:
         points[-1] = points[0]
-    arriving = leaving.copy()
+    into = out.copy()
     corners = curve.corners
     if len(corners):
-        node = np.clip(np.searchsorted(curve.w[corners], curve.wrapped(w) - 1e-12), 0, len(corners) - 1)
-        at = np.abs(curve.w[corners][node] - curve.wrapped(w)) < 1e-9 * curve.period
-        arriving[at], leaving[at] = curve.into[corners[node[at]]], curve.out[corners[node[at]]]
-    points, arriving, leaving = _apart(points, arriving, leaving)
+        nearest = np.clip(np.searchsorted(curve.w[corners], curve.wrapped(w) - 1e-12), 0, len(corners) - 1)
+        at = np.abs(curve.w[corners][nearest] - curve.wrapped(w)) < 1e-9 * curve.period
+        into[at], out[at] = curve.into[corners[nearest[at]]], curve.out[corners[nearest[at]]]
+    points, into, out = _apart(points, into, out)
     if not closed:
-        arriving[0], leaving[-1] = leaving[0], arriving[-1]
-    return Traced(points, unit(np.stack([arriving, leaving], axis=1)))
+        into[0], out[-1] = out[0], into[-1]
+    return Traced(points, unit(np.stack([into, out], axis=1)), closed)
 
 
-def _apart(points: Array, arriving: Array, leaving: Array) -> tuple[Array, Array, Array]:
+def _apart(points: Array, into: Array, out: Array) -> tuple[Array, Array, Array]:
     """The columns (n, 3) with points nearer than NEAREST to the one before left out; the first and the last stay. A point
     that stands for others, such as an end next to a corner, is left as the last of them and arrived at as the first."""
     if np.linalg.norm(np.diff(points, axis=0), axis=1).min() >= NEAREST:
-        return points, arriving, leaving
+        return points, into, out
     starts, end = [0], len(points) - 1
     for k in range(1, end):
         if np.linalg.norm(points[k] - points[starts[-1]]) >= NEAREST:
@@ -63,25 +68,39 @@ def _apart(points: Array, arriving: Array, leaving: Array) -> tuple[Array, Array
         merged = starts.pop()
     starts.append(merged)
     ends = [*(k - 1 for k in starts[1:]), end]
-    return points[[*starts[:-1], end]], arriving[starts], leaving[ends]
+    return points[[*starts[:-1], end]], into[starts], out[ends]
 
 
-def along(bead: Traced, normal: Array, up: Array) -> Along:
+def along(line: Traced, normal: Array, up: Array) -> Along:
     """Directions at the points of a bead, at a corner those halfway between its two sides.
 
     normal: (n, 3) out of the wall. up: (n, 3) any vectors away from the layer below that are not along the bead.
     """
-    arriving, leaving = bead.tangents[:, 0], bead.tangents[:, 1]
-    return Along(unit(arriving + leaving), local(normal, arriving, leaving, up), normal)
+    into, out = line.tangents[:, 0], line.tangents[:, 1]
+    return Along(unit(into + out), local(normal, into, out, up), normal)
 
 
-def bead(line: Traced, found: Directions, closed: bool, speed: float, name: str, closing: bool = False) -> Bead:
-    """The bead of the class `name`; its polynomial's variable is the arc length, one turn (2 pi) from end to end."""
-    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line.points, axis=0), axis=1))]
-    return Bead(
-        line.points, found.build, found.tool, TURN * length / length[-1], np.full(len(line.points), speed), closed, None,
-        line.tangents, closing, bead_class=name,
-    )
+class BeadSettings(NamedTuple):
+    """What all beads of a wall are made with. plane: unit normal (3,) of the one that tool axes stay in, if any. label: the
+    wall's, for messages."""
+
+    build: BuildDirectionParameters
+    process: ProcessParameters
+    plane: Array | None
+    label: str
+
+    def bead(self, line: Traced, vectors: Along, layer: int, closing: bool = False) -> tuple[Bead, Directions]:
+        """The bead of a layer and its directions; its polynomial's variable is the arc length, one turn (2 pi) from end to
+        end."""
+        name = classes.of_wall(layer, closing)
+        build = classes.leaning(self.build, self.process, name)
+        found = directions(line.points, line.closed, vectors, build, self.plane, self.label)
+        speed = np.full(len(line.points), self.process.for_class(name).travel_speed)
+        length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line.points, axis=0), axis=1))]
+        return Bead(
+            line.points, found.build, found.tool, TURN * length / length[-1], speed, line.closed, None, line.tangents,
+            closing, bead_class=name,
+        ), found
 
 
 def spacing_issues(found: list[Array], strategy: SurfaceParameters) -> list[Issue]:

@@ -19,16 +19,16 @@ TOLERANCE_RAD = 1e-9  # rad
 
 
 class Along(NamedTuple):
-    """What is known at the points of a bead, each (n, 3) unit vectors: the way the bead runs, up the wall at right
-    angles to it, out of the wall."""
+    """Unit vectors (n, 3) at the points of a bead: the way the bead runs, up the wall at right angles to it, and the normal
+    out of the wall."""
 
     forward: Array
     up: Array
-    out: Array
+    normal: Array
 
     def reversed(self) -> Along:
         """Of the bead run the other way."""
-        return Along(-self.forward[::-1], self.up[::-1], self.out[::-1])
+        return Along(-self.forward[::-1], self.up[::-1], self.normal[::-1])
 
 
 class Directions(NamedTuple):
@@ -41,7 +41,7 @@ class Directions(NamedTuple):
     spread: float
 
 
-def plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Array | None:
+def symmetry_plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Array | None:
     """Unit normal (3,) of the plane that tool axes stay in, None where they may lean any way.
 
     InputError NO_SYMMETRY_PLANE where a plane of symmetry is asked for that the wall is not known to have.
@@ -61,9 +61,9 @@ def plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Arr
 
 
 def directions(
-    points: Array, closed: bool, along: Along, build: BuildDirectionParameters, normal: Array | None, label: str
+    points: Array, closed: bool, along: Along, build: BuildDirectionParameters, plane: Array | None, label: str
 ) -> Directions:
-    """The directions at the points (n, 3) of a bead. normal: of the `plane` that they are projected onto, if any.
+    """The directions at the points (n, 3) of a bead. plane: unit normal (3,) of the one they are projected onto, if any.
 
     InputError NO_DIRECTION where one is normal to that plane, TURN_LIMIT where they cannot be made to turn slower.
     """
@@ -72,20 +72,18 @@ def directions(
         up = np.tile(UP, (len(up), 1))
     elif build.mode == "layer":
         mean = up.mean(axis=0)
-        size = np.linalg.norm(mean)
-        up = np.tile(mean / size if size > LEAST else UP, (len(up), 1))
-    tool = held(up, along.forward, along.out, build.lead, build.tilt)
-    alike = tool is up
-    if normal is not None:
-        up, tool = in_plane(up, normal, label), in_plane(tool, normal, label)
-    up, lowered = capped(up, build.max_tilt)
-    tool, back = (up, lowered) if alike else capped(tool, build.max_tilt)
-    rate, spread = build.turn(), 0.0
-    if rate < np.inf:  # last, for turned back beyond the level they turn faster
-        up, departure = limited(points, up, closed, rate, most=build.max_tilt)
-        tool, other = (up, departure) if alike else limited(points, tool, closed, rate, most=build.max_tilt)
-        spread = float(max(departure.max(), other.max()))
-    return Directions(up, tool, back, spread)
+        length = np.linalg.norm(mean)
+        up = np.tile(mean / length if length > LEAST else UP, (len(up), 1))
+    tool = held(up, along.forward, along.normal, build.lead, build.tilt)
+    both = [up] if tool is up else [up, tool]
+    if plane is not None:
+        both = [in_plane(axes, plane, label) for axes in both]
+    turned = [capped(axes, build.max_tilt) for axes in both]
+    both, back, spread = [axes for axes, _ in turned], turned[-1][1], 0.0
+    if build.turn() < np.inf:  # last, for turned back beyond the level they turn faster
+        slower = [limited(points, axes, closed, build.turn(), most=build.max_tilt) for axes in both]
+        both, spread = [axes for axes, _ in slower], float(max(departure.max() for _, departure in slower))
+    return Directions(both[0], both[-1], back, spread)
 
 
 def notes(found: list[tuple[int, Directions]]) -> list[Issue]:

@@ -18,24 +18,22 @@ from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
-from ...process import classes
 from ...slicing.curve_points import within_chord
-from ...slicing.fronts import layers as fronts
+from ...slicing.fronts import layers as slicing
 from ...slicing.fronts.feet import feet, local_distances
+from ...slicing.fronts.rims import Rims
 from ...slicing.fronts.slicing import Smoothing
 from ...slicing.fronts.smooth import turn
 from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
-from . import directions as surface_directions
-from .beads import along, bead, corner_notes, short_note, spacing_issues, traced, turn_notes
+from .beads import BeadSettings, along, corner_notes, short_note, spacing_issues, traced, turn_notes
+from .directions import notes, symmetry_plane
 from .front_seams import Middle, seam
 from .front_tree import Piece, events, shorn, tree, whole
 
 FINER = 4  # places per arc of a front at which its distance from the layer below is measured
-
-
 FINDING = 0.7  # of the time goes into finding the layers
 
 
@@ -51,25 +49,25 @@ def plan(
     'NO_PARAMETER', 'LAYER_HEIGHT', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION', 'TURN_LIMIT'.
     """
     _refuse(strategy)
-    size.refuse_absurd(size.of_wall(wall, strategy), strategy)
-    normal = surface_directions.plane(wall, build)
+    size.refuse_absurd(size.of_fronts(wall, strategy), strategy)
+    settings = BeadSettings(build, process, symmetry_plane(wall, build), wall.label)
     height = strategy.layer_height
-    smooth = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
-    curves, closing, rims = fronts.layers(wall, height, smooth, lambda done, text: progress(FINDING * done, text))
-    pieces = tree(curves, rims)
+    smoothing = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
+    sliced = slicing.layers(wall, height, smoothing, lambda done, text: progress(FINDING * done, text))
+    pieces = tree(sliced.fronts, sliced.rims)
     full = [len(layer) for layer in pieces]
-    pieces, notes = _kept(wall, pieces, strategy)
-    deposited = [[piece.curve for piece in layer] for layer in pieces]  # what is not deposited is nobody's concern
+    pieces, kept = _kept(pieces, sliced.rims, strategy, wall.label)
+    fronts = [[piece.curve for piece in layer] for layer in pieces]  # what is not deposited is nobody's concern
     distances = [
         np.concatenate([local_distances(front, below, FINER) for front in layer])
-        for below, layer in zip(curves, deposited[1:])
+        for below, layer in zip(sliced.fronts, fronts[1:])
     ]
-    issues = spacing_issues(distances, strategy) + _turns(wall, deposited, strategy) + events(pieces)
-    notes += _close(pieces, closing, full)
+    issues = spacing_issues(distances, strategy) + _turns(wall, fronts, strategy) + events(pieces)
+    issues += kept + _close(pieces, sliced.closing, full)
     progress(FINDING, "build directions")
-    layers, found = _layers(wall, pieces, strategy, build, process, normal)
+    layers, found = _layers(wall, pieces, strategy.chord_error, settings)
     return Toolpath(
-        layers, wall.frame, height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface",
+        layers, wall.frame, height, strategy.chord_error, (*issues, *found), process.overlap, "surface",
         bead_width=process.bead_width,
     )
 
@@ -82,28 +80,31 @@ def _refuse(strategy: SurfaceParameters) -> None:
         )
 
 
-def _turns(wall: PatchWall, curves: list[list[SpaceCurve]], strategy: SurfaceParameters) -> list[Issue]:
+def _turns(wall: PatchWall, fronts: list[list[SpaceCurve]], strategy: SurfaceParameters) -> list[Issue]:
     """Corners that the fronts have formed, and how sharply smooth ones turn."""
-    cornered = corner_notes([np.concatenate([front.turns[front.corners] for front in layer]) for layer in curves])
-    if cornered and strategy.spacing != "smooth":
-        return cornered
-    sharp = [any(len(front.corners) for front in layer) for layer in curves]
-    rates = [np.inf if corner else max(turn(wall, front) for front in layer) for corner, layer in zip(sharp, curves)]
-    return cornered + turn_notes(rates, strategy)
+    issues = corner_notes([np.concatenate([front.turns[front.corners] for front in layer]) for layer in fronts])
+    if issues and strategy.spacing != "smooth":
+        return issues
+    corners = [any(len(front.corners) for front in layer) for layer in fronts]
+    rates = [np.inf if corner else max(turn(wall, front) for front in layer) for corner, layer in zip(corners, fronts)]
+    return issues + turn_notes(rates, strategy)
 
 
-def _kept(wall: PatchWall, pieces: list[list[Piece]], strategy: SurfaceParameters) -> tuple[list[list[Piece]], list[Issue]]:
+def _kept(
+    pieces: list[list[Piece]], rims: Rims, strategy: SurfaceParameters, label: str
+) -> tuple[list[list[Piece]], list[Issue]]:
     """The pieces that are deposited: all, or those below the first that an end of the wall cuts off."""
-    if strategy.end == "whole":
-        kept = whole(pieces)
-        if not kept:
-            raise InputError("TOO_LOW", wall.label, "its end cuts the first layer off; make it longer")
-        left = _left(wall, kept)
-        text = Text("up to {:.4g} mm of the wall are left above the last whole layer", left)
-        note = Issue(NOTE, "REMAINDER", text, len(kept) - 1)
-        return kept, [note] if left > 1e-4 * strategy.layer_height else []
-    kept, dropped = shorn(pieces, 0.5 * strategy.layer_height)
-    return kept, short_note(dropped)
+    if strategy.end != "whole":
+        kept, dropped = shorn(pieces, 0.5 * strategy.layer_height)
+        return kept, short_note(dropped)
+    kept = whole(pieces)
+    if not kept:
+        raise InputError("TOO_LOW", label, "its end cuts the first layer off; make it longer")
+    last = [piece.curve for layer in kept for piece in layer if not piece.children]
+    remainder = float(feet(last, rims.upper).distance.max()) if last and len(rims.upper) else 0.0
+    text = Text("up to {:.4g} mm of the wall are left above the last whole layer", remainder)
+    note = Issue(NOTE, "REMAINDER", text, len(kept) - 1)
+    return kept, [note] if remainder > 1e-4 * strategy.layer_height else []
 
 
 def _close(pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: list[int]) -> list[Issue]:
@@ -127,13 +128,6 @@ def _close(pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: lis
     )]
 
 
-def _left(wall: PatchWall, kept: list[list[Piece]]) -> float:
-    """Largest distance (mm) of the wall's upper edges from the last layers."""
-    ends = [rim.points for rim in wall.rims if rim.end]
-    last = [piece.curve for layer in kept for piece in layer if not piece.children]
-    return float(feet(last, np.vstack(ends)).distance.max()) if ends and last else 0.0
-
-
 @dataclass(frozen=True, eq=False)
 class _Way:
     """One way to run a piece: from where on, and whether against its curve."""
@@ -145,43 +139,38 @@ class _Way:
 
 
 def _layers(
-    wall: PatchWall, pieces: list[list[Piece]], strategy: SurfaceParameters, build: BuildDirectionParameters,
-    process: ProcessParameters, normal: Array | None,
+    wall: PatchWall, pieces: list[list[Piece]], chord_error: float, settings: BeadSettings
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
-    layers, found, here = [], [], None
+    process, layers, found, last = settings.process, [], [], None
     middles: dict[int, Middle] = {}
     for index, layer in enumerate(pieces):
         angle = process.seam.angle + index * process.seam.step
         ways = [_ways(piece, angle, middles, process, index) for piece in layer]
         beads: list[Bead] = []
         while ways:
-            way = _nearest(ways, here)
+            way = _nearest(ways, last)
             ways = [some for some in ways if some[0].piece is not way.piece]
             curve = way.piece.curve
-            w = within_chord(curve, way.start, way.start + curve.period, strategy.chord_error)
-            line = traced(curve, w, curve.closed)
-            points, out = wall.project(line.points)  # arcs are off it between their nodes, if by next to nothing
+            line = traced(curve, within_chord(curve, way.start, way.start + curve.period, chord_error), curve.closed)
+            points, normal = wall.project(line.points)  # arcs are off it between their nodes, if by next to nothing
             if curve.closed:
                 points[-1] = points[0]
             line = line._replace(points=points)
-            over = along(line, out, np.cross(out, line.tangents.sum(axis=1)))  # up is on the left
+            vectors = along(line, normal, np.cross(normal, line.tangents.sum(axis=1)))  # up is on the left
             if way.backwards:
-                line, over = line.reversed(), over.reversed()
-            name = classes.of_wall(index, way.piece.closing)
-            own = classes.leaning(build, process, name)
-            one = surface_directions.directions(line.points, curve.closed, over, own, normal, wall.label)
-            found.append((index, one))
-            speed = process.for_class(name).travel_speed
-            beads.append(bead(line, one, curve.closed, speed, name, way.piece.closing))
-            here = line.points[-1]
+                line, vectors = line.reversed(), vectors.reversed()
+            bead, directions = settings.bead(line, vectors, index, way.piece.closing)
+            beads.append(bead)
+            found.append((index, directions))
+            last = line.points[-1]
         layers.append(Layer(tuple(beads)))
-    return tuple(layers), surface_directions.notes(found)
+    return tuple(layers), notes(found)
 
 
 def _ways(
     piece: Piece, angle: float, middles: dict[int, Middle], process: ProcessParameters, layer: int
 ) -> list[_Way]:
-    """The ways in which a piece may be run. Fronts are counter-clockwise, see `fronts.start`."""
+    """The ways in which a piece may be run. Fronts are counter-clockwise, see `slicing.fronts.layers.start`."""
     curve = piece.curve
     if curve.closed:
         start = seam(piece, angle, middles)
@@ -193,11 +182,11 @@ def _ways(
     return ways
 
 
-def _nearest(ways: list[list[_Way]], here: Array | None) -> _Way:
-    """The way that begins nearest to a place, at first simply the first; gaps are closed when the fronts about them are
-    there."""
+def _nearest(ways: list[list[_Way]], last: Array | None) -> _Way:
+    """The way that begins nearest to the last point (3,), at first simply the first; gaps are closed when the fronts about
+    them are there."""
     those = [some for some in ways if not some[0].piece.closing] or ways
-    if here is None:
+    if last is None:
         return those[0][0]
     every = [way for some in those for way in some]
-    return every[int(np.argmin([float(np.linalg.norm(way.begin - here)) for way in every]))]
+    return every[int(np.argmin([float(np.linalg.norm(way.begin - last)) for way in every]))]

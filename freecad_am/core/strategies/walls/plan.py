@@ -15,7 +15,6 @@ from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
-from ...process import classes
 from ...slicing.curve_points import within_chord
 from ...slicing.first_layer import on_polyline
 from ...slicing.tubes import constant_distance, iso_parameter, smooth_spacing
@@ -24,9 +23,8 @@ from ...toolpath import Layer, Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
-from . import directions as surface_directions
-from .beads import Traced, along, bead, corner_notes, short_note, spacing_issues, traced, turn_notes
-from .directions import Along
+from .beads import BeadSettings, Traced, along, corner_notes, short_note, spacing_issues, traced, turn_notes
+from .directions import Along, notes, symmetry_plane
 from .end import Stretch, trimmed
 
 FINER = 4  # places per arc of a layer at which its distance from the one below is measured
@@ -42,20 +40,20 @@ def plan(
     polynomial's variable is the arc length of the bead, one turn (2 pi) from end to end. Raises InputError 'NOT_YET',
     'LAYER_HEIGHT', 'BAND', 'NOT_AROUND', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION'.
     """
-    size.refuse_absurd(size.of_wall(wall, strategy), strategy)
-    normal = surface_directions.plane(wall, build)
+    size.refuse_absurd(size.of_tube(wall, strategy), strategy)
+    settings = BeadSettings(build, process, symmetry_plane(wall, build), wall.label)
     surface = wall.surface()
     progress(0.0, "finding layers")
     curves = sliced(wall, surface, strategy)
-    stretches, notes = _stretches(wall, surface, curves, strategy)
+    stretches, remainder = _stretches(wall, surface, curves, strategy)
     curves = curves[: len(stretches)]  # what is not deposited is nobody's concern
     progress(0.5, Text("measuring {} layers", len(curves)))
     distances = [local_distances(above, below, FINER)[1] for below, above in zip(curves[:-1], curves[1:], strict=True)]
     issues = spacing_issues(distances, strategy) + _corner_notes(surface, curves, stretches, strategy)
     progress(0.7, "build directions")
-    layers, found = _layers(wall, surface, stretches, strategy, build, process, normal)
+    layers, found = _layers(surface, stretches, strategy, settings)
     return Toolpath(
-        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *notes, *found), process.overlap,
+        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *remainder, *found), process.overlap,
         "surface", bead_width=process.bead_width,
     )
 
@@ -100,28 +98,24 @@ def _rate(surface: Placed, front: WallLayer) -> Array:
 
 
 def _layers(
-    wall: SurfaceWall, surface: Placed, stretches: list[list[Stretch]], strategy: SurfaceParameters,
-    build: BuildDirectionParameters, process: ProcessParameters, normal: Array | None,
+    surface: Placed, stretches: list[list[Stretch]], strategy: SurfaceParameters, settings: BeadSettings
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
     side = _outside(surface, stretches[0][0])
-    layers, number, found = [], 0, []
+    process, layers, number, found = settings.process, [], 0, []
     for index, pieces in enumerate(stretches):
         beads = []
         for piece in pieces:
             start = process.seam.angle + index * process.seam.step
-            w = _places(piece, start, strategy.chord_error)
-            line = traced(piece.front.curve, w, piece.closed)
-            way = _along(surface, line, side)
-            if _backwards(piece.closed, line.points, way, process, index, number):
-                line, way = line.reversed(), way.reversed()
-            name = classes.of_wall(index)
-            own = classes.leaning(build, process, name)
-            one = surface_directions.directions(line.points, piece.closed, way, own, normal, wall.label)
-            found.append((index, one))
-            beads.append(bead(line, one, piece.closed, process.for_class(name).travel_speed, name))
+            line = traced(piece.front.curve, _places(piece, start, strategy.chord_error), piece.closed)
+            vectors = _along(surface, line, side)
+            if _backwards(line, vectors, process, index, number):
+                line, vectors = line.reversed(), vectors.reversed()
+            bead, directions = settings.bead(line, vectors, index)
+            beads.append(bead)
+            found.append((index, directions))
             number += 1
         layers.append(Layer(tuple(beads)))
-    return tuple(layers), surface_directions.notes(found)
+    return tuple(layers), notes(found)
 
 
 def _places(piece: Stretch, start: float, chord_error: float) -> Array:
@@ -152,13 +146,11 @@ def _along(surface: Placed, line: Traced, side: _Side) -> Along:
     return along(line, unit(np.cross(rise, turn)) * side.sign, rise)
 
 
-def _backwards(
-    closed: bool, points: Array, way: Along, process: ProcessParameters, layer: int, number: int
-) -> bool:
+def _backwards(line: Traced, vectors: Along, process: ProcessParameters, layer: int, number: int) -> bool:
     """Whether a bead runs against rising v. Counter-clockwise is meant against the build direction."""
-    if not closed:
+    if not line.closed:
         return process.direction == "alternate" and number % 2 == 1
-    turning = np.cross(points[:-1], points[1:]).sum(axis=0) @ way.up.mean(axis=0)
+    turning = np.cross(line.points[:-1], line.points[1:]).sum(axis=0) @ vectors.up.mean(axis=0)
     wanted = process.direction != "clockwise" if process.direction != "alternate" else layer % 2 == 0
     return bool((turning > 0.0) != wanted)
 
