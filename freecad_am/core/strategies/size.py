@@ -95,15 +95,15 @@ def of_fronts(wall: PatchWall, strategy: SurfaceParameters) -> Size:
     corners = wall.vertices[wall.triangles[~wall.behind[wall.triangles].any(axis=1)]]
     area = 0.5 * float(np.linalg.norm(doubled_areas(corners), axis=1).sum())
     points = wall.vertices[~wall.behind]
-    first = cKDTree(np.vstack([curve.points for curve in wall.first]))
-    distance = np.max(first.query(points[:: max(1, len(points) // ASKED)])[0], initial=0.0)
+    tree = cKDTree(np.vstack([curve.points for curve in wall.first]))
+    distance = np.max(tree.query(points[:: max(1, len(points) // ASKED)])[0], initial=0.0)
     layers = float(distance) / strategy.layer_height
     # beads are bent as the first ones are, or as a circle through the whole wall would be, whichever is less
     chords = [_chords(curve.points, curve.closed, strategy.chord_error) for curve in wall.first]
-    of_first = sum(count for count, _ in chords) / sum(length for _, length in chords)
+    per_mm = sum(count for count, _ in chords) / sum(length for _, length in chords)
     extent = float(np.linalg.norm(np.ptp(wall.vertices, axis=0)))
-    rate = min(of_first, 1.0 / math.sqrt(4.0 * strategy.chord_error * extent))
-    return Size(layers, max(FEWEST * layers, rate * area / strategy.layer_height))
+    per_mm = min(per_mm, 1.0 / math.sqrt(4.0 * strategy.chord_error * extent))
+    return Size(layers, max(FEWEST * layers, per_mm * area / strategy.layer_height))
 
 
 def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | None = None) -> Size:

@@ -79,9 +79,9 @@ def _near_gaps(slicing: Slicing, below: list[SpaceCurve], above: list[SpaceCurve
     if not deep.any() or (len(above) and not _between(below, above, points, corners, deep)):
         return np.zeros(len(corners), dtype=bool)
     # the gap ends within a layer height of where it is deep
-    there = corners[deep.any(axis=1)]
-    size = np.linalg.norm(np.ptp(there, axis=1), axis=1).max()
-    return np.asarray(cKDTree(there.mean(axis=1)).query(corners.mean(axis=1))[0] < height + 2.0 * size)
+    gap = corners[deep.any(axis=1)]
+    extent = np.linalg.norm(np.ptp(gap, axis=1), axis=1).max()
+    return np.asarray(cKDTree(gap.mean(axis=1)).query(corners.mean(axis=1))[0] < height + 2.0 * extent)
 
 
 def _depth(points: Array, beads: list[SpaceCurve], height: float, farthest: float = np.inf) -> Array:
@@ -106,8 +106,8 @@ def _between(below: list[SpaceCurve], above: list[SpaceCurve], points: Array, co
             slope[foot.front == k] = front.at(foot.w[foot.front == k])[1]
         return dot(np.cross(normal, slope), foot.away) > 0.0
 
-    lower, upper = feet(below, points), feet(above, points)
-    beyond = np.where(upper.distance < lower.distance, on_left(upper, above), ~on_left(lower, below))
+    at_below, at_above = feet(below, points), feet(above, points)
+    beyond = np.where(at_above.distance < at_below.distance, on_left(at_above, above), ~on_left(at_below, below))
     return not beyond.all()
 
 
@@ -183,17 +183,17 @@ class _Gaps(NamedTuple):
             inside = depth > level * height
             if not (self.asked & (peaks > covered) & ~done).any():
                 break
-            label = _labels(fine, inside)
-            deepest = np.zeros(label.max() + 1)
-            np.maximum.at(deepest, label[inside & self.asked], peaks[inside & self.asked])
-            deepest[label[self.cut[inside[self.cut]]]] = 0.0
+            number = _numbers(fine, inside)
+            deepest = np.zeros(number.max() + 1)
+            np.maximum.at(deepest, number[inside & self.asked], peaks[inside & self.asked])
+            deepest[number[self.cut[inside[self.cut]]]] = 0.0
             lines = fine.level_lines(level * height - depth, np.arange(len(fine.faces)))  # gaps on their left
-            labels, tree = label[inside], cKDTree(fine.vertices[inside])
+            own, tree = number[inside], cKDTree(fine.vertices[inside])
             # a single point of a line may lie nearer to the gap next door: most of them tell
-            owner = np.array([np.bincount(labels[tree.query(line.points)[1]]).argmax() for line in lines])
+            owner = np.array([np.bincount(own[tree.query(line.points)[1]]).argmax() for line in lines])
             for gap in np.flatnonzero(deepest > covered):
-                members = label == gap
-                loops = _loops(fine, members, [line for line, own in zip(lines, owner) if own == gap])
+                members = number == gap
+                loops = _loops(fine, members, [line for line, of in zip(lines, owner) if of == gap])
                 bead = middle(self.slicing, loops) if loops and not done[members].any() else None
                 if bead is None or (level != levels[0] and bead.length > LONGEST * height):
                     continue
@@ -247,10 +247,10 @@ def _loops(fine: Mesh, members: Mask, lines: list[LevelLine]) -> list[Array]:
     return [loop for loop in loops if len(loop) > 2]
 
 
-def _labels(fine: Mesh, inside: Mask) -> Index:
+def _numbers(fine: Mesh, inside: Mask) -> Index:
     """The number (n,) of the gap that each vertex is in; vertices in none have one of their own."""
     edges = fine.edges[inside[fine.edges].all(axis=1)]
     n = len(fine.vertices)
     links = coo_matrix((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(n, n))
-    label: Index = connected_components(links, directed=False)[1].astype(np.intp)
-    return label
+    number: Index = connected_components(links, directed=False)[1].astype(np.intp)
+    return number

@@ -4,6 +4,7 @@ onto the wall."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +44,7 @@ def exact(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[SpaceCu
     for _ in range(ROUNDS):
         nodes = nodes.forward()
         curve = nodes.curve()
-        bad = offset.bad_arcs(curve)
+        bad = _bad_arcs(curve, offset.off)
         if not len(bad):
             return [curve]
         corners = offset.corners(nodes, bad)
@@ -54,8 +55,7 @@ def exact(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[SpaceCu
 def on_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
     """The curve with further nodes where its arcs are off the wall between the nodes."""
     for _ in range(ROUNDS):
-        points = curve.at(_inside(curve))[0]
-        bad = _bad(curve, np.linalg.norm(wall.project(points)[0] - points, axis=1))
+        bad = _bad_arcs(curve, lambda points: np.linalg.norm(wall.project(points)[0] - points, axis=1))
         if not len(bad):
             break
         w = curve.w[bad] + 0.5 * curve.span[bad]
@@ -69,15 +69,11 @@ def on_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
     return curve
 
 
-def _inside(curve: SpaceCurve) -> Array:
-    """The parameters at INSIDE of each arc, (2 (m - 1),), rising."""
-    w: Array = (curve.w[:-1, None] + curve.span[:, None] * INSIDE).ravel()
-    return w
-
-
-def _bad(curve: SpaceCurve, off: Array) -> Index:
-    """The arcs that are off by more than WITHIN at one of INSIDE, (2 (m - 1),) mm, and not too short to be cut."""
-    return np.flatnonzero((off.reshape(-1, len(INSIDE)).max(axis=1) > WITHIN) & (curve.span > 1e-6 * curve.period))
+def _bad_arcs(curve: SpaceCurve, off: Callable[[Array], Array]) -> Index:
+    """The arcs of which points (n, 3) at INSIDE are off (n,) by more than WITHIN, and that are not too short to be cut."""
+    w = (curve.w[:-1, None] + curve.span[:, None] * INSIDE).ravel()
+    most = off(curve.at(w)[0]).reshape(-1, len(INSIDE)).max(axis=1)
+    return np.flatnonzero((most > WITHIN) & (curve.span > 1e-6 * curve.period))
 
 
 def _without(curve: SpaceCurve, bad: Index) -> list[SpaceCurve]:
@@ -169,12 +165,11 @@ class _Offset(NamedTuple):
         chord = np.diff(np.vstack([nodes.points, nodes.points[:1]]), axis=0)[: len(nodes.points) if line.closed else -1]
         return nodes.of(slice(None, None, -1)) if dot(nodes.out[: len(chord)], chord).sum() < 0.0 else nodes
 
-    def bad_arcs(self, curve: SpaceCurve) -> Index:
-        """The arcs of a curve that are off the wall or the height between the nodes."""
-        points = curve.at(_inside(curve))[0]
+    def off(self, points: Array) -> Array:
+        """How far points (n, 3) are off the wall, or off the height, whichever is more, mm."""
         foot = self.wall.project(points)[0]
-        off = np.abs(feet(self.below, foot).distance - self.height)
-        return _bad(curve, np.maximum(off, np.linalg.norm(foot - points, axis=1)))
+        off: Array = np.abs(feet(self.below, foot).distance - self.height)
+        return np.asarray(np.maximum(off, np.linalg.norm(foot - points, axis=1)))
 
     def middles(self, curve: SpaceCurve, arcs: Index) -> tuple[Index, _Nodes]:
         """The middles of arcs (k,) of a curve: the arcs whose middle finds its distance, and these as nodes."""

@@ -106,20 +106,20 @@ def step(slicing: Slicing, state: State) -> State:
 
     Only the part of the mesh near the fronts is looked at, so that all layers together look at each vertex a few times.
     """
-    height, below, whole = slicing.height, state.fronts, slicing.wall.mesh
-    reach = height + whole.longest_edge
-    near = within(whole.tree, below, reach)
-    mesh, near = whole.part(whole.faces_at(near[~state.behind[near]]))
+    height, below, mesh = slicing.height, state.fronts, slicing.wall.mesh
+    reach = height + mesh.longest_edge
+    near = within(mesh.tree, below, reach)
+    part, near = mesh.part(mesh.faces_at(near[~state.behind[near]]))
     if not len(near):
         return State([], state.behind, near, state.weight)
-    behind, distance = state.behind[near], feet(below, mesh.vertices).distance
+    behind, distance = state.behind[near], feet(below, part.vertices).distance
     value = np.where(behind, -distance, distance) - height
-    low = mesh.joined(value < -ON_FRONT_MM, behind)  # near in space is not enough: the wall must lead there
+    low = part.joined(value < -ON_FRONT_MM, behind)  # near in space is not enough: the wall must lead there
     value = np.where(low, np.minimum(value, -1e-9 * height), np.maximum(value, 1e-9 * height))
     ends = slicing.rims.reached(below, height, reach, ON_FRONT_MM)
     fronts: list[SpaceCurve] = []
-    for line in cut_at_rims(mesh.level_lines(value, np.arange(len(mesh.faces))), ends, whole.longest_edge):
-        points = thinned(line.points, line.closed, THIN * whole.typical_edge)
+    for line in cut_at_rims(part.level_lines(value, np.arange(len(part.faces))), ends, mesh.longest_edge):
+        points = thinned(line.points, line.closed, THIN * mesh.typical_edge)
         if len(points) >= (4 if line.closed else 2):
             found = exact(slicing, below, line._replace(points=points))
             fronts += [front for front in found if _is_bead(front, below, height)]
@@ -128,7 +128,7 @@ def step(slicing: Slicing, state: State) -> State:
         band = slicing.smoothing.band * height
         smooth = [smoothed(slicing, below, front, fronts[:k] + fronts[k + 1 :], weight) for k, front in enumerate(fronts)]
         doubtful = np.flatnonzero(~behind & (np.abs(distance - height) < 1.1 * band))
-        low[doubtful] = _passed(slicing.wall, fronts, smooth, mesh.vertices[doubtful], low[doubtful], band)
+        low[doubtful] = _passed(slicing.wall, fronts, smooth, part.vertices[doubtful], low[doubtful], band)
         fronts, weight = [one.curve for one in smooth], max((one.weight for one in smooth), default=weight)
     passed = near[low & ~behind]
     state.behind[passed] = True
@@ -144,14 +144,14 @@ def _is_bead(front: SpaceCurve, below: list[SpaceCurve], height: float) -> bool:
 
 
 def _passed(
-    wall: PatchWall, exact_ones: list[SpaceCurve], smooth: list[SmoothFront], points: Array, low: Mask, band: float
+    wall: PatchWall, unsmoothed: list[SpaceCurve], smooth: list[SmoothFront], points: Array, low: Mask, band: float
 ) -> Mask:
     """Whether points (n, 3) lie behind smooth fronts, where these are not the exact ones; low: of the latter. band: mm."""
     fronts = [one.curve for one in smooth]
     if not fronts or not len(points):
         return low
     foot = feet(fronts, points)
-    moved = np.array([front is not before for front, before in zip(fronts, exact_ones)])
+    moved = np.array([front is not before for front, before in zip(fronts, unsmoothed)])
     slope = np.empty_like(points)
     for k, front in enumerate(fronts):
         own = foot.front == k

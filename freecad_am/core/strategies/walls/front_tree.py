@@ -13,7 +13,7 @@ from ...issues import NOTE, Issue, Text
 from ...slicing.fronts.feet import feet
 from ...slicing.fronts.rims import Rims
 
-SAMPLES = 100  # places along a front at which it is asked what it lies on
+SAMPLES = 100  # points along a front at which it is asked what it lies on
 LEAST_COMMON = 2  # of these; less is a touch at an end
 
 
@@ -45,8 +45,8 @@ def tree(curves: list[list[SpaceCurve]], rims: Rims) -> list[list[Piece]]:
 def _parents(curve: SpaceCurve, below: list[Piece]) -> list[Piece]:
     if len(below) < 2:
         return list(below)
-    places = curve.at(np.linspace(curve.w[0], curve.w[-1], SAMPLES + 1)[:-1] + 0.5 * curve.period / SAMPLES)[0]
-    count = np.bincount(feet([piece.curve for piece in below], places).front, minlength=len(below))
+    points = curve.at(np.linspace(curve.w[0], curve.w[-1], SAMPLES + 1)[:-1] + 0.5 * curve.period / SAMPLES)[0]
+    count = np.bincount(feet([piece.curve for piece in below], points).front, minlength=len(below))
     order = np.argsort(-count, kind="stable")
     return [below[k] for k in order if count[k] >= LEAST_COMMON]
 

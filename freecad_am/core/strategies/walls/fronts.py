@@ -56,18 +56,18 @@ def plan(
     sliced = slicing.layers(wall, height, smoothing, lambda done, text: progress(FINDING * done, text))
     pieces = tree(sliced.fronts, sliced.rims)
     full = [len(layer) for layer in pieces]
-    pieces, kept = _kept(pieces, sliced.rims, strategy, wall.label)
+    pieces, omitted = _kept(pieces, sliced.rims, strategy, wall.label)
     fronts = [[piece.curve for piece in layer] for layer in pieces]  # what is not deposited is nobody's concern
     distances = [
         np.concatenate([local_distances(front, below, FINER) for front in layer])
         for below, layer in zip(sliced.fronts, fronts[1:])
     ]
     issues = spacing_issues(distances, strategy) + _turns(wall, fronts, strategy) + events(pieces)
-    issues += kept + _close(pieces, sliced.closing, full)
+    issues += omitted + _close(pieces, sliced.closing, full)
     progress(FINDING, "build directions")
-    layers, found = _layers(wall, pieces, strategy.chord_error, settings)
+    layers, departures = _layers(wall, pieces, strategy.chord_error, settings)
     return Toolpath(
-        layers, wall.frame, height, strategy.chord_error, (*issues, *found), process.overlap, "surface",
+        layers, wall.frame, height, strategy.chord_error, (*issues, *departures), process.overlap, "surface",
         bead_width=process.bead_width,
     )
 

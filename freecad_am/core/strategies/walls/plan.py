@@ -45,15 +45,15 @@ def plan(
     surface = wall.surface()
     progress(0.0, "finding layers")
     curves = sliced(wall, surface, strategy)
-    stretches, remainder = _stretches(wall, surface, curves, strategy)
+    stretches, omitted = _stretches(wall, surface, curves, strategy)
     curves = curves[: len(stretches)]  # what is not deposited is nobody's concern
     progress(0.5, Text("measuring {} layers", len(curves)))
     distances = [local_distances(above, below, FINER)[1] for below, above in zip(curves[:-1], curves[1:], strict=True)]
     issues = spacing_issues(distances, strategy) + _corner_notes(surface, curves, stretches, strategy)
     progress(0.7, "build directions")
-    layers, found = _layers(surface, stretches, strategy, settings)
+    layers, departures = _layers(surface, stretches, strategy, settings)
     return Toolpath(
-        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *remainder, *found), process.overlap,
+        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *omitted, *departures), process.overlap,
         "surface", bead_width=process.bead_width,
     )
 
@@ -74,19 +74,19 @@ def _stretches(
     wall: SurfaceWall, surface: Placed, fronts: list[WallLayer], strategy: SurfaceParameters
 ) -> tuple[list[list[Stretch]], list[Issue]]:
     """What is deposited of each front: all of it, or what lies below the end of the wall."""
-    pieces = [trimmed(surface, front, wall.end) for front in fronts]
-    whole = [len(some) == 1 and some[0].closed for some in pieces]
+    stretches = [trimmed(surface, front, wall.end) for front in fronts]
+    whole = [len(some) == 1 and some[0].closed for some in stretches]
     count = whole.index(False) if False in whole else len(whole)
     if count == 0:
         raise InputError("TOO_LOW", wall.label, "its end does not lie above the substrate all around; make it longer")
     if strategy.end == "whole":
-        left = float(((wall.end - fronts[count - 1].u) * _rate(surface, fronts[count - 1])).max())
-        note = Issue(NOTE, "REMAINDER", Text("up to {:.4g} mm of the wall are left above the last whole layer", left),
+        remainder = float(((wall.end - fronts[count - 1].u) * _rate(surface, fronts[count - 1])).max())
+        note = Issue(NOTE, "REMAINDER", Text("up to {:.4g} mm of the wall are left above the last whole layer", remainder),
                      count - 1)
-        return pieces[:count], [note] if left > 1e-6 * strategy.layer_height else []
-    kept = [[piece for piece in some if piece.length(front.curve) > 0.5 * strategy.layer_height]
-            for front, some in zip(fronts, pieces, strict=True)]
-    dropped = sum(map(len, pieces)) - sum(map(len, kept))
+        return stretches[:count], [note] if remainder > 1e-6 * strategy.layer_height else []
+    kept = [[stretch for stretch in some if stretch.length(front.curve) > 0.5 * strategy.layer_height]
+            for front, some in zip(fronts, stretches, strict=True)]
+    dropped = sum(map(len, stretches)) - sum(map(len, kept))
     while not kept[-1]:
         kept.pop()
     return kept, short_note(dropped)
@@ -102,11 +102,11 @@ def _layers(
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
     side = _outside(surface, stretches[0][0])
     process, layers, number, found = settings.process, [], 0, []
-    for index, pieces in enumerate(stretches):
+    for index, layer in enumerate(stretches):
         beads = []
-        for piece in pieces:
+        for stretch in layer:
             start = process.seam.angle + index * process.seam.step
-            line = traced(piece.front.curve, _places(piece, start, strategy.chord_error), piece.closed)
+            line = traced(stretch.front.curve, _parameters(stretch, start, strategy.chord_error), stretch.closed)
             vectors = _along(surface, line, side)
             if _backwards(line, vectors, process, index, number):
                 line, vectors = line.reversed(), vectors.reversed()
@@ -118,10 +118,10 @@ def _layers(
     return tuple(layers), notes(found)
 
 
-def _places(piece: Stretch, start: float, chord_error: float) -> Array:
-    curve = piece.front.curve
-    if not piece.closed:
-        return within_chord(curve, piece.low, piece.high, chord_error)
+def _parameters(stretch: Stretch, start: float, chord_error: float) -> Array:
+    curve = stretch.front.curve
+    if not stretch.closed:
+        return within_chord(curve, stretch.low, stretch.high, chord_error)
     low = float(curve.wrapped(np.array([start]))[0])
     return within_chord(curve, low, low + curve.period, chord_error)
 
@@ -133,8 +133,8 @@ class _Side:
     sign: float
 
 
-def _outside(surface: Placed, piece: Stretch) -> _Side:
-    front = piece.front
+def _outside(surface: Placed, stretch: Stretch) -> _Side:
+    front = stretch.front
     point, rise, turn = surface.derivatives(front.u, front.v)
     out = dot(np.cross(rise, turn), point - point[:-1].mean(axis=0))
     return _Side(float(np.sign(out.sum())))
@@ -160,15 +160,15 @@ def _corner_notes(
 ) -> list[Issue]:
     """Corners that fronts have formed where they are deposited, for a robot slows down there; where there are none, the
     sharpest turn."""
-    turns = [_corners(front.curve, pieces) for front, pieces in zip(fronts, stretches, strict=True)]
+    turns = [_corners(front.curve, layer) for front, layer in zip(fronts, stretches, strict=True)]
     if not any(map(len, turns)):
         return turn_notes([float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts], strategy)
     return corner_notes(turns)
 
 
-def _corners(curve: SpaceCurve, pieces: list[Stretch]) -> Array:
-    """Turns (k,) rad at the corners of a front on its pieces."""
+def _corners(curve: SpaceCurve, stretches: list[Stretch]) -> Array:
+    """Turns (k,) rad at the corners of a front on its stretches."""
     w = curve.w[curve.corners]
-    on = [np.mod(w - piece.low, curve.period) <= piece.high - piece.low for piece in pieces]
-    turns: Array = curve.turns[curve.corners][np.any(on, axis=0)] if pieces else np.empty(0)
+    on = [np.mod(w - stretch.low, curve.period) <= stretch.high - stretch.low for stretch in stretches]
+    turns: Array = curve.turns[curve.corners][np.any(on, axis=0)] if stretches else np.empty(0)
     return turns
