@@ -55,11 +55,8 @@ def closing(
     if not near.any():
         return []
     fine = Mesh(mesh.vertices, faces[near]).finer(FINE * height)
-    asked = np.ones(len(fine.vertices), dtype=bool)
-    if len(slicing.rims.upper):
-        asked = np.asarray(cKDTree(slicing.rims.upper).query(fine.vertices)[0]) > height
     cut = np.setdiff1d(fine.border_edges, _on_rims(mesh, np.unique(faces), fine))
-    gaps = _Gaps(slicing, fine, asked, cut)
+    gaps = _Gaps(slicing, fine, slicing.rims.from_upper(fine.vertices) > height, cut)
     depth = _depth(fine.vertices, fronts, height)
     beads: list[SpaceCurve] = []
     for _ in range(ROUNDS):
@@ -158,8 +155,7 @@ class _Gaps(NamedTuple):
             tried, out = wall.project((points + step * around).reshape(-1, 3))
             found = feet(beads, tried).distance
             found[border[np.asarray(tree.query(tried)[1])]] = 0.0
-            if len(self.slicing.rims.upper):
-                found[np.asarray(cKDTree(self.slicing.rims.upper).query(tried)[0]) <= height] = 0.0
+            found[self.slicing.rims.from_upper(tried) <= height] = 0.0
             found, tried, out = found.reshape(AROUND, -1), tried.reshape(AROUND, -1, 3), out.reshape(AROUND, -1, 3)
             pick = np.argmax(found, axis=0)
             deeper = found[pick, row] > best

@@ -66,6 +66,14 @@ class Rims:
         """Points (k, 3) along the edges at which layers finish."""
         return np.vstack([np.empty((0, 3)), *(curve.points for curve, end in zip(self.curves, self.end) if end)])
 
+    def from_upper(self, points: Array) -> Array:
+        """Distances (n,) mm of points (n, 3) from those along the edges at which layers finish; infinite without any."""
+        return np.asarray(self._upper_tree.query(points)[0]) if len(self.upper) else np.full(len(points), np.inf)
+
+    @cached_property
+    def _upper_tree(self) -> cKDTree:
+        return cKDTree(self.upper)
+
     @cached_property
     def _samples(self) -> _Samples:
         refined = [curve.refined(FINER) for curve in self.curves]
