@@ -70,17 +70,18 @@ def held(build: Array, forward: Array, normal: Array, lead: float, tilt: float) 
     return unit(np.cos(tilt) * leaning + np.sin(tilt) * outward)
 
 
-def capped(vectors: Array, most: float) -> tuple[Array, float]:
+def capped(directions: Array, most: float) -> tuple[Array, float]:
     """Directions turned back to `most` rad from the vertical where they lean over more, and by how much the farthest is."""
-    x, y, z = columns(vectors)
+    x, y, z = columns(directions)
     level = np.hypot(x, y)
     angle = np.arctan2(level, z)
     over = angle > most + 1e-12
     if not over.any():
-        return vectors, 0.0
-    away = np.divide(vectors[:, :2], level[:, None], out=np.tile([1.0, 0.0], (len(vectors), 1)), where=level[:, None] > 0.0)
-    turned = np.column_stack([np.sin(most) * away, np.full(len(vectors), np.cos(most))])
-    return np.where(over[:, None], turned, vectors), float((angle - most).max())
+        return directions, 0.0
+    level, east = level[:, None], np.tile([1.0, 0.0], (len(directions), 1))
+    away = np.divide(directions[:, :2], level, out=east, where=level > 0.0)
+    turned = np.column_stack([np.sin(most) * away, np.full(len(directions), np.cos(most))])
+    return np.where(over[:, None], turned, directions), float((angle - most).max())
 
 
 def turn_rates(points: Array, directions: Array) -> Array:
@@ -139,20 +140,20 @@ def _spread(s: Array, directions: Array, closed: bool, half: Array) -> Array | N
     if closed:  # as many rounds on either side as the longest stretch reaches
         rounds = int(np.ceil(half.max() / s[-1])) + 1
         turns = np.arange(-rounds, rounds + 1)
-        line = np.r_[(s[:-1] + s[-1] * turns[:, None]).ravel(), s[-1] * (rounds + 1)]
+        places = np.r_[(s[:-1] + s[-1] * turns[:, None]).ravel(), s[-1] * (rounds + 1)]
         rows = np.vstack([np.tile(directions[:-1], (len(turns), 1)), directions[:1]])
         low, high = s - half, s + half
     else:
-        line, rows = s, directions
+        places, rows = s, directions
         low, high = np.maximum(s - half, 0.0), np.minimum(s + half, s[-1])
-    steps = np.diff(line)
-    area = np.vstack([np.zeros(3), np.cumsum(0.5 * (rows[1:] + rows[:-1]) * steps[:, None], axis=0)])
+    steps = np.diff(places)
+    total = np.vstack([np.zeros(3), np.cumsum(0.5 * (rows[1:] + rows[:-1]) * steps[:, None], axis=0)])
 
     def integral(at: Array) -> Array:
-        i = np.clip(np.searchsorted(line, at, side="right") - 1, 0, len(steps) - 1)
-        t = (at - line[i])[:, None]
+        i = np.clip(np.searchsorted(places, at, side="right") - 1, 0, len(steps) - 1)
+        t = (at - places[i])[:, None]
         slope = (rows[i + 1] - rows[i]) / np.maximum(steps[i], 1e-300)[:, None]
-        value: Array = area[i] + t * (rows[i] + 0.5 * t * slope)
+        value: Array = total[i] + t * (rows[i] + 0.5 * t * slope)
         return value
 
     width = high - low

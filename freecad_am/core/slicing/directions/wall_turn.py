@@ -27,11 +27,11 @@ def turns_in_wall(curve: SpaceCurve, normal: Array) -> Array:
     if not curve.closed:
         corner[0] = 0.0
     length = np.linalg.norm(np.diff(curve.points, axis=0), axis=1)
-    usual = float(np.median(length))
-    short = length < SHORT_ARC * usual
-    rate: Array = np.abs(turn + corner) / np.where(short, usual, length)
+    typical = float(np.median(length))
+    short = length < SHORT_ARC * typical
+    rate: Array = np.abs(turn + corner) / np.where(short, typical, length)
     if short.any():
-        rate[short] = _about(turn + corner, length, usual)[short]
+        rate[short] = _about(turn + corner, length, typical)[short]
     return rate
 
 

@@ -135,12 +135,12 @@ class _Gaps(NamedTuple):
         are about `covered`: whether a gap is closed must not depend on where the mesh has its vertices."""
         wall, height = self.slicing.wall, self.slicing.height
         low, high = self.fine.edges.T
-        over = np.zeros(len(depth))
-        np.maximum.at(over, low, depth[high])
-        np.maximum.at(over, high, depth[low])
+        deepest = np.zeros(len(depth))  # of their neighbours
+        np.maximum.at(deepest, low, depth[high])
+        np.maximum.at(deepest, high, depth[low])
         border = np.zeros(len(depth), dtype=bool)
         border[self.fine.border_edges] = True
-        near = self.asked & (depth >= over) & (np.abs(depth / height - self.covered) < UNSURE) & ~border
+        near = self.asked & (depth >= deepest) & (np.abs(depth / height - self.covered) < UNSURE) & ~border
         peaks = depth.copy()
         if not near.any():
             return peaks
@@ -152,16 +152,17 @@ class _Gaps(NamedTuple):
             one = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal), axis=1)])
             one /= np.linalg.norm(one, axis=1, keepdims=True)
             around = np.cos(angle)[:, None, None] * one + np.sin(angle)[:, None, None] * np.cross(normal, one)
-            tried, out = wall.project((points + step * around).reshape(-1, 3))
+            tried, normals = wall.project((points + step * around).reshape(-1, 3))
             found = feet(beads, tried).distance
             found[border[np.asarray(tree.query(tried)[1])]] = 0.0
             found[self.slicing.rims.from_upper(tried) <= height] = 0.0
-            found, tried, out = found.reshape(AROUND, -1), tried.reshape(AROUND, -1, 3), out.reshape(AROUND, -1, 3)
+            found = found.reshape(AROUND, -1)
+            tried, normals = (column.reshape(AROUND, -1, 3) for column in (tried, normals))
             pick = np.argmax(found, axis=0)
             deeper = found[pick, row] > best
             best = np.where(deeper, found[pick, row], best)
             points = np.where(deeper[:, None], tried[pick, row], points)
-            normal = np.where(deeper[:, None], out[pick, row], normal)
+            normal = np.where(deeper[:, None], normals[pick, row], normal)
             step *= SHORTER
         np.maximum.at(peaks, np.asarray(tree.query(points)[1]), best)
         return peaks

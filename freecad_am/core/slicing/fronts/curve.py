@@ -227,12 +227,12 @@ class _Offset(NamedTuple):
 
     def _walked(self, points: Array, foot: Feet) -> Feet:
         """The nearest points on the branches that the feet of other points lie on."""
-        w, moved = foot.w.copy(), np.empty_like(points)
+        w, nearest = foot.w.copy(), np.empty_like(points)
         for k in np.unique(foot.front):
             own = foot.front == k
             w[own] = self.below[k].walked(points[own], w[own])
-            moved[own] = self.below[k].at(w[own])[0]
-        return Feet.between(points, moved, foot.front, w)
+            nearest[own] = self.below[k].at(w[own])[0]
+        return Feet.between(points, nearest, foot.front, w)
 
 
 def _smooth_nodes(points: Array, normal: Array, foot: Feet, closed: bool) -> _Nodes:

@@ -216,11 +216,11 @@ def _parts(line: Line, ends: Array, longest_edge: float) -> list[Line]:
     else:
         starts = [0, *(at[enter] + 1)]
         stops = [*at[leave], n]
-        begins, finishes = [line.ends[0], *ends[enter]], [*ends[leave], line.ends[1]]
-        parts = [(line.points[i:k], *both) for i, k, *both in zip(starts, stops, begins, finishes)]
+        first_points, last_points = [line.ends[0], *ends[enter]], [*ends[leave], line.ends[1]]
+        parts = [(line.points[i:k], *both) for i, k, *both in zip(starts, stops, first_points, last_points)]
     found = []
-    for inside, begin, finish in parts:
-        both = np.stack([begin, finish])
+    for inside, first_point, last_point in parts:
+        both = np.stack([first_point, last_point])
         known = np.isfinite(both).all(axis=1)
         points = np.vstack([both[:1][known[:1]], inside, both[1:][known[1:]]])
         found.append(Line(points, False, line.rims, both))

@@ -2,8 +2,8 @@
 """Fronts on any wall whose local distance varies within a band, so that they stay free of corners.
 
 What smooth_spacing does over the parameter of a surface is done here over the front itself: a rounded copy of the exact
-front is the line from which heights are measured, along the wall and across the front. From there the exact distance and the
-band's ends are sought for each place; the smooth front is what bends least between them. See `banded`.
+front is the datum from which heights are measured, along the wall and across the front. From there the exact distance and
+the band's ends are sought for each point; the smooth front is what bends least between them. See `banded`.
 """
 
 from __future__ import annotations
@@ -72,18 +72,18 @@ def smoothed(
     kept = SmoothFront(front, turn(wall, front), weight)
     if smoothing is None or kept.turn <= AIM * smoothing.limit:
         return kept
-    line = _Line.of(slicing, front)
+    datum = _Datum.of(slicing, front)
     shares = np.array([1.0, 1.0 - smoothing.band * (1.0 - MARGIN), 1.0 + smoothing.band * (1.0 - MARGIN)])
-    levels = line.levels(below, height * shares)
-    if levels is None:
+    heights = datum.heights(below, height * shares)
+    if heights is None:
         return kept
-    wanted, low, high = levels
+    wanted, low, high = heights
     if others:
-        high = np.minimum(high, wanted + MAX_AHEAD * feet(others, line.points + wanted[:, None] * line.across).distance)
+        high = np.minimum(high, wanted + MAX_AHEAD * feet(others, datum.points + wanted[:, None] * datum.across).distance)
     least, most = (1.0 - smoothing.band) * height, (1.0 + smoothing.band) * height
 
     def trial(index: int) -> SmoothFront | None:
-        curve = line.curve(line.smooth(wanted, low, high, float(WEIGHTS[index])))
+        curve = datum.curve(datum.smooth(wanted, low, high, float(WEIGHTS[index])))
         distance = local_distances(curve, below, FINER)
         if distance.min() < least or distance.max() > most:
             return None
@@ -96,7 +96,7 @@ def smoothed(
 
 
 @dataclass(frozen=True, eq=False)
-class _Line:
+class _Datum:
     """A smooth line on a wall with rims: points (n, 3), unit vectors (n, 3) in the wall to its left, `bend` (n,) its own
     second differences along those. A closed one does not repeat its first point. sliding: (2,) whether the ends of an open
     one lie on rims, along which their `across` is then, as long as leads as far to the left, and theirs near there lean
@@ -110,7 +110,7 @@ class _Line:
     sliding: Mask
 
     @classmethod
-    def of(cls, slicing: Slicing, front: SpaceCurve) -> _Line:
+    def of(cls, slicing: Slicing, front: SpaceCurve) -> _Datum:
         """The front, rounded, with equally spread points."""
         height = slicing.height
         count = max(FEWEST, int(np.ceil(front.length * PLACES / height)))
@@ -138,24 +138,24 @@ class _Line:
                     across = across + np.maximum(1.0 - s, 0.0)[:, None] * slide
         return cls(slicing, points, across, bend, front.closed, sliding)
 
-    def levels(self, below: list[SpaceCurve], distances: Array) -> Array | None:
-        """How far across the line (k, n) mm the points at the distances (k,) from the fronts below lie; none where some
-        point is not found."""
-        goal = np.repeat(distances, len(self.points))
+    def heights(self, below: list[SpaceCurve], distances: Array) -> Array | None:
+        """Heights (k, n) mm over the datum of points at the distances (k,) from the fronts below; none where some point is
+        not found."""
+        wanted = np.repeat(distances, len(self.points))
         start, across = (np.tile(column, (len(distances), 1)) for column in (self.points, self.across))
-        x = np.zeros(len(goal))
+        x = np.zeros(len(wanted))
         farthest = REACH * distances.max()
         low, high = x - farthest, x + farthest
-        todo = np.arange(len(goal))
+        todo = np.arange(len(wanted))
         for _ in range(STEPS):
             foot = feet(below, self.slicing.wall.project(start[todo] + x[todo, None] * across[todo])[0])
-            off = foot.distance - goal[todo]
+            off = foot.distance - wanted[todo]
             above = off > 0.0
             high[todo[above]], low[todo[~above]] = x[todo[above]], x[todo[~above]]
             step = off / np.maximum(dot(foot.away, across[todo]), 0.2)
             new = x[todo] - step
             inside = (new > low[todo]) & (new < high[todo])
-            moving = np.abs(off) > FOUND * goal[todo]
+            moving = np.abs(off) > FOUND * wanted[todo]
             x[todo] = np.where(moving, np.where(inside, new, 0.5 * (low[todo] + high[todo])), x[todo])
             todo = todo[moving]
             if not len(todo):
@@ -163,7 +163,7 @@ class _Line:
         return None
 
     def smooth(self, wanted: Array, low: Array, high: Array, weight: float) -> Array:
-        """Heights (n,) over the line that bend little between low and high."""
+        """Heights (n,) over the datum that bend little between low and high."""
         if self.closed:
             return between(wanted, low, high, weight, self.bend)
         wanted, low, high = wanted.copy(), low.copy(), high.copy()
@@ -172,7 +172,7 @@ class _Line:
         return between(wanted, low, high, weight, self.bend[1:-1], False)
 
     def curve(self, x: Array) -> SpaceCurve:
-        """The curve at heights (n,) over the line."""
+        """The curve at heights (n,) over the datum."""
         points, normal = self.slicing.wall.project(self.points + x[:, None] * self.across)
         if self.closed:
             points, normal = (np.vstack([column, column[:1]]) for column in (points, normal))

@@ -71,12 +71,12 @@ def _apart(points: Array, into: Array, out: Array) -> tuple[Array, Array, Array]
     return points[[*starts[:-1], end]], into[starts], out[ends]
 
 
-def along(line: Traced, normal: Array, up: Array) -> Along:
+def along(trace: Traced, normal: Array, up: Array) -> Along:
     """Directions at the points of a bead, at a corner those halfway between its two sides.
 
     normal: (n, 3) out of the wall. up: (n, 3) any vectors away from the layer below that are not along the bead.
     """
-    into, out = line.tangents[:, 0], line.tangents[:, 1]
+    into, out = trace.tangents[:, 0], trace.tangents[:, 1]
     return Along(unit(into + out), local(normal, into, out, up), normal)
 
 
@@ -89,25 +89,25 @@ class BeadSettings(NamedTuple):
     plane: Array | None
     label: str
 
-    def bead(self, line: Traced, vectors: Along, layer: int, closing: bool = False) -> tuple[Bead, Directions]:
+    def bead(self, trace: Traced, vectors: Along, layer: int, closing: bool = False) -> tuple[Bead, Directions]:
         """The bead of a layer and its directions; its polynomial's variable is the arc length, one turn (2 pi) from end to
         end."""
         name = classes.of_wall(layer, closing)
         build = classes.leaning(self.build, self.process, name)
-        found = directions(line.points, line.closed, vectors, build, self.plane, self.label)
-        speed = np.full(len(line.points), self.process.for_class(name).travel_speed)
-        length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line.points, axis=0), axis=1))]
+        found = directions(trace.points, trace.closed, vectors, build, self.plane, self.label)
+        speed = np.full(len(trace.points), self.process.for_class(name).travel_speed)
+        length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(trace.points, axis=0), axis=1))]
         return Bead(
-            line.points, found.build, found.tool, TURN * length / length[-1], speed, line.closed, None, line.tangents,
+            trace.points, found.build, found.tool, TURN * length / length[-1], speed, trace.closed, None, trace.tangents,
             closing, bead_class=name,
         ), found
 
 
-def spacing_issues(found: list[Array], strategy: SurfaceParameters) -> list[Issue]:
+def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[Issue]:
     """What the local distances (n,) of each layer but the first are, and a warning where that is not what was asked for."""
-    if not found:
+    if not distances:
         return []
-    least, most = min(d.min() for d in found), max(d.max() for d in found)
+    least, most = min(layer.min() for layer in distances), max(layer.max() for layer in distances)
     height = strategy.layer_height
     exact = strategy.spacing == "constant-distance"
     # between the points, where arcs stand for the front, ten times the tolerance is allowed
@@ -115,7 +115,7 @@ def spacing_issues(found: list[Array], strategy: SurfaceParameters) -> list[Issu
     text = Text("the local distance between layers is {:.6g} to {:.6g} mm", least, most)
     if max(height - least, most - height) <= allowed:
         return [Issue(NOTE, "SPACING", text)]
-    worst = int(np.argmax([np.abs(d - height).max() for d in found])) + 1
+    worst = int(np.argmax([np.abs(layer - height).max() for layer in distances])) + 1
     advice = "a larger strategy.tolerance says that this will do" if exact else "spacing: constant-distance is even"
     return [Issue(WARNING, "SPACING", Text("{}, the layer height {:g} mm; {}", Word(text), height, Word(advice)), worst)]
 

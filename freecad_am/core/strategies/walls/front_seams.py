@@ -68,9 +68,9 @@ def seam(piece: Piece, angle: float, middles: dict[int, Middle]) -> float:
 def _reference(axis: Array) -> Array:
     for direction in np.eye(3)[:2]:
         flat = direction - (direction @ axis) * axis
-        size = np.linalg.norm(flat)
-        if size > ACROSS:
-            return np.asarray(flat / size)
+        length = np.linalg.norm(flat)
+        if length > ACROSS:
+            return np.asarray(flat / length)
     raise AssertionError("an axis is along X or along Y, not both")
 
 
@@ -80,7 +80,6 @@ def _carried(below: Middle, axis: Array) -> Array:
     if cosine < -1.0 + ACROSS:
         return _reference(axis)
     turn = np.cross(below.axis, axis)
-    old = below.reference
-    new = cosine * old + np.cross(turn, old) + turn * (turn @ old) / (1.0 + cosine)
-    flat = new - (new @ axis) * axis
+    carried = cosine * below.reference + np.cross(turn, below.reference) + turn * (turn @ below.reference) / (1.0 + cosine)
+    flat = carried - (carried @ axis) * axis
     return np.asarray(flat / np.sqrt(dot(flat, flat)))

@@ -82,11 +82,11 @@ def whole(layers: list[list[Piece]]) -> list[list[Piece]]:
 
 def shorn(layers: list[list[Piece]], shortest: float) -> tuple[list[list[Piece]], int]:
     """Without the pieces shorter than `shortest` mm that nothing lies on, and how many these are."""
-    gone: set[Piece] = set()
+    dropped: set[Piece] = set()
     for layer in reversed(layers):
-        gone.update(piece for piece in layer if piece.curve.length < shortest and gone.issuperset(piece.children))
-    kept = [[piece for piece in layer if piece not in gone] for layer in layers]
-    return _pruned([layer for layer in kept if layer]), len(gone)
+        dropped.update(piece for piece in layer if piece.curve.length < shortest and dropped.issuperset(piece.children))
+    kept = [[piece for piece in layer if piece not in dropped] for layer in layers]
+    return _pruned([layer for layer in kept if layer]), len(dropped)
 
 
 def _pruned(layers: list[list[Piece]]) -> list[list[Piece]]:

@@ -130,12 +130,12 @@ def _close(pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: lis
 
 @dataclass(frozen=True, eq=False)
 class _Way:
-    """One way to run a piece: from where on, and whether against its curve."""
+    """One way to run a piece: from which parameter on, whether against its curve, and its first point (3,)."""
 
     piece: Piece
     start: float
     backwards: bool
-    begin: Array
+    first: Array
 
 
 def _layers(
@@ -151,18 +151,18 @@ def _layers(
             way = _nearest(ways, last)
             ways = [some for some in ways if some[0].piece is not way.piece]
             curve = way.piece.curve
-            line = traced(curve, within_chord(curve, way.start, way.start + curve.period, chord_error), curve.closed)
-            points, normal = wall.project(line.points)  # arcs are off it between their nodes, if by next to nothing
+            trace = traced(curve, within_chord(curve, way.start, way.start + curve.period, chord_error), curve.closed)
+            points, normal = wall.project(trace.points)  # arcs are off it between their nodes, if by next to nothing
             if curve.closed:
                 points[-1] = points[0]
-            line = line._replace(points=points)
-            vectors = along(line, normal, np.cross(normal, line.tangents.sum(axis=1)))  # up is on the left
+            trace = trace._replace(points=points)
+            vectors = along(trace, normal, np.cross(normal, trace.tangents.sum(axis=1)))  # up is on the left
             if way.backwards:
-                line, vectors = line.reversed(), vectors.reversed()
-            bead, directions = settings.bead(line, vectors, index, way.piece.closing)
+                trace, vectors = trace.reversed(), vectors.reversed()
+            bead, directions = settings.bead(trace, vectors, index, way.piece.closing)
             beads.append(bead)
             found.append((index, directions))
-            last = line.points[-1]
+            last = trace.points[-1]
         layers.append(Layer(tuple(beads)))
     return tuple(layers), notes(found)
 
@@ -189,4 +189,4 @@ def _nearest(ways: list[list[_Way]], last: Array | None) -> _Way:
     if last is None:
         return those[0][0]
     every = [way for some in those for way in some]
-    return every[int(np.argmin([float(np.linalg.norm(way.begin - last)) for way in every]))]
+    return every[int(np.argmin([float(np.linalg.norm(way.first - last)) for way in every]))]

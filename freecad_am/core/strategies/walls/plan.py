@@ -106,11 +106,11 @@ def _layers(
         beads = []
         for stretch in layer:
             start = process.seam.angle + index * process.seam.step
-            line = traced(stretch.front.curve, _parameters(stretch, start, strategy.chord_error), stretch.closed)
-            vectors = _along(surface, line, side)
-            if _backwards(line, vectors, process, index, number):
-                line, vectors = line.reversed(), vectors.reversed()
-            bead, directions = settings.bead(line, vectors, index)
+            trace = traced(stretch.front.curve, _parameters(stretch, start, strategy.chord_error), stretch.closed)
+            vectors = _along(surface, trace, side)
+            if _backwards(trace, vectors, process, index, number):
+                trace, vectors = trace.reversed(), vectors.reversed()
+            bead, directions = settings.bead(trace, vectors, index)
             beads.append(bead)
             found.append((index, directions))
             number += 1
@@ -140,17 +140,17 @@ def _outside(surface: Placed, stretch: Stretch) -> _Side:
     return _Side(float(np.sign(out.sum())))
 
 
-def _along(surface: Placed, line: Traced, side: _Side) -> Along:
-    u, v = surface.inverse(line.points)
+def _along(surface: Placed, trace: Traced, side: _Side) -> Along:
+    u, v = surface.inverse(trace.points)
     _, rise, turn = surface.derivatives(u, v)
-    return along(line, unit(np.cross(rise, turn)) * side.sign, rise)
+    return along(trace, unit(np.cross(rise, turn)) * side.sign, rise)
 
 
-def _backwards(line: Traced, vectors: Along, process: ProcessParameters, layer: int, number: int) -> bool:
+def _backwards(trace: Traced, vectors: Along, process: ProcessParameters, layer: int, number: int) -> bool:
     """Whether a bead runs against rising v. Counter-clockwise is meant against the build direction."""
-    if not line.closed:
+    if not trace.closed:
         return process.direction == "alternate" and number % 2 == 1
-    turning = np.cross(line.points[:-1], line.points[1:]).sum(axis=0) @ vectors.up.mean(axis=0)
+    turning = np.cross(trace.points[:-1], trace.points[1:]).sum(axis=0) @ vectors.up.mean(axis=0)
     wanted = process.direction != "clockwise" if process.direction != "alternate" else layer % 2 == 0
     return bool((turning > 0.0) != wanted)
 
