@@ -176,12 +176,11 @@ def steps(joints: Array, points: Points) -> Array:
     return step
 
 
-def unwrapped(joints: Array, points: Points, alone: bool = True) -> Array:
-    """(..., T, axes) joint values counted on from the first point of each bead, NaN from its first point without any on.
-    alone: each bead for itself; else a bead that is lost takes all after it along."""
+def unwrapped(joints: Array, points: Points) -> Array:
+    """(..., T, axes) joint values counted on from the first point of each bead, NaN from its first point without any on."""
     rising = steps(joints, points)
     lost = np.isnan(rising)
-    some = alone and bool(lost.any())
+    some = bool(lost.any())
     if some:
         rising[lost] = 0.0
         lost = np.cumsum(lost, axis=-2)

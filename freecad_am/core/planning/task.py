@@ -156,9 +156,7 @@ class Task:
         raw = self.raw_joints(points, phi)
         if phi.ndim > 1 and not np.isnan(raw.max()):
             return self.in_range(unwrapped_by_turns(raw, points), points)
-        # rotations that lose a bead are not looked at for those after it: alone these would take some that come too near to
-        # a singularity between their points, which is seen when all is chosen
-        found = self.in_range(unwrapped(raw, points, alone=phi.ndim == 1), points)
+        found = self.in_range(unwrapped(raw, points), points)
         # of what is planned row by row: what is summed up over the axes is so in the order of memory
         return np.ascontiguousarray(found) if phi.ndim == 1 else found
 

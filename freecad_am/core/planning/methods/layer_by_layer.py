@@ -16,8 +16,8 @@ from ...toolpath import Bead
 from ...types import Array
 from ..arm import clear as arm_clear
 from ..joint_path import BeadPath
-from ..points import gather
-from ..rotation import given, refine, search, ties
+from ..points import Points, gather
+from ..rotation import elsewhere, given, refine, search, ties
 from ..rotation.evaluation import judged
 from ..task import FITS, Task
 from ..turns import fit
@@ -76,31 +76,45 @@ def _searched(
         task, full, threshold, starts, wanted, lambda share: progress(0.4 + 0.3 * share, "refining layers")
     )
     progress(0.7, "settling")
-    resolved = ties.resolve(task, coarse, coarse_threshold, refined.coefficients)
-    paths = judged(task, beads, places, full, threshold, resolved, refined)
-    equal = ties.as_good(task, [path.objective for path in paths], refined.objective)
-    if not equal.all() or any(path.margin < FITS for path in paths):
-        # settling looks at few points of a bead: where all of them say otherwise, the optimum stays as it was found
-        as_found = judged(task, beads, places, full, threshold, refined.coefficients, refined)
-        paths = [
-            path if good and path.margin >= min(FITS, other.margin) else other
-            for path, other, good in zip(paths, as_found, equal)
-        ]
+    paths = _settled(task, beads, places, (coarse, coarse_threshold), (full, threshold), refined)
+    lost = [k for k in elsewhere.lost(task, beads, places, paths) if found.margin[best[k], k] >= 0.0]
+    others = dict(zip(lost, elsewhere.of_beads(task, [beads[k] for k in lost], [places[k] for k in lost])))
+    paths = [others.get(k) or path for k, path in enumerate(paths)]
     if task.kept is not None:
         progress(0.8, "keeping the arm clear")
         reached = dataclasses.replace(refined, coefficients=np.array([path.coefficients for path in paths]))
         clear, changed = arm_clear.brought_clear(task, task.kept, beads, places, start, reached)
         if changed.any():
-            others = judged(task, beads, places, full, threshold, clear.coefficients, clear)
-            paths = [other if one else path for path, other, one in zip(paths, others, changed)]
+            moved = judged(task, beads, places, full, threshold, clear.coefficients, clear)
+            paths = [other if one else path for path, other, one in zip(paths, moved, changed)]
     # a joined bead that a higher degree serves in one piece need not be split
     helped = {k: some for k, some in helped.items() if len(some) == 1 or not joined[k] or paths[k].margin < FITS}
-    late = [int(k) for k in each if paths[k].margin < FITS and k not in helped and k not in hopeless]
+    late = [k for k in range(len(beads)) if k not in helped and k not in hopeless
+            and (others.get(k, paths[k]) is None or paths[k].margin < FITS)]
     helped.update({
         k: found for k, found in zip(late, fit.for_beads(task, [beads[k] for k in late], [places[k] for k in late]))
         if found is not None
     })
     return paths, helped
+
+
+def _settled(
+    task: Task, beads: Sequence[Bead], places: Sequence[Place], coarse: tuple[Points, Array], full: tuple[Points, Array],
+    refined: refine.Refined,
+) -> list[BeadPath]:
+    """The paths of all beads in the valleys of their optima. coarse, full: few and all of their points, with the conditions
+    asked for there."""
+    resolved = ties.resolve(task, *coarse, refined.coefficients)
+    paths = judged(task, beads, places, *full, resolved, refined)
+    equal = ties.as_good(task, [path.objective for path in paths], refined.objective)
+    if equal.all() and all(path.margin >= FITS for path in paths):
+        return paths
+    # settling looks at few points of a bead: where all of them say otherwise, the optimum stays as it was found
+    as_found = judged(task, beads, places, *full, refined.coefficients, refined)
+    return [
+        path if good and path.margin >= min(FITS, other.margin) else other
+        for path, other, good in zip(paths, as_found, equal)
+    ]
 
 
 def _with_other_turns(start: Array, found: search.Found) -> Array:

@@ -32,20 +32,25 @@ def for_beads(task: Task, beads: Sequence[Bead], places: Sequence[Place]) -> lis
     The rotations are looked for as if the robot's last axis, and those beside it, had no end; then a start, or cuts, are
     found that suit their limits.
     """
-    usable = [k for k, bead in enumerate(beads) if not turns.is_spiral(bead)]
     result: list[list[BeadPath] | None] = [None] * len(beads)
-    if task.continuous.all() or not usable:
+    left = [k for k, bead in enumerate(beads) if not turns.is_spiral(bead)]
+    if task.continuous.all():
         return result
     free = dataclasses.replace(task, cell=_last_continuous(task.cell))
-    coarse = gather([beads[k] for k in usable], task.cell, search.POINTS_PER_BEAD)
-    threshold = task.thresholds(coarse)
-    # only with slopes of whole turns can a seam be moved after the planning
-    found = search.everywhere(free, coarse, threshold, search.CLOSING_SLOPES, OFFSETS, best_alone=True)
-    best, each = found.best(), np.arange(len(usable))
-    resolved = ties.resolve(free, coarse, threshold, found.coefficients[best, each])
-    for number, k in enumerate(usable):
-        if found.margin[best[number], number] >= 0.0:
+    for most in (search.POINTS_PER_BEAD, None):  # what suits few points may not suit those between them
+        if not left:
+            break
+        points = gather([beads[k] for k in left], task.cell, most)
+        threshold = task.thresholds(points)
+        # only with slopes of whole turns can a seam be moved after the planning
+        found = search.everywhere(free, points, threshold, search.CLOSING_SLOPES, OFFSETS, best_alone=True)
+        best, each = found.best(), np.arange(len(left))
+        resolved = ties.resolve(free, points, threshold, found.coefficients[best, each])
+        serving = np.flatnonzero(found.margin[best, each] >= 0.0).tolist()
+        for number in serving:
+            k = left[number]
             result[k] = _fitted(task, free, beads[k], places[k], resolved[number : number + 1])
+        left = [left[number] for number in serving if result[left[number]] is None]
     return result
 
 

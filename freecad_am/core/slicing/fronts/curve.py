@@ -249,7 +249,7 @@ def _step(slopes: list[Array], off: list[Array], longest: Array) -> Array:
     determinant = a * c - b * b
     sharp = determinant > 1e-9
     safe = np.where(sharp, determinant, 1.0)
-    step = ((c * p - b * q) / safe)[:, None] * slopes[0] + ((a * q - b * p) / safe)[:, None] * slopes[1]
+    step: Array = ((c * p - b * q) / safe)[:, None] * slopes[0] + ((a * q - b * p) / safe)[:, None] * slopes[1]
     length = np.linalg.norm(step, axis=1)
     step *= (np.where(sharp, 1.0, 0.0) * np.minimum(1.0, longest / np.maximum(length, 1e-300)))[:, None]
     return step
