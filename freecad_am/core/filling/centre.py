@@ -10,6 +10,7 @@ import numpy as np
 from ..geometry.curves.plane_curve import length
 from ..geometry.regions.medial import spine
 from ..geometry.regions.region import Region, along, simplified
+from ..geometry.regions.several import grown, longer, wider, without
 from ..issues import InfeasibleError
 from ..types import Array
 from .curve import Beads, PlaneCurve
@@ -34,7 +35,7 @@ def centre_beads(
     """
     found: list[PlaneCurve] = []
     for _ in range(ROUNDS):
-        left = [region for region in left if region.grown(-0.5 * beads.gap, beads.chord_error)]
+        left = wider(left, beads.gap, beads.chord_error)
         rest: list[Region] = []
         for region in left:
             points, closed = _middle(region, beads, 0.5 * ENDS * beads.gap)
@@ -49,14 +50,11 @@ def centre_beads(
     return found
 
 
-def left_open(curves: Sequence[tuple[Array, bool]], inner: Sequence[Region], beads: Beads) -> list[Region]:
-    """What curves (points (n, 2), whether closed) leave open, wider than the gap allowed, of what beads can reach with their
-    middles in `inner`."""
+def left_open(curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Beads) -> list[Region]:
+    """What curves leave open, wider than the gap allowed, of what beads can reach with their middles in `inner`."""
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
-    covered = along([(thinned(points, closed, error), closed) for points, closed in curves], half, error)
-    reached = [part for piece in inner for part in piece.grown(half, error)]
-    left = [part for piece in reached for part in (piece.without(covered, beads.gap) if covered else (piece,))]
-    return [part for part in left if part.grown(-0.5 * beads.gap, error)]
+    covered = along([(thinned(curve.points, curve.closed, error), curve.closed) for curve in curves], half, error)
+    return wider(without(grown(inner, half, error), covered, beads.gap), beads.gap, error)
 
 
 def thinned(points: Array, closed: bool, tolerance: float) -> Array:
@@ -68,8 +66,7 @@ def thinned(points: Array, closed: bool, tolerance: float) -> Array:
 def closing(region: Region, curves: Sequence[PlaneCurve], beads: Beads, ring: int) -> list[PlaneCurve]:
     """Beads in what other beads leave open of the part of a region that beads can reach."""
     inner = region.grown(-beads.inset, beads.chord_error)
-    left = left_open([(curve.points, curve.closed) for curve in curves], inner, beads)
-    return centre_beads(left, beads, ring, inner, "closing")
+    return centre_beads(left_open(curves, inner, beads), beads, ring, inner, "closing")
 
 
 def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
@@ -98,40 +95,39 @@ def _network(region: Region, beads: Beads) -> list[PlaneCurve]:
             if len(points) > 1 and (not found or length(points, closed) >= beads.shortest):
                 found.append(PlaneCurve(points, closed, "centre", 0))
                 rest += part.without(along([(points, closed)], beads.inset, beads.chord_error), beads.gap)
-        left = [part for part in rest if part.grown(-0.5 * beads.gap, beads.chord_error)]
+        left = wider(rest, beads.gap, beads.chord_error)
         if not left:
             break
     return found
 
 
-def outermost(region: Region, beads: Beads) -> tuple[Region, ...]:
-    """What the middle of the outermost bead goes round. Places that are hardly wider than a bead, as where ribs meet, are
-    left to the beads along the middle of the ribs."""
+def outermost(region: Region, beads: Beads) -> tuple[tuple[Region, ...], tuple[Region, ...]]:
+    """What the middle of the outermost bead goes round, and what is too thin for that: necks of the region, or all of it.
+    Places that are hardly wider than a bead, as where ribs meet, are left to the beads along the middle of the ribs."""
     inner = region.grown(-beads.inset, beads.chord_error)
-    if beads.thin == "refuse":
-        return inner
-    long = tuple(part for part in inner if length(part.rings()[0], True) >= beads.shortest)
-    return long if long or region.area > NETWORK * beads.inset**2 else inner
+    if beads.thin != "refuse":
+        long = longer(inner, beads.shortest)
+        inner = long if long or region.area > NETWORK * beads.inset**2 else inner
+    return (inner, _necks(region, inner, beads)) if inner else ((), (region,))
 
 
-def necks(region: Region, inner: Sequence[Region], beads: Beads) -> tuple[Region, ...]:
-    """Pieces of a region that no bead inside of `inner` reaches and that join two places which beads do reach, or stand out
+def _necks(region: Region, inner: Sequence[Region], beads: Beads) -> tuple[Region, ...]:
+    """Parts of a region that no bead inside of `inner` reaches and that join two places which beads do reach, or stand out
     from one as ribs do: longer than a bead is wide and nearly as thick all along, not corners that run to a point."""
-    error = beads.chord_error
-    reached = [part for piece in inner for part in piece.grown(beads.inset, error)]
+    reached = grown(inner, beads.inset, beads.chord_error)
     found = []
-    for piece in region.without(reached):
-        adjacent = [part for part in reached if part.distance(piece) < 2.0 * error]
-        if len(adjacent) > 1 or (adjacent and _is_rib(piece, adjacent[0], beads)):
-            found.append(piece)
+    for part in region.without(reached):
+        adjacent = [other for other in reached if other.distance(part) < 2.0 * beads.chord_error]
+        if len(adjacent) > 1 or (adjacent and _is_rib(part, adjacent[0], 2.0 * beads.inset)):
+            found.append(part)
     return tuple(found)
 
 
-def _is_rib(piece: Region, foot: Region, beads: Beads) -> bool:
-    if piece.area <= RIB * (2.0 * beads.inset) ** 2:  # less than the least rib has
+def _is_rib(part: Region, foot: Region, width: float) -> bool:
+    if part.area <= RIB * width**2:  # less than the least rib has
         return False
-    out = float(foot.nearest(piece.rings()[0])[1].max())
-    return out > 2.0 * beads.inset and piece.area > RIB * 2.0 * beads.inset * out
+    out = float(foot.nearest(part.rings()[0])[1].max())
+    return out > width and part.area > RIB * width * out
 
 
 def _along_border(region: Region) -> tuple[Array, bool]:

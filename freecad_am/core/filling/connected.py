@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..geometry.curves.plane_curve import nearest
 from ..geometry.regions.region import Region, along
 from ..types import Array
-from .contours import levels, middles
+from .contours import levels, middles, rounds
 from .curve import Beads, PlaneCurve, begun, long_enough
 from .rings import AdjacentRings, Ring, crossed, side_by_side
 
@@ -74,11 +74,7 @@ def connected(region: Region, beads: Beads) -> list[PlaneCurve]:
     bead of a region too narrow for contours. InfeasibleError THIN_REGION, see `Beads`."""
     found = levels(region, beads)
     loose = middles(found, beads)
-    curves = [
-        begun(PlaneCurve(ring, True, "contour", k), beads)
-        for k, parts in enumerate(found.rings) for part in parts for ring in part.rings()
-    ]
-    curves = long_enough(curves, beads.shortest)
+    curves = long_enough(rounds(found, beads), beads.shortest)
     if not curves:
         return long_enough(loose, beads.shortest)
     loose = long_enough(loose, beads.shortest)

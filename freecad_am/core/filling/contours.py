@@ -5,18 +5,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..geometry.curves.plane_curve import length
 from ..geometry.regions.region import Region
-from .centre import centre_beads, necks, outermost, single_beads
-from .curve import Beads, PlaneCurve, begun, long_enough
+from ..geometry.regions.several import grown, longer, without
+from .centre import centre_beads, outermost, single_beads
+from .curve import Beads, PlaneCurve, begun, borders, long_enough
 
 
 @dataclass(frozen=True)
 class Levels:
-    """rings[k]: the regions whose borders are the contours k; left[k]: what stays open inside of them, where it has room
-    for the gap allowed."""
+    """regions[k]: those whose borders are the contours k; left[k]: what stays open inside of them, where it has room for the
+    gap allowed."""
 
-    rings: tuple[tuple[Region, ...], ...]
+    regions: tuple[tuple[Region, ...], ...]
     left: tuple[tuple[Region, ...], ...]
     thin: tuple[Region, ...]  # the region, or necks of it, narrower than a bead
 
@@ -25,39 +25,32 @@ def levels(region: Region, beads: Beads) -> Levels:
     """The contours of a region, each parallel to its border, not to the contour before, so that errors do not add. Contours
     too short are left open, for the beads in the middle."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner = outermost(region, beads)
-    if not inner:
-        return Levels((), (), (region,))
-    thin = necks(region, inner, beads)
-    rings, left = [], []
+    inner, thin = outermost(region, beads)
+    regions, left = [], []
     k = 0
     while inner:
-        rings.append(inner)
+        regions.append(inner)
         open_ = region.grown(-beads.inset - (2 * k + 1) * half, error)
-        inner = tuple(
-            part for part in region.grown(-beads.inset - (2 * k + 2) * half, error)
-            if length(part.rings()[0], True) >= beads.shortest
-        )
-        covered = [part for piece in inner for part in piece.grown(half, error)]
-        left.append(tuple(part for piece in open_ for part in (piece.without(covered, beads.gap) if covered else (piece,))))
+        inner = longer(region.grown(-beads.inset - (2 * k + 2) * half, error), beads.shortest)
+        left.append(without(open_, grown(inner, half, error), beads.gap))
         k += 1
-    return Levels(tuple(rings), tuple(left), thin)
+    return Levels(tuple(regions), tuple(left), thin)
 
 
 def contours(region: Region, beads: Beads) -> list[PlaneCurve]:
     """Closed contours from outside in, then the beads in their middle. InfeasibleError THIN_REGION, see `Beads`."""
     found = levels(region, beads)
-    curves = [
-        begun(PlaneCurve(ring, True, "contour", k), beads)
-        for k, parts in enumerate(found.rings) for part in parts for ring in part.rings()
-    ]
-    curves += middles(found, beads)
-    return long_enough(curves, beads.shortest)
+    return long_enough(rounds(found, beads) + middles(found, beads), beads.shortest)
+
+
+def rounds(found: Levels, beads: Beads) -> list[PlaneCurve]:
+    """The contours, from outside in."""
+    return [curve for k, regions in enumerate(found.regions) for curve in borders(regions, beads, k)]
 
 
 def middles(found: Levels, beads: Beads) -> list[PlaneCurve]:
     """The beads in what contours leave open, and in thin places."""
     curves = single_beads(found.thin, beads)
     for k, left in enumerate(found.left):
-        curves += [begun(curve, beads) for curve in centre_beads(left, beads, k + 1, found.rings[0])]
+        curves += [begun(curve, beads) for curve in centre_beads(left, beads, k + 1, found.regions[0])]
     return curves

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.regions.region import Region, along, regions
+from ..geometry.regions.region import Region, along
+from ..geometry.regions.several import common
 from ..geometry.regions.strip import Strip
 from ..types import Array
 from .centre import thinned
@@ -20,7 +21,7 @@ from .strip_closing import near_windows
 COARSE = 0.01  # of half a bead; beads round a hub are looked at no finer
 SHARES = 0.02  # of a bead's usual width; shares that differ by less are one
 
-Piece = tuple[Array, bool]  # points (n, 2), and whether they close
+Line = tuple[Array, bool]  # points (n, 2), and whether they close
 
 
 class Cover(NamedTuple):
@@ -43,42 +44,38 @@ def covered(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads, 
     if isinstance(region, Strip):
         found = _of_strip(region, curves, beads)
     else:
-        found = _of_parts((region,), [_widths(curve) for curve in curves], beads, ())
+        found = _of_regions((region,), [_widths(curve) for curve in curves], beads, ())
     return found if density == 1.0 else found._replace(left=0.0)
 
 
-def _of_parts(
-    parts: Sequence[Region], lines: Sequence[tuple[list[Piece], list[float]]], beads: Beads, pane: Sequence[Region]
+def _of_regions(
+    regions: Sequence[Region], widths: Sequence[tuple[list[Line], list[float]]], beads: Beads, pane: Sequence[Region]
 ) -> Cover:
-    """Of parts of the plane, with what lies in a pane of it alone where there is one. lines: pieces of beads, and the share
-    of the usual width of each."""
-    pieces = [piece for some, _ in lines for piece in some]
-    half = beads.inset * np.array([share for _, shares in lines for share in shares])
-    covered = along(pieces, half, beads.chord_error) if pieces else ()
-    covered = tuple(piece for part in covered for piece in part.common(pane)) if pane else covered
-    whole = math.fsum(part.area for part in parts)
-    inside = math.fsum(piece.area for part in parts for piece in part.common(covered)) if covered else 0.0
-    once = math.fsum(piece.area for piece in covered)
+    """Of regions of the plane, with what lies in a pane of it alone where there is one. widths: lines of beads, and the
+    share of the usual width of each."""
+    lines = [line for some, _ in widths for line in some]
+    half = beads.inset * np.array([share for _, shares in widths for share in shares])
+    covered = along(lines, half, beads.chord_error) if lines else ()
+    covered = common(covered, pane) if pane else covered
+    whole = math.fsum(region.area for region in regions)
+    inside = math.fsum(part.area for part in common(regions, covered)) if covered else 0.0
+    once = math.fsum(part.area for part in covered)
     return Cover(whole, whole - inside, once - inside, once)
 
 
 def _of_strip(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Cover:
     """Window by window; beads of regions round a hub are as wide as usual."""
-    period, found = strip.period, []
+    covers = []
     beads = replace(beads, chord_error=max(beads.chord_error, COARSE * beads.inset))
     for window, near in near_windows(strip, curves, 2.0 * beads.inset):
-        lines = [(thinned(points, closed, beads.chord_error), closed) for points, closed in near]
-        parts = [
-            part for cover in strip.between(window.low, window.high)
-            for part in regions([period.unroll(ring, window.about) for ring in cover.rings()])
-        ]
-        pane = regions([period.unroll(strip.pane(window), window.about)])
-        found.append(_of_parts(parts, [(lines, [1.0] * len(lines))], beads, pane))
-    return total(found)
+        lines = [(thinned(curve.points, curve.closed, beads.chord_error), curve.closed) for curve in near]
+        regions = strip.flat(window.low, window.high, window.about)
+        covers.append(_of_regions(regions, [(lines, [1.0] * len(lines))], beads, strip.pane(window)))
+    return total(covers)
 
 
-def _widths(curve: PlaneCurve) -> tuple[list[Piece], list[float]]:
-    """A bead in pieces along which its width is one, and the share of the usual width of each."""
+def _widths(curve: PlaneCurve) -> tuple[list[Line], list[float]]:
+    """A bead in lines along which its width is one, and the share of the usual width of each."""
     if curve.share is None:
         return [(curve.points, curve.closed)], [1.0]
     share, points = curve.share, curve.points

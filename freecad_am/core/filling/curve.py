@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..geometry.curves.plane_curve import begun_at, doubled_area, length, up_to
+from ..geometry.regions.region import Region
+from ..geometry.regions.strip import Strip
 from ..types import Array
 
 NEXT, OVER = 0.7548776662, 0.5698402910  # of a length: starts of the next contour, of the next layer (the sequence R2)
@@ -33,6 +35,13 @@ class PlaneCurve:
     turns: int = 0
     sheet: float = 0.0
     share: Array | None = None
+
+    def reversed(self) -> PlaneCurve:
+        """The same run the other way, a closed one from the same start."""
+        points, share = self.points[::-1], None if self.share is None else self.share[::-1]
+        if self.closed:
+            points, share = np.roll(points, 1, axis=0), None if share is None else np.roll(share, 1)
+        return replace(self, points=points, share=share)
 
 
 def on_plane(point: Array) -> str:
@@ -107,3 +116,17 @@ def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
 def begun(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
     """A closed curve with the sense and start asked for; an open one as it is."""
     return replace(curve, points=beads.ring(curve.points, curve.ring)) if curve.closed and not curve.turns else curve
+
+
+def borders(parts: Sequence[Strip | Region], beads: Beads, ring: int) -> list[PlaneCurve]:
+    """The borders of regions and strips as contours."""
+    curves = []
+    for part in parts:
+        if isinstance(part, Region):
+            curves += [begun(PlaneCurve(points, True, "contour", ring, sheet=part.sheet), beads) for points in part.rings()]
+            continue
+        for points, turns in part.rings():
+            against = turns != 0 and (turns < 0) != beads.clockwise
+            curve = PlaneCurve(points[::-1] if against else points, True, "contour", ring, -turns if against else turns)
+            curves.append(begun(curve, beads))
+    return curves

@@ -20,11 +20,11 @@ from .spiral import spiral
 from .strip_closing import strip_left_open
 from .strip_lines import lines_along, lines_round
 from .strips import strip_contours
-from .zigzag import zigzag
 
 PATTERNS = ("contours", "connected", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
 CURVED = ("contours", "connected", "spiral")  # without walls: the border's parallel curves are all they have
 WHOLE = Infill()
+LINK = 3.0  # of the spacing
 
 
 def fill(
@@ -48,13 +48,12 @@ def fill(
             return tuple(strip_contours(region, beads))
         upright = abs(math.sin(angle)) > abs(math.cos(angle))
         return tuple((lines_along if upright else lines_round)(region, beads, int(walls), infill.density))
+    link = (longest_link or LINK * beads.spacing) if pattern == "zigzag" else None
     if infill.density < 1.0:
-        return tuple(sparse(region, beads, pattern, angle, 0 if math.isinf(walls) else int(walls), longest_link, infill))
+        return tuple(sparse(region, beads, pattern, angle, 0 if math.isinf(walls) else int(walls), link, infill))
     if pattern in CURVED:
         return tuple({"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, beads))
-    if pattern == "zigzag":
-        return tuple(zigzag(region, beads, angle, int(walls), longest_link))
-    return tuple(lines(region, beads, angle, int(walls)))
+    return tuple(lines(region, beads, angle, int(walls), link))
 
 
 def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> list[tuple[Array, float]]:
@@ -63,16 +62,15 @@ def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Bea
     if isinstance(region, Strip):
         return strip_left_open(region, curves, beads)
     inner = region.grown(-beads.inset, beads.chord_error)
-    left = left_open([(curve.points, curve.closed) for curve in curves], inner, beads) if inner else []
-    return [(part.inside(), part.width) for part in left]
+    return [(part.inside(), part.width) for part in left_open(curves, inner, beads)] if inner else []
 
 
 def open_at_slits(
-    parts: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads
+    regions: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads
 ) -> list[tuple[Array, float]] | None:
     """As `open_places`, of all regions of a layer with their beads, where slits thinner than the gap allowed divide them:
     what beads leave open on both sides of a slit is one place. None where there are no such slits."""
-    whole = joined(parts, beads.gap)
-    if whole == tuple(parts):
+    whole = joined(regions, beads.gap)
+    if whole == tuple(regions):
         return None
-    return [found for region in whole for found in open_places(region, curves, beads)]
+    return [left for region in whole for left in open_places(region, curves, beads)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parallel lines at an angle, half a bead inside the border or inside a contour round them."""
+"""Parallel lines at an angle, half a bead inside the border or inside contours round them, alone or linked to zigzags."""
 
 from __future__ import annotations
 
@@ -8,13 +8,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.curves.plane_curve import length, turned
+from ..geometry.curves.plane_curve import turned
 from ..geometry.regions.region import Region
+from ..geometry.regions.several import grown, longer
 from ..types import Array
-from .centre import closing, necks, outermost, single_beads
-from .curve import Beads, PlaneCurve, begun, long_enough
+from .centre import closing, outermost, single_beads
+from .curve import Beads, PlaneCurve, borders, long_enough
 from .lattice import crossings
+from .zigzag import in_rows
 
+INSIDE = 0.4  # of the spacing; a link on the edge of a contour's bead lies half on it, one at 0.5 leaves its corners open
 TOGETHER, APART = 0.01, 0.002  # of the spacing; lines are moved no more than that so that they come out even
 
 
@@ -32,29 +35,22 @@ def frame(region: Region, beads: Beads, walls: int) -> Frame:
     """Where lines may run: half a bead inside the border, or a spacing inside of the last of so many contours that are laid
     first, onto which they end."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner = outermost(region, beads)
-    if not inner:
-        return Frame([], (), (), (region,))
-    thin = necks(region, inner, beads)
-    if not walls:
+    inner, thin = outermost(region, beads)
+    if not walls or not inner:
         return Frame([], inner, inner, thin)
     curves = []
     for k in range(walls):
         if k:
-            inner = tuple(
-                part for part in region.grown(-beads.inset - 2 * k * half, error)
-                if length(part.rings()[0], True) >= beads.shortest
-            )
-        curves += [begun(PlaneCurve(line, True, "contour", k), beads) for part in inner for line in part.rings()]
+            inner = longer(region.grown(-beads.inset - 2 * k * half, error), beads.shortest)
+        curves += borders(inner, beads, k)
         if not inner:
             break
-    regions, ends = (
-        tuple(piece for part in inner for piece in part.grown(-way, error)) for way in (2.0 * half, half)
-    )
-    return Frame(curves, regions, ends, thin)
+    return Frame(curves, grown(inner, -2.0 * half, error), grown(inner, -half, error), thin)
 
 
-def lines(region: Region, beads: Beads, angle: float = 0.0, walls: int = 0) -> list[PlaneCurve]:
+def lines(
+    region: Region, beads: Beads, angle: float = 0.0, walls: int = 0, longest_link: float | None = None
+) -> list[PlaneCurve]:
     """Lines at an angle (rad), every other one the other way round; so many contours round them come first.
 
     First and last line are half a bead inside the border (with walls: a spacing inside of the last), and the rest
@@ -62,12 +58,14 @@ def lines(region: Region, beads: Beads, angle: float = 0.0, walls: int = 0) -> l
     than TOGETHER and APART; otherwise what is left over is in the middle and has a line of its own. With walls, lines end
     on the last. What lines leave open elsewhere, beside borders almost along them, is filled too, as is the place of lines
     that would be too short. InfeasibleError THIN_REGION, see `Beads`.
+
+    longest_link: mm; lines are linked to zigzags along the border of the room that beads have, so that no link is outside;
+    beside contours links lie inside of their beads, so that little is laid twice. None: no line is linked.
     """
     place = frame(region, beads, walls)
     curves = single_beads(place.thin, beads) + place.curves
-    for row, cuts in enumerate(rows(place, beads, angle)):
-        cuts = [cut for cut in cuts if length(cut, False) >= beads.shortest]
-        curves += [PlaneCurve(cut[::-1] if row % 2 else cut, False, "line", walls) for cut in cuts]
+    inside = INSIDE * beads.spacing if walls else 0.0
+    curves += in_rows(rows(place, beads, angle), place.ends, beads, walls, longest_link, inside)
     curves += closing(region, curves, beads, walls)
     return long_enough(curves, beads.shortest)
 
@@ -76,8 +74,8 @@ def rows(place: Frame, beads: Beads, angle: float) -> list[list[Array]]:
     """Level by level the pieces (2, 2) of lines, all in the direction of the angle (rad)."""
     if not place.regions or not place.ends:  # too narrow for lines; what they would fill gets beads along its middle
         return []
-    rings = [turned(ring, -angle) for part in place.ends for ring in part.rings()]
-    height = np.concatenate([turned(part.rings()[0], -angle)[:, 1] for part in place.regions])
+    rings = [turned(ring, -angle) for region in place.ends for ring in region.rings()]
+    height = np.concatenate([turned(region.rings()[0], -angle)[:, 1] for region in place.regions])
     found = []
     for level in levels_between(float(height.min()), float(height.max()), beads):
         x = crossings(rings, level)

@@ -25,7 +25,7 @@ def spiral(region: Region, beads: Beads) -> list[PlaneCurve]:
     """One curve from each outer contour and from each hole as far as contours follow one another singly; where they split or
     join, new ones begin. A contour of its own stays closed. What contours leave open is filled as theirs is."""
     found = levels(region, beads)
-    rings = [[ring for part in parts for ring in part.rings()] for parts in found.rings]
+    rings = [[ring for region in regions for ring in region.rings()] for regions in found.regions]
     follower = [_followers(here, there, beads.spacing) for here, there in zip(rings, rings[1:])] + [{}]
     led: set[tuple[int, int]] = set()
     curves = []
@@ -36,7 +36,7 @@ def spiral(region: Region, beads: Beads) -> list[PlaneCurve]:
             chain = [(k, number)]
             while (following := follower[chain[-1][0]].get(chain[-1][1])) is not None:
                 chain.append((chain[-1][0] + 1, following))
-            pieces = _linked([rings[j][n] for j, n in chain], found.rings[k:], beads)
+            pieces = _linked([rings[j][n] for j, n in chain], found.regions[k:], beads)
             led.update(chain[: len(pieces)])
             curves.append(_curve(pieces, beads, k))
     curves = long_enough(curves + middles(found, beads), beads.shortest)

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..geometry.regions.region import Region, regions
+from ..geometry.regions.region import Region
+from ..geometry.regions.several import common, grown
 from ..geometry.regions.strip import Strip, Window
 from ..types import Array
 from .centre import centre_beads, left_open
@@ -39,54 +40,20 @@ def _open(
     strip: Strip, curves: Sequence[PlaneCurve], beads: Beads
 ) -> list[tuple[Window, list[Region], tuple[Region, ...]]]:
     """Window by window, laid flat about its middle, what is open and where beads may lie."""
-    period, found = strip.period, []
+    found = []
     for window, near in near_windows(strip, curves, REACH * beads.spacing):
-        here = [
-            part for cover in strip.between(window.low - window.margin, window.high + window.margin)
-            for part in regions([period.unroll(line, window.about) for line in cover.rings()])
-        ]
-        inner = tuple(piece for part in here for piece in part.grown(-beads.inset, beads.chord_error))
+        here = strip.flat(window.low - window.margin, window.high + window.margin, window.about)
+        inner = grown(here, -beads.inset, beads.chord_error)
         if inner:
-            pane = regions([period.unroll(strip.pane(window), window.about)])
-            left = [piece for part in left_open(near, inner, beads) for piece in part.common(pane)]
-            found.append((window, left, inner))
+            found.append((window, list(common(left_open(near, inner, beads), strip.pane(window))), inner))
     return found
 
 
-def near_windows(
-    strip: Strip, curves: Sequence[PlaneCurve], reach: float
-) -> Iterator[tuple[Window, list[tuple[Array, bool]]]]:
-    """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle: points
-    (n, 2), and whether they close."""
-    period = strip.period
-    covers = [(_unrolled(strip, curve), curve.closed and not curve.turns) for curve in curves]
+def near_windows(strip: Strip, curves: Sequence[PlaneCurve], reach: float) -> Iterator[tuple[Window, list[PlaneCurve]]]:
+    """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle."""
+    covers = [strip.period.followed(curve.points, curve.sheet, curve.turns) for curve in curves]
     for window in strip.windows(reach):
         yield window, [
-            (period.unroll(line, window.about), closed) for cover, whole in covers
-            for line, closed in _near(cover, whole, window, period.around)
+            PlaneCurve(points, closed, curve.kind, curve.ring) for curve, cover in zip(curves, covers)
+            for points, closed in strip.near(window, cover, curve.closed and not curve.turns)
         ]
-
-
-def _unrolled(strip: Strip, curve: PlaneCurve) -> Array:
-    """A curve in (u, v), one round the hub to where it begins again."""
-    cover, turn = strip.period.followed(curve.points, curve.sheet), strip.period.around
-    return np.vstack([cover, cover[:1] + np.array([curve.turns * turn, 0.0])]) if curve.turns else cover
-
-
-def _near(cover: Array, whole: bool, window: Window, turn: float) -> list[tuple[Array, bool]]:
-    """What of a curve lies in a window or beside it, in all turns; `whole`: it is closed on the plane."""
-    low, high = window.low - window.margin, window.high + window.margin
-    found = []
-    first, last = np.ceil((low - cover[:, 0].max()) / turn), np.floor((high - cover[:, 0].min()) / turn)
-    for k in range(int(first), int(last) + 1):
-        line = cover + np.array([k * turn, 0.0])
-        if whole:
-            found.append((line, True))
-            continue
-        within = (line[:, 0] >= low) & (line[:, 0] <= high)
-        edge = within[1:] | within[:-1] | ((line[1:, 0] < low) & (line[:-1, 0] > high)) | (
-            (line[1:, 0] > high) & (line[:-1, 0] < low))
-        change = np.diff(np.r_[False, edge, False].astype(int))
-        runs = zip(np.flatnonzero(change > 0), np.flatnonzero(change < 0))
-        found += [(line[a : b + 1], False) for a, b in runs]
-    return found

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from ..geometry.curves.plane_curve import dense
 from ..geometry.regions.region import Region, regions
+from ..geometry.regions.several import grown
 from ..geometry.regions.strip import Strip
 from ..types import Array
-from .curve import Beads, PlaneCurve, long_enough
+from .curve import Beads, PlaneCurve, borders, long_enough
 from .lines import levels_between
 from .strip_closing import strip_closing
-from .strips import borders, grown, round_count, single
+from .strips import round_count, single
 
 PROBE, HALVES = 0.1, 10  # of the spacing, between places that tell where lines are inside; and how often that is halved
 

@@ -7,16 +7,16 @@ Closed beads that go round close over the period of the plane: `PlaneCurve.turns
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from ..geometry.regions.medial import spine
-from ..geometry.regions.region import Region, regions, simplified
+from ..geometry.regions.region import Region, simplified
+from ..geometry.regions.several import grown
 from ..geometry.regions.strip import Strip
 from ..issues import InfeasibleError
 from .centre import FINE, centre_beads
-from .curve import Beads, PlaneCurve, begun, long_enough
+from .curve import Beads, PlaneCurve, begun, borders, long_enough
 from .strip_closing import strip_closing
 
 AFRESH = 4  # contours made from the same borders; farther in, windows would get too narrow and errors are small yet
@@ -44,39 +44,18 @@ def strip_contours(strip: Strip, beads: Beads) -> list[PlaneCurve]:
     return curves + [begun(curve, beads) for curve in strip_closing(strip, curves, beads, k, "centre")]
 
 
-def grown(parts: Sequence[Strip | Region], distance: float, chord_error: float) -> tuple[Strip | Region, ...]:
-    """Each of several parts grown."""
-    return tuple(piece for part in parts for piece in part.grown(distance, chord_error))
-
-
-def borders(parts: Sequence[Strip | Region], beads: Beads, ring: int) -> list[PlaneCurve]:
-    """The borders of parts as contours."""
-    curves = []
-    for part in parts:
-        if isinstance(part, Region):
-            curves += [begun(PlaneCurve(line, True, "contour", ring, sheet=part.sheet), beads) for line in part.rings()]
-            continue
-        for line, turns in part.rings():
-            against = turns != 0 and (turns < 0) != beads.clockwise
-            curve = PlaneCurve(line[::-1] if against else line, True, "contour", ring, -turns if against else turns)
-            curves.append(begun(curve, beads))
-    return curves
-
-
 def _middle(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     """A bead round the hub in the middle of a thin strip."""
     turn = strip.period.around
     width = strip.levels[1] - strip.levels[0]
     margin = min(2.0 * width + beads.spacing, 0.5 * turn)
-    parts = strip.between(-0.5 * turn - margin, 0.5 * turn + margin)
-    largest = max(parts, key=lambda part: part.area)
+    largest = max(strip.between(-0.5 * turn - margin, 0.5 * turn + margin), key=lambda part: part.area)
     points, _ = spine(largest, 0.25 * beads.gap, FINE * beads.spacing)
     if len(points) and points[0, 0] > points[-1, 0]:
         points = points[::-1]
     if not len(points) or points[0, 0] > -0.5 * turn or points[-1, 0] < 0.5 * turn:  # somewhere too narrow for a bead
-        halves = [part for k in (-0.5, 0.0) for part in strip.between(k * turn, (k + 0.5) * turn)]
-        unrolled = [piece for half in halves for piece in regions([strip.period.unroll(ring) for ring in half.rings()])]
-        return centre_beads(unrolled, beads, ring, ())
+        halves = [part for k in (-0.5, 0.0) for part in strip.flat(k * turn, (k + 0.5) * turn)]
+        return centre_beads(halves, beads, ring, ())
     points = simplified(points, 0.2 * beads.chord_error)
     v = np.interp(-0.5 * turn, points[:, 0], points[:, 1])
     within = points[(points[:, 0] > -0.5 * turn) & (points[:, 0] < 0.5 * turn)]
@@ -101,10 +80,5 @@ def single(strip: Strip, beads: Beads) -> list[PlaneCurve]:
 
 def round_count(strip: Strip, level: float, beads: Beads) -> int:
     """Points of a line once round the hub, within the chord error on the plane."""
-    radius = max(_radius(strip, level), beads.spacing)
-    return max(24, math.ceil(strip.period.around / math.sqrt(8.0 * beads.chord_error * radius)))
-
-
-def _radius(strip: Strip, level: float) -> float:
-    """Radius (mm) of a line round the hub on the plane."""
-    return 1e6 if math.isinf(strip.period.apex) else abs(strip.period.apex - level)
+    radius = 1e6 if math.isinf(strip.period.apex) else abs(strip.period.apex - level)
+    return max(24, math.ceil(strip.period.around / math.sqrt(8.0 * beads.chord_error * max(radius, beads.spacing))))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parallel lines linked to zigzags: from the end of one along the border to the next."""
+"""Beads of parallel lines: each by itself, or linked to zigzags, from the end of one along the border to the next."""
 
 from __future__ import annotations
 
@@ -10,46 +10,33 @@ import numpy as np
 from ..geometry.curves.plane_curve import length, nearest
 from ..geometry.regions.region import Region, simplified
 from ..types import Array
-from .centre import closing, single_beads
-from .curve import Beads, PlaneCurve, long_enough
-from .lines import frame, rows
+from .curve import Beads, PlaneCurve
 
 LINK = 3.0  # of the spacing
-INSIDE = 0.4  # of the spacing; a link on the edge of a contour's bead lies half on it, one at 0.5 leaves its corners open
 BOWED = 1.02  # of the straight way between its ends; a longer link stays on the border, for farther in it might leave it
 FLOOR = 4.0  # chord errors; no edge is shorter
 
 
-def zigzag(
-    region: Region, beads: Beads, angle: float = 0.0, walls: int = 0, longest_link: float = 0.0
+def in_rows(
+    rows: Sequence[Sequence[Array]], ends: Sequence[Region], beads: Beads, ring: int, longest_link: float | None,
+    inside: float = 0.0,
 ) -> list[PlaneCurve]:
-    """Lines as of `lines`, each linked to the next along the border of the room that beads have, so that no link is outside;
-    beside contours links lie inside of their beads, so that little is laid twice.
-
-    longest_link: mm, by default LINK spacings; where a link would be longer another zigzag begins.
-    """
-    limit = longest_link if longest_link > 0.0 else LINK * beads.spacing
-    place = frame(region, beads, walls)
-    curves = single_beads(place.thin, beads) + place.curves
-    inside = beads.spacing * (INSIDE if walls else 0.0)
-    curves += linked(rows(place, beads, angle), place.ends, beads, walls, limit, inside)
-    curves += closing(region, curves, beads, walls)
-    return long_enough(curves, beads.shortest)
-
-
-def linked(
-    rows: Sequence[Sequence[Array]], ends: Sequence[Region], beads: Beads, ring: int, limit: float, inside: float = 0.0
-) -> list[PlaneCurve]:
-    """Zigzags of rows of lines (2, 2) that end on the borders of regions, links no longer than `limit` mm. inside: how far
-    (mm) links lie inside of a border square to the lines."""
-    borders = [line for part in ends for line in part.rings()]
+    """Beads of lines (2, 2), row by row, that end on the borders of regions: zigzags with links no longer than that, mm;
+    None: each line by itself, every other row the other way round. inside: how far (mm) links lie inside of a border square
+    to the lines."""
+    if longest_link is None:
+        return [
+            PlaneCurve(line[::-1] if row % 2 else line, False, "line", ring)
+            for row, lines in enumerate(rows) for line in lines if length(line, False) >= beads.shortest
+        ]
+    borders = [border for region in ends for border in region.rings()]
     least = max(FLOOR * beads.chord_error, 1e-6 * beads.spacing)
-    levels = [[cut for cut in cuts if length(cut, False) > least] for cuts in rows]
+    levels = [[line for line in lines if length(line, False) > least] for lines in rows]
     open_ = [list(range(len(level))) for level in levels]
     curves = []
     for row in range(len(levels)):
         while open_[row]:
-            points = _chain(levels, open_, row, borders, limit, least, inside)
+            points = _chain(levels, open_, row, borders, longest_link, least, inside)
             if length(points, False) >= beads.shortest:
                 curves.append(PlaneCurve(points, False, "zigzag", ring))
     return curves

@@ -51,14 +51,14 @@ class Period:
         """What u takes to come round to the same place of the plane, mm; more than a turn round the hub."""
         return math.inf if math.isinf(self.apex) else 2.0 * math.pi * abs(self.apex)
 
-    def followed(self, flat: Array, sheet: float = 0.0) -> Array:
+    def followed(self, flat: Array, sheet: float = 0.0, turns: int = 0) -> Array:
         """(u, v) (n, 2) along a curve (n, 2) on the plane, u counted on where it comes round behind the apex, in the mean
-        within half a turn of the plane about `sheet`, mm."""
+        within half a turn of the plane about `sheet`, mm; one that goes round the hub to where it begins again."""
         cover = self.unrolled(flat)
         if not math.isinf(self.apex):
             cover[:, 0] = np.unwrap(cover[:, 0], period=self.whole)
             cover[:, 0] -= self.whole * np.round((cover[:, 0].mean() - sheet) / self.whole)
-        return cover
+        return np.vstack([cover, cover[:1] + np.array([turns * self.around, 0.0])]) if turns else cover
 
     def unroll(self, cover: Array, about: float = 0.0) -> Array:
         """Points (n, 2) of the plane of (u, v), turned back by `about` mm of u."""
@@ -123,18 +123,15 @@ class Strip:
 
     def made(self, operation: Callable[[Region], Sequence[Region]], reach: float) -> tuple[Strip | Region, ...]:
         """What an operation makes of the strip that looks no farther than `reach` mm around."""
-        period = self.period
         windows = self.windows(reach)
         pieces: list[list[Array]] = []
         for about, low, high, margin in windows:
             found: list[Array] = []
-            for part in self.between(low - margin, high + margin):
-                unrolled = regions([period.unroll(ring, about) for ring in part.rings()])
-                for whole in (piece for region in unrolled for piece in operation(region)):
-                    cover = [self._cut(ring, about, (low - about, high - about)) for ring in whole.rings()]
-                    found += [ring for inner in regions(cover) for ring in _boxed(inner, low, high)]
+            for part in (part for region in self.flat(low - margin, high + margin, about) for part in operation(region)):
+                cover = [self._cut(ring, about, (low - about, high - about)) for ring in part.rings()]
+                found += [ring for inner in regions(cover) for ring in _boxed(inner, low, high)]
             pieces.append(found)
-        return parts(*chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])), period)
+        return parts(*chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])), self.period)
 
     def between(self, low: float, high: float) -> tuple[Region, ...]:
         """The strip from u = low to u = high as regions in (u, v)."""
@@ -147,6 +144,13 @@ class Strip:
             loops += [hole + np.array([k * turn, 0.0]) for k in range(first, last + 1)]
         box = _box(low, high, *self.levels)
         return tuple(part for region in regions(loops) for part in region.common(regions([box])))
+
+    def flat(self, low: float, high: float, about: float = 0.0) -> list[Region]:
+        """The strip from u = low to u = high as regions of the plane, laid flat about a u."""
+        return [
+            part for region in self.between(low, high)
+            for part in regions([self.period.unroll(ring, about) for ring in region.rings()])
+        ]
 
     def _repeated(self, border: Array, low: float, high: float) -> Array:
         turn = self.period.around
@@ -182,13 +186,33 @@ class Strip:
         cuts = np.linspace(-0.5 * turn, 0.5 * turn, count + 1).tolist()
         return tuple(Window(0.5 * (low + high), low, high, margin) for low, high in zip(cuts, cuts[1:]))
 
-    def pane(self, window: Window) -> Array:
-        """A ring (n, 2) in (u, v) about all of the strip in a window, without the room beside it."""
+    def pane(self, window: Window) -> tuple[Region, ...]:
+        """What is about all of the strip in a window, without the room beside it, laid flat about its middle."""
         u = np.linspace(window.low, window.high, 17)
         bottom, top = self.levels
         margin = 0.05 * (window.high - window.low) + 1.0
         below, above = np.stack([u, np.full(17, bottom - margin)], axis=1), np.stack([u, np.full(17, top + margin)], axis=1)
-        return np.vstack([below, above[::-1]])
+        return regions([self.period.unroll(np.vstack([below, above[::-1]]), window.about)])
+
+    def near(self, window: Window, cover: Array, closed: bool) -> list[tuple[Array, bool]]:
+        """What of a curve in (u, v), in all turns, lies in a window or beside it, laid flat about its middle: points (n, 2)
+        and whether they close. closed: the curve is, on the plane."""
+        turn = self.period.around
+        low, high = window.low - window.margin, window.high + window.margin
+        found: list[tuple[Array, bool]] = []
+        first, last = np.ceil((low - cover[:, 0].max()) / turn), np.floor((high - cover[:, 0].min()) / turn)
+        for k in range(int(first), int(last) + 1):
+            line = cover + np.array([k * turn, 0.0])
+            if closed:
+                found.append((line, True))
+                continue
+            within = (line[:, 0] >= low) & (line[:, 0] <= high)
+            edge = within[1:] | within[:-1] | ((line[1:, 0] < low) & (line[:-1, 0] > high)) | (
+                (line[1:, 0] > high) & (line[:-1, 0] < low))
+            change = np.diff(np.r_[False, edge, False].astype(int))
+            runs = zip(np.flatnonzero(change > 0), np.flatnonzero(change < 0))
+            found += [(line[a : b + 1], False) for a, b in runs]
+        return [(self.period.unroll(line, window.about), whole) for line, whole in found]
 
     def _windows(self, reach: float) -> tuple[float, int]:
         """Room (mm of u) beside a window, and the number of windows."""

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is done to each of several regions: grown, without others, left out where it is too narrow."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import overload
+
+from ..curves.plane_curve import length
+from .region import Region
+from .strip import Strip
+
+
+@overload
+def grown(regions: Sequence[Region], distance: float, chord_error: float) -> tuple[Region, ...]: ...
+
+
+@overload
+def grown(regions: Sequence[Strip | Region], distance: float, chord_error: float) -> tuple[Strip | Region, ...]: ...
+
+
+def grown(regions: Sequence[Strip | Region], distance: float, chord_error: float) -> tuple[Strip | Region, ...]:
+    """As `Region.grown` and `Strip.grown`."""
+    return tuple(part for region in regions for part in region.grown(distance, chord_error))
+
+
+def without(regions: Sequence[Region], others: Sequence[Region], wide: float = 0.0) -> tuple[Region, ...]:
+    """As `Region.without`; the same regions where there are no others."""
+    return tuple(part for region in regions for part in region.without(others, wide)) if others else tuple(regions)
+
+
+def common(regions: Sequence[Region], others: Sequence[Region]) -> tuple[Region, ...]:
+    """As `Region.common`."""
+    return tuple(part for region in regions for part in region.common(others))
+
+
+def wider(regions: Sequence[Region], width: float, chord_error: float) -> list[Region]:
+    """Those of regions that a circle of a diameter (mm) has room in."""
+    return [region for region in regions if region.grown(-0.5 * width, chord_error)]
+
+
+def longer(regions: Sequence[Region], least: float) -> tuple[Region, ...]:
+    """Those of regions whose outer border is at least so long, mm."""
+    return tuple(region for region in regions if length(region.rings()[0], True) >= least)
