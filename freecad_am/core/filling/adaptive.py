@@ -15,15 +15,14 @@ from .curve import Beads, PlaneCurve
 
 MORE = 1.002  # of the thickness, beside what the measure of it may be short of: a contour in the middle is not a thin loop
 PLACES = 0.25  # of the spacing, mm between places at which widths are looked at
+MIDDLE = ("centre", "closing")  # kinds of beads that lie in what others leave
 
 
-def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Beads, float]:
-    """Beads of which a whole number fits into the thickest place of a region, and their share of the usual width, between
-    least and most and as near to 1 as may be; the usual ones where there is no such number."""
+def fitted(thickness: float, beads: Beads, least: float, most: float) -> tuple[Beads, float]:
+    """Beads of which a whole number fits into the thickest place (mm) of a region, and their share of the usual width,
+    between least and most and as near to 1 as may be; the usual ones where there is no such number."""
     width = 2.0 * beads.inset
-    if least == most:
-        return beads, 1.0
-    thickness = MORE * (1.0 + WIDTH) * region.width
+    thickness = MORE * (1.0 + WIDTH) * thickness
     excess = (thickness - width) / beads.spacing  # so many more than one
     share = 1.0
     if excess > 0.0:
@@ -32,28 +31,23 @@ def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Bea
         share = float(shares[np.argmin(np.abs(np.log(shares)))])
     if not least <= share <= most * MORE * (1.0 + WIDTH):
         share = 1.0
-    spacing = share * beads.spacing
-    return replace(beads, spacing=spacing, width=share * width, gap=share * beads.gap), share
+    return replace(beads, spacing=share * beads.spacing, width=share * width, gap=share * beads.gap), share
 
 
 def shared(
     region: Region, curves: Sequence[PlaneCurve], beads: Beads, share: float, least: float, most: float
-) -> list[PlaneCurve]:
+) -> tuple[PlaneCurve, ...]:
     """The curves with the share of the usual width that each of their points has: that of the fitted beads, of those in the
     middle what room their neighbours leave them. Between least and most."""
-    if least == most:
-        return list(curves)
-    others = [curve for curve in curves if curve.kind not in ("centre", "closing")]
-    return [
-        _within_width(curve, others, region, beads, share, least, most) if curve.kind in ("centre", "closing")
-        else _times(curve, share) for curve in curves
-    ]
-
-
-def _times(curve: PlaneCurve, share: float) -> PlaneCurve:
-    if share == 1.0:
-        return curve
-    return replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
+    others = [curve for curve in curves if curve.kind not in MIDDLE]
+    found = []
+    for curve in curves:
+        if curve.kind in MIDDLE:
+            curve = _within_width(curve, others, region, beads, share, least, most)
+        elif share != 1.0:
+            curve = replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
+        found.append(curve)
+    return tuple(found)
 
 
 def _within_width(

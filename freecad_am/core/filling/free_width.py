@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.curves.plane_curve import steps
+from ..geometry.curves.plane_curve import arcs, steps
 from ..geometry.regions.telling import telling
 from ..types import Array, Index, Mask
 from .curve import Beads, PlaneCurve
@@ -34,7 +34,7 @@ class _Edges(NamedTuple):
     around: Array
 
 
-def thinned(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float) -> list[PlaneCurve]:
+def thinned(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float) -> tuple[PlaneCurve, ...]:
     """The curves with the share of their usual width that they have room for: halfway to others of their kind, and as far as
     those that come first reach, contours before lines before beads in the middle. Links of zigzags lay what their lines,
     which end before the contour, do not. angle: of the lines, rad. least: share that no bead is laid below."""
@@ -47,7 +47,7 @@ def thinned(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: flo
     share = np.where(zigzags & turned, 2.0 * widths.min(axis=1) / beads.spacing, share)
     share = np.clip(share, least, 1.0)
     cuts = np.searchsorted(edges.bead, np.arange(1, len(curves)))
-    return [_with(*one) for one in zip(curves, lines, corners, np.split(share, cuts))]
+    return tuple(_with(*one) for one in zip(curves, lines, corners, np.split(share, cuts)))
 
 
 def _divided(curve: PlaneCurve, step: float) -> tuple[Array, Mask]:
@@ -111,7 +111,7 @@ def _with(curve: PlaneCurve, line: Array, corners: Mask, share: Array) -> PlaneC
         return replace(curve, share=None)
     ends = np.r_[share[-1:], share, share[:1]] if curve.closed else np.r_[share[:1], share, share[-1:]]
     wide = 0.5 * (ends[1:] + ends[:-1])
-    kept = corners | telling(np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))], wide, SHARE_TOLERANCE)
+    kept = corners | telling(arcs(line), wide, SHARE_TOLERANCE)
     if curve.closed:
         line, wide, kept = line[:-1], wide[:-1], kept[:-1]
     return replace(curve, points=line[kept], share=wide[kept])

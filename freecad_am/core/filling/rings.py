@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geometry.curves.plane_curve import nearest, steps
+from ..geometry.curves.plane_curve import arcs, nearest
 from ..types import Array
 
 MARK = 0.25  # of the reach, mm between the places of a ring that tell which others are near
@@ -29,7 +29,7 @@ class Ring:
 
     def __init__(self, points: Array) -> None:
         self.points = points
-        self.arc = np.r_[0.0, np.cumsum(np.hypot(*steps(points, True).T))]
+        self.arc = arcs(points, True)
         self.length = float(self.arc[-1])
         self._whole = np.vstack([points, points[:1]])
         self._taken: list[tuple[float, float]] = []
@@ -73,14 +73,14 @@ class Ring:
 
 def side_by_side(rings: Sequence[Ring], reach: float) -> list[AdjacentRings]:
     """All pairs of rings that come nearer to each other than `reach` mm, both ways round."""
-    arcs = [np.arange(0.0, ring.length, MARK * reach) for ring in rings]
-    places = np.vstack([ring.at(at) for ring, at in zip(rings, arcs)])
-    number: NDArray[np.intp] = np.repeat(np.arange(len(rings)), [len(at) for at in arcs])
+    marks = [np.arange(0.0, ring.length, MARK * reach) for ring in rings]
+    places = np.vstack([ring.at(at) for ring, at in zip(rings, marks)])
+    number: NDArray[np.intp] = np.repeat(np.arange(len(rings)), [len(at) for at in marks])
     pairs = cKDTree(places).query_pairs(reach, output_type="ndarray")
     pairs = pairs[number[pairs[:, 0]] != number[pairs[:, 1]]]
     pairs = np.vstack([pairs, pairs[:, ::-1]])
     key = np.unique(np.stack([number[pairs[:, 0]], number[pairs[:, 1]], pairs[:, 0]], axis=1), axis=0)
-    whole = np.concatenate(arcs)
+    whole = np.concatenate(marks)
     cuts = np.flatnonzero((np.diff(key[:, :2], axis=0) != 0).any(axis=1)) + 1
     return [AdjacentRings(int(lot[0, 0]), int(lot[0, 1]), whole[lot[:, 2]]) for lot in np.split(key, cuts) if len(lot)]
 

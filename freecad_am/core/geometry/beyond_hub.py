@@ -8,6 +8,8 @@ the hub, a layer has rho / rho0 times the area that it has there; so (rho^2 - rh
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +17,9 @@ from ..types import Array
 from .columns import dots
 from .developable import Developable
 from .mesh.facets import doubled_areas
+from .mesh.solid import SolidMesh
+from .obstacles import Body
+from .on_hub import SolidsOnHub
 
 PLACES = 10_000  # of the solid's surface, if its triangles were squares
 
@@ -36,6 +41,26 @@ def volume_beyond(surface: Developable, vertices: Array, triangles: NDArray[np.i
         corner = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
         area = np.concatenate([area, area]) / 2.0
     return max(volume, 0.0)
+
+
+def solids_beyond(solids: SolidsOnHub) -> float | None:
+    """Volume, mm3, of all solids outside of their hubs; None where they may overlap."""
+    found = 0.0
+    for group in solids.groups:
+        surface = group.base.surface
+        if isinstance(surface, Developable):  # those that overlap are refused
+            found += sum(volume_beyond(surface, group.base.inside(body.vertices), body.triangles) for body in group.bodies)
+        elif any(_may_meet(*pair) for pair in combinations(group.bodies, 2)):
+            return None
+        else:
+            found += sum(abs(SolidMesh(body.vertices, body.triangles).volume) for body in group.bodies)
+    return found
+
+
+def _may_meet(one: Body, other: Body) -> bool:
+    return bool((
+        (one.vertices.min(axis=0) < other.vertices.max(axis=0)) & (other.vertices.min(axis=0) < one.vertices.max(axis=0))
+    ).all())
 
 
 def _field(surface: Developable, points: Array) -> Array:

@@ -15,6 +15,7 @@ from .angles import TURN
 from .columns import columns
 from .curves.guide import Guide
 from .developable import Developable
+from .formatting import place
 from .obstacles import Body
 from .plane import Plane
 
@@ -42,6 +43,10 @@ class Base:
         """Vectors (..., 3) of the base's frame in the part."""
         part: Array = vectors @ self.frame[:3, :3].T
         return part
+
+    def where(self, point: Array) -> str:
+        """A point (3,) of the base's frame in the part, as text."""
+        return place(self.placed(point[None])[0])
 
 
 class Stretch(NamedTuple):
@@ -102,6 +107,24 @@ class SolidsOnHub:
     surroundings: tuple[Body, ...] = ()
     issues: tuple[Issue, ...] = ()
     own: OwnHub | None = None
+
+    def on_planes(self) -> bool:
+        """Whether layers are planes, one above the other, so that nothing deposited before stands above a layer."""
+        return not any(isinstance(group.base.surface, Developable) for group in self.groups)
+
+    @property
+    def frame(self) -> Array:
+        """The frame of the feature (interface.md, mount): Z the axis of the first base, upwards in the part; origin where
+        the lowest end of the solids is; X the part's X seen along Z. Of planes Z is the stacking direction, wherever it
+        points."""
+        base = self.groups[0].base
+        if self.on_planes():
+            return base.frame
+        z = base.frame[:3, 2]
+        z = -z if downwards(z) else z
+        vertices = np.vstack([body.vertices for group in self.groups for body in group.bodies])
+        low = float(((vertices - base.frame[:3, 3]) @ z).min())
+        return upright(base.frame[:3, 3] + low * z, z)
 
 
 def middle_azimuth(base: Base, points: Array) -> float:

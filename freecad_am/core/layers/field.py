@@ -9,7 +9,7 @@ from typing import NamedTuple
 from ..geometry.curves.guide import Guide
 from ..geometry.developable import Developable
 from ..geometry.obstacles import Body
-from ..geometry.on_hub import Group, middle_azimuth
+from ..geometry.on_hub import Group
 from ..parameters.filled import DevelopableParameters, FilledParameters, SolidParameters
 from ..slicing.solids.equidistant import Facets
 from ..slicing.solids.unrolled import cut
@@ -25,11 +25,9 @@ from .surface import Slice
 
 
 class Piece(NamedTuple):
-    """Solids that are filled as one: what messages call them, the azimuth (rad) of their middle about the base's axis, and
-    their layers."""
+    """Solids that are filled as one: what messages call them, and their layers."""
 
     name: str
-    centre: float
     slices: Iterator[Slice]
 
 
@@ -38,13 +36,10 @@ def pieces(group: Group, ground: Sequence[Body], strategy: FilledParameters) -> 
     surface = group.base.surface
     if isinstance(surface, Developable):
         assert isinstance(strategy, DevelopableParameters)
-        return [
-            Piece(body.name, middle_azimuth(group.base, body.vertices), rotary.slices(group.base, surface, body, strategy))
-            for body in group.bodies
-        ]
+        return [Piece(body.name, rotary.slices(group.base, body, strategy)) for body in group.bodies]
     assert isinstance(strategy, SolidParameters)
     if strategy.layers in ("geodesic", "offset"):
-        return [Piece(group.bodies[0].name, 0.0, curved.slices(group, ground, strategy))]
+        return [Piece(group.bodies[0].name, curved.slices(group, ground, strategy))]
     lots = [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
     made: list[Piece] = []
     for lot in lots:
@@ -53,9 +48,9 @@ def pieces(group: Group, ground: Sequence[Body], strategy: FilledParameters) -> 
             layers = along.slices(group.base, lot, strategy)
         else:
             layers = planes.slices(group.base, lot, strategy)
-        layers = with_overhangs(layers, group.base, strategy)
+        layers = with_overhangs(layers, strategy)
         name = lot[0].name if len(lot) == 1 else f"{len(lot)} solids"
-        made.append(Piece(name, 0.0, with_covered(layers, strategy.thick)))
+        made.append(Piece(name, with_covered(layers, strategy.thick)))
     return made
 
 

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
 
 from ..geometry.regions.region import Region, joined, mended, regions
+from ..geometry.regions.several import grown
 from ..issues import Issue
+from ..parameters.filled import SolidParameters
 from ..types import Array
 
 BORDER, ARCS = 0.05, 0.2  # shares of the chord error: of borders without needless points, of fillings
@@ -24,27 +26,41 @@ def within_margin(
     Growing within a layer covers the margin beside the part; what ends below has the margin above itself.
     """
     last = len(below) - 1
-    found = [(margin, below[last])]
-    for layer in range(last - 1, -1, -1):
-        up = (last - layer) * height
+    lots = [(margin, below[last])]
+    for number in range(last - 1, -1, -1):
+        up = (last - number) * height
         if up >= margin:
             break
-        found.append((math.sqrt(margin * margin - up * up), moved(below[layer], up)))
-    return found
+        lots.append((math.sqrt(margin * margin - up * up), moved(below[number], up)))
+    return lots
 
 
-def grown(
-    near: Sequence[tuple[float, Sequence[Array]]], margin: float, chord_error: float, layer: int
+def sections(
+    cuts: Sequence[Iterator[list[Array]]], strategy: SolidParameters
+) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
+    """The layers that have any region, by the loops (n, 2) of several bodies layer by layer: number, regions, what was
+    mended."""
+    below: list[list[Array]] = []
+    for number, loops in enumerate(zip(*cuts)):
+        below.append([loop for of_body in loops for loop in of_body])
+        lots = within_margin(below, strategy.layer_height, strategy.margin, lambda loops, _: loops)
+        found, issues = regions_of(lots, strategy.margin, strategy.chord_error, number)
+        if found:
+            yield number, found, issues
+
+
+def regions_of(
+    lots: Sequence[tuple[float, Sequence[Array]]], margin: float, chord_error: float, number: int
 ) -> tuple[tuple[Region, ...], tuple[Issue, ...]]:
     """The regions of a layer from loops (n, 2) and how far (mm) each lot of them grows, without slits thinner than the chord
     error; and what was mended."""
     issues: tuple[Issue, ...] = ()
     rings: list[Array] = []
     whole: tuple[Region, ...] = ()
-    for distance, flat in near:
-        read = mended(flat)
-        issues += read.issues(layer)
-        whole = tuple(part for region in read.regions for part in region.grown(distance, ARCS * chord_error))
+    for distance, loops in lots:
+        read = mended(loops)
+        issues += read.issues(number)
+        whole = grown(read.regions, distance, ARCS * chord_error)
         rings += [ring for region in whole for ring in region.rings()]
     if margin > 0.0:
         whole = regions(rings)

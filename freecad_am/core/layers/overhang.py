@@ -6,9 +6,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 
-from ..geometry.formatting import place
-from ..geometry.on_hub import Base
 from ..geometry.regions.region import Region
+from ..geometry.regions.several import grown, without
 from ..issues import WARNING, Issue, Text
 from ..parameters.filled import SolidParameters
 from .surface import Slice
@@ -19,7 +18,7 @@ NEVER = math.radians(89.9)  # nothing leans out by more
 LEAST = 0.25  # of the bead spacing: sides of a square that is not worth telling of
 
 
-def with_overhangs(slices: Iterable[Slice], base: Base, strategy: SolidParameters) -> Iterator[Slice]:
+def with_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iterator[Slice]:
     """Layers of one stack of planes with an issue for each that leans out by more than `max_overhang` from the direction in
     which they are stacked, with the area and where the largest piece of it is."""
     reach = strategy.layer_height * math.tan(strategy.max_overhang) + strategy.chord_error
@@ -28,15 +27,14 @@ def with_overhangs(slices: Iterable[Slice], base: Base, strategy: SolidParameter
     for layer in slices:
         issues = layer.issues
         if before is not None and strategy.max_overhang < NEVER:
-            over = _over(layer, before if before.layer == layer.layer - 1 else None, reach, strategy.chord_error, least)
+            over = _over(layer, before if before.number == layer.number - 1 else None, reach, strategy.chord_error, least)
             if over:
-                spot = max(over, key=lambda part: part.area).inside()
-                at = place(base.placed(layer.surface.wrap(spot[None]).points)[0])
+                largest = max(over, key=lambda part: part.area)
                 issues = (*issues, Issue(
                     WARNING, CODE, Text("{:.4g} mm^2 lean out over the layer below by more than {:.4g} deg, the largest "
                         "piece at {}; deposit what carries it first, choose another strategy.direction, or raise "
                         "strategy.max_overhang", math.fsum(part.area for part in over), math.degrees(strategy.max_overhang),
-                        at), layer.layer,
+                        layer.where(largest.inside())), layer.number,
                 ))
         before = layer
         yield layer._replace(issues=issues)
@@ -44,12 +42,9 @@ def with_overhangs(slices: Iterable[Slice], base: Base, strategy: SolidParameter
 
 def _over(layer: Slice, below: Slice | None, reach: float, chord_error: float, least: float) -> list[Region]:
     """The pieces of a layer farther than `reach` mm beside the one below it."""
-    under = () if below is None else below.regions
-    carried = [
-        part for region in under if isinstance(region, Region) for part in region.grown(reach, max(ARC * reach, chord_error))
-    ]
-    pieces = [
-        part for region in layer.regions if isinstance(region, Region)
-        for part in (region.without(carried) if carried else (region,))
-    ]
-    return [part for part in pieces if part.area > least]
+    here, under = (
+        [region for region in regions if isinstance(region, Region)]
+        for regions in (layer.regions, () if below is None else below.regions)
+    )
+    carried = grown(under, reach, max(ARC * reach, chord_error))
+    return [part for part in without(here, carried) if part.area > least]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
+from ..geometry.on_hub import Base
 from ..geometry.regions.region import Region
 from ..geometry.regions.strip import Period, Strip
 from ..issues import Issue
@@ -63,13 +64,20 @@ class LayerSurface(Protocol):
 
 
 class Slice(NamedTuple):
-    """One layer of a part: its number, its surface, its regions laid flat, and findings. covered: what of the plane is near
-    to neither a top nor a bottom (`covered.under_and_over`); None where nobody asks. heights: its least, mean and largest
-    height, mm; None where it has the layer height everywhere."""
+    """One layer of a part: its number, the base in whose frame it is, its surface, its regions laid flat, and findings.
+    azimuth: rad about the axis of the base, of the middle of the solid. covered: what of the plane is near to neither a top
+    nor a bottom (`covered.under_and_over`); None where nobody asks. heights: its least, mean and largest height, mm; None
+    where it has the layer height everywhere."""
 
-    layer: int
+    number: int
+    base: Base
     surface: LayerSurface
     regions: tuple[Region | Strip, ...]
-    issues: tuple[Issue, ...]
+    issues: tuple[Issue, ...] = ()
+    azimuth: float = 0.0
     covered: tuple[Region, ...] | None = None
     heights: tuple[float, float, float] | None = None
+
+    def where(self, point: Array) -> str:
+        """A point (2,) of the plane in the part, as text."""
+        return self.base.where(self.surface.wrap(point[None]).points[0])

@@ -6,8 +6,6 @@ from __future__ import annotations
 import numpy as np
 
 from ..filling.cover import Cover
-from ..geometry.on_hub import Base
-from ..geometry.plane import Plane
 from ..geometry.walls.clad_faces import CladFaces
 from ..issues import NOTE, InputError, Issue, Text
 from ..layers.curved.on_faces import FaceLayer, pieces, slices
@@ -27,7 +25,6 @@ from .solids.notes import notes
 from .solids.volumes import of_layers, twice
 
 REPORTED_DISTORTION = 0.02  # distortion that is told
-PART = Base("the part", Plane(), np.eye(4))  # charts are in its coordinates
 
 
 def plan(
@@ -51,17 +48,17 @@ def plan(
     for number, (sheet, piece) in enumerate(found):
         at: Array | None = None
         for layer in slices(sheet, piece, strategy):
-            progress((number + layer.layer / strategy.layers) / len(found), f"layer {layer.layer}")
-            with naming(given.label, layer.layer):
-                beads = pictures.filled(layer, 0.0, PART)
-            mended += beads.issues
+            progress((number + layer.number / strategy.layers) / len(found), f"layer {layer.number}")
+            with naming(given.label, layer.number):
+                filled = pictures.filled(layer)
+            mended += filled.issues
             assert isinstance(layer.surface, FaceLayer)
             stretch = max(stretch, layer.surface.stretch)
-            covers.append(beads.cover)
-            here = [bead_of(curve, layer, PART, strategy, build, process, model) for curve in beads.curves]
-            order = island_by_island([one.bead for one in here], beads.islands, at)
+            covers.append(filled.cover)
+            here = [bead_of(curve, layer, strategy, build, process, model) for curve in filled.curves]
+            order = island_by_island([one.bead for one in here], filled.islands, at)
             at = here[order[-1]].bead.points[-1] if order else at
-            ranked += [RankedBead(0, number, layer.layer, -rank, here[k].bead) for rank, k in enumerate(order)]
+            ranked += [RankedBead(0, number, layer.number, -rank, here[k].bead) for rank, k in enumerate(order)]
             made += here
     if not ranked:
         raise InputError(

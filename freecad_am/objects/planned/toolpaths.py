@@ -268,7 +268,7 @@ def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], f
     from ...core.strategies.clearance import tilt_back as wall_clearance
     from ...core.strategies.solids import plan as solids_plan
 
-    if not solids_plan.on_planes(of.wall):
+    if not of.wall.on_planes():
         free = solids_plan.without_axis_limits(of.build)
         return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature, _tell_tilting())
     if feature is None and solids_plan.clear_by_itself(toolpath, of.wall):

@@ -218,11 +218,11 @@ def test_layers_of_planes_know_what_is_over_and_under_them():
     wide += [60.0, 60.0, 60.0]
 
     def one(number, width):
-        return Slice(number, None, regions(shapes.polygon((0, 0), (width, 0), (width, 10), (0, 10))), ())
+        return Slice(number, None, None, regions(shapes.polygon((0, 0), (width, 0), (width, 10), (0, 10))))
     found = list(with_covered(iter([one(*item) for item in zip(layers, wide, strict=True)]), 2))
-    assert [layer.layer for layer in found] == layers
+    assert [layer.number for layer in found] == layers
     by_number = dict(zip(layers, wide, strict=True))
     for layer in found:
-        beside = [by_number.get(layer.layer + k, 0.0) for k in (-2, -1, 1, 2)]
+        beside = [by_number.get(layer.number + k, 0.0) for k in (-2, -1, 1, 2)]
         assert sum(part.area for part in layer.covered) == pytest.approx(10.0 * min(beside))
     assert all(layer.covered is None for layer in with_covered(iter([one(0, 5.0)]), 0))

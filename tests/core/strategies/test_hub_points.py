@@ -11,6 +11,7 @@ from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
 from freecad_am.core.layers.planes.layer import PlaneLayer
 from freecad_am.core.layers.rotary.layer import RoundLayer
+from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
@@ -47,7 +48,7 @@ def test_narrow_beads_have_no_move_of_less_than_a_tenth_of_a_millisecond(seed):
     share = rng.uniform(0.3, 1.0, len(line))
     process = ProcessParameters(travel_speed=20.0, acceleration=1e5, bead_width=1.0)
     bead = wrapped(
-        PlaneCurve(line, False, "centre", 0, share=share), PlaneLayer(0.5), Base("flat", Plane(), np.eye(4)),
+        PlaneCurve(line, False, "centre", 0, share=share), Slice(0, Base("flat", Plane(), np.eye(4)), PlaneLayer(0.5), ()),
         SolidParameters(chord_error=1e-3, bead_spacing=1.0, layer_height=0.5), BuildDirectionParameters(), process, None,
     ).bead
     times = np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]

@@ -61,9 +61,10 @@ def test_beads_on_both_sides_of_a_hole_stay_out_of_it(fill, contour, at):
     """No bead runs through the hole, and they come as near to it on one side as on the other."""
     strategy = DevelopableParameters(bead_spacing=SPACING, fill=fill, contour=contour, chord_error=0.2)
     base, process = Base("the hub", CONE, np.eye(4)), ProcessParameters()
-    curves = Pictures(strategy, process).filled(Slice(0, RoundLayer(CONE), (ring(at),), ()), 0.0, base).curves
+    layer = Slice(0, base, RoundLayer(CONE), (ring(at),))
+    curves = Pictures(strategy, process).filled(layer).curves
     points = np.vstack([
-        wrapped(curve, RoundLayer(CONE), base, strategy, BuildDirectionParameters(), process, None).bead.points
+        wrapped(curve, layer, strategy, BuildDirectionParameters(), process, None).bead.points
         for curve in curves
     ])
     way = np.hypot(points[:, 0], points[:, 1]) / math.sin(CONE.taper)

@@ -39,6 +39,11 @@ def steps(points: Array, closed: bool) -> Array:
     return np.roll(points, -1, axis=0) - points if closed else np.diff(points, axis=0)
 
 
+def arcs(points: Array, closed: bool = False) -> Array:
+    """How far (n,) mm along a polyline (n, 2) its points are; (n + 1,) of a closed one, whose last is its first again."""
+    return np.asarray(np.r_[0.0, np.cumsum(np.hypot(*steps(points, closed).T))])
+
+
 def winding(rings: Sequence[Array], points: Array) -> NDArray[np.intp]:
     """How often rings (n, 2) go round each of points (k, 2), counted with their sense."""
     count = np.zeros(len(points), dtype=np.intp)

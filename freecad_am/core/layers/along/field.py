@@ -14,16 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.curves.guide import Guide
-from ...geometry.formatting import place
 from ...geometry.mesh.split_edges import split
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base
-from ...geometry.regions.region import Region
 from ...issues import ERROR, InfeasibleError, InputError, Issue, Text
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
 from ...types import Array, Index
-from ..margins import grown, within_margin
+from ..margins import sections
 from ..planes import field as planes
 from ..surface import Slice
 from .layer import AlongLayer, between
@@ -58,33 +56,29 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
     GUIDE_OUTSIDE; InfeasibleError LAYER_HEIGHT where a layer is higher or lower than `band` allows."""
     guide, height = base.surface, strategy.layer_height
     assert isinstance(guide, Guide)
-    meshes = [_ready(base, guide, body) for body in bodies]
+    meshes = [_ready(base, body) for body in bodies]
     top = max(float(far.max()) for _, _, far in meshes)
-    number = planes.count(top, strategy)
-    if not number:
+    layers = planes.count(top, strategy)
+    if not layers:
         raise InputError(
             "TOO_LOW", "strategy.layer_height", "{:g} mm is too much for {}, {:.4g} mm long along the guide: no layer is "
             "cut in its {}; give at most {:.3g} mm", height, ", ".join(body.name for body in bodies), top, strategy.cut_at,
             0.99 * top / max(strategy.share_of_cut, 0.001),
         )
-    heights: Array = height * (np.arange(number, dtype=np.float64) + strategy.share_of_cut)
+    heights: Array = height * (np.arange(layers, dtype=np.float64) + strategy.share_of_cut)
     cuts = [
         AlongCuts(guide, points, triangles, far).loops(
             planes.off_faces(np.column_stack([points[:, :2], far]), triangles, heights, strategy)
         ) for points, triangles, far in meshes
     ]
-    below: list[list[Array]] = []
     made: list[Slice] = []
-    for layer in range(number):
-        below.append([loop for one in cuts for loop in next(one)])
-        near = within_margin(below, height, strategy.margin, lambda loops, _: loops)
-        found, issues = grown(near, strategy.margin, strategy.chord_error, layer)
-        if found:
-            surface = between(guide, layer * height, (layer + 1) * height, strategy.share_of_cut)
-            if guide.way[0] <= heights[layer] <= guide.way[-1]:  # beyond its ends, slanted ends of a part may be beside it
-                _refuse_outside(found, surface, base, layer)
-            made.append(Slice(layer, surface, found, issues, heights=_heights(found, surface)))
-    _refuse_uneven(made, base, strategy)
+    for number, regions, issues in sections(cuts, strategy):
+        surface = between(guide, number * height, (number + 1) * height, strategy.share_of_cut)
+        rings = [ring for region in regions for ring in region.rings()]
+        if guide.way[0] <= heights[number] <= guide.way[-1]:  # beyond its ends, slanted ends of a part may be beside it
+            _refuse_outside(rings, surface, base, number)
+        made.append(Slice(number, base, surface, regions, issues, heights=_heights(rings, surface)))
+    _refuse_uneven(made, strategy)
     return made
 
 
@@ -92,12 +86,14 @@ def footprint(base: Base, body: Body, chord_error: float) -> list[Array]:
     """The loops (n, 2) in which a body stands on the first plane, cut a chord error along the guide. InputError
     GUIDE_TIGHT."""
     assert isinstance(base.surface, Guide)
-    return next(AlongCuts(base.surface, *_ready(base, base.surface, body)).loops([chord_error]))
+    return next(AlongCuts(base.surface, *_ready(base, body)).loops([chord_error]))
 
 
-def _ready(base: Base, guide: Guide, body: Body) -> tuple[Array, NDArray[np.intp], Array]:
+def _ready(base: Base, body: Body) -> tuple[Array, NDArray[np.intp], Array]:
     """A body as vertices (n, 3) in the frame of the guide, triangles (m, 3), and how far along the guide (n,) mm each vertex
     is, with edges so short that planes change little along each."""
+    guide = base.surface
+    assert isinstance(guide, Guide)
     points, triangles = base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)
     more = True
     while more:
@@ -125,17 +121,16 @@ def _refuse_tight(
     if bent[worst] <= TIGHTEST and not leaps.any():
         return
     spot = points[worst] if bent[worst] > TIGHTEST else points[side[np.argmax(leaps), 0]]
-    foot = base.placed(guide.at(guide.distance(spot[None]))[0])[0]
+    foot = guide.at(guide.distance(spot[None]))[0][0]
     raise InputError(
         "GUIDE_TIGHT", name, "the guide bends more tightly at {} than the part is wide there: planes normal to it cross one "
         "another within the part, at {}; choose a guide nearer to the inside of the bend or with a larger radius, or "
-        "strategy.layers: geodesic", place(foot), place(base.placed(spot[None])[0]),
+        "strategy.layers: geodesic", base.where(foot), base.where(spot),
     )
 
 
-def _heights(found: Sequence[Region], surface: AlongLayer) -> tuple[float, float, float]:
-    """The least, the mean and the largest height of a layer, mm."""
-    rings = [ring for region in found for ring in region.rings()]
+def _heights(rings: Sequence[Array], surface: AlongLayer) -> tuple[float, float, float]:
+    """The least, the mean and the largest height of a layer by the borders (n, 2) of its regions, mm."""
     high = np.concatenate([surface.heights(ring) for ring in rings])
     area, moment = 0.0, np.zeros(2)
     for ring in rings:
@@ -147,7 +142,7 @@ def _heights(found: Sequence[Region], surface: AlongLayer) -> tuple[float, float
     return float(high.min()), mean, float(high.max())
 
 
-def _refuse_uneven(made: Sequence[Slice], base: Base, strategy: SolidParameters) -> None:
+def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
     """InfeasibleError LAYER_HEIGHT at the worst place of all."""
     height, most = strategy.layer_height, strategy.band * strategy.layer_height + strategy.chord_error * 1e-3
     uneven = [one for one in made if one.heights and max(height - one.heights[0], one.heights[2] - height) > most]
@@ -158,29 +153,28 @@ def _refuse_uneven(made: Sequence[Slice], base: Base, strategy: SolidParameters)
     rings = np.vstack([ring for region in worst.regions for ring in region.rings()])  # type: ignore[misc]
     off = worst.surface.heights(rings) - height
     spot = rings[int(np.abs(off).argmax())]
-    at = place(base.placed(worst.surface.wrap(spot[None]).points)[0])
     need = float(np.abs(off).max()) / height
     message = Text(
         "{} of {} layers are not as high everywhere as asked for: layer {} is {:.3g} to {:.3g} mm high, farthest off the "
         "{:g} mm at {}; strategy.band allows {:.3g} %, and {:.3g} % would be needed: raise it, or choose a guide in the "
-        "middle of the part or one that bends less", len(uneven), len(made), worst.layer, worst.heights[0], worst.heights[2],
-        height, at, 100.0 * strategy.band, 100.0 * need
+        "middle of the part or one that bends less", len(uneven), len(made), worst.number, worst.heights[0],
+        worst.heights[2], height, worst.where(spot), 100.0 * strategy.band, 100.0 * need
     )
     raise InfeasibleError(
-        HEIGHT, f"{base.name} layer {worst.layer}", message, issues=(Issue(ERROR, HEIGHT, message, worst.layer),)
+        HEIGHT, f"{worst.base.name} layer {worst.number}", message, issues=(Issue(ERROR, HEIGHT, message, worst.number),)
     )
 
 
-def _refuse_outside(found: Sequence[Region], surface: AlongLayer, base: Base, layer: int) -> None:
+def _refuse_outside(rings: Sequence[Array], surface: AlongLayer, base: Base, number: int) -> None:
     """InputError GUIDE_OUTSIDE where the guide goes through a plane outside of what encloses the section there."""
     from scipy.spatial import ConvexHull
 
-    points = np.vstack([ring for region in found for ring in region.rings()])
+    points = np.vstack(rings)
     hull = ConvexHull(points)
     away = float(hull.equations[:, 2].max())
     if away > BEYOND * float(np.ptp(points, axis=0).max()):
         raise InputError(
             "GUIDE_OUTSIDE", "strategy.guide", "the guide leaves the part: at layer {} it is {:.3g} mm beside it, at {}; "
-            "choose a guide in the part or along one of its edges, or guide: auto", layer, away,
-            place(base.placed(surface.pose[:3, 3])),
+            "choose a guide in the part or along one of its edges, or guide: auto", number, away,
+            base.where(surface.pose[:3, 3]),
         )

@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 
 from ...geometry.regions.region import Region
+from ...geometry.regions.several import common
 from ..surface import Slice
 
 
@@ -15,10 +16,10 @@ def under_and_over(neighbours: Sequence[Sequence[Region]]) -> tuple[Region, ...]
     is an empty sequence."""
     if not all(neighbours):
         return ()
-    common = tuple(neighbours[0])
+    found = tuple(neighbours[0])
     for others in neighbours[1:]:
-        common = tuple(piece for part in common for piece in part.common(others))
-    return common
+        found = common(found, others)
+    return found
 
 
 def with_covered(slices: Iterator[Slice], thick: int) -> Iterator[Slice]:
@@ -28,17 +29,17 @@ def with_covered(slices: Iterator[Slice], thick: int) -> Iterator[Slice]:
         return
     near: deque[Slice] = deque(maxlen=2 * thick + 1)
     waiting: deque[Slice] = deque()
-    for one in slices:
-        while waiting and waiting[0].layer + thick < one.layer:
+    for layer in slices:
+        while waiting and waiting[0].number + thick < layer.number:
             yield _covered(waiting.popleft(), near, thick)
-        near.append(one)
-        waiting.append(one)
-    for one in waiting:
-        yield _covered(one, near, thick)
+        near.append(layer)
+        waiting.append(layer)
+    for layer in waiting:
+        yield _covered(layer, near, thick)
 
 
-def _covered(one: Slice, near: Sequence[Slice], thick: int) -> Slice:
-    there = {other.layer: [part for part in other.regions if isinstance(part, Region)] for other in near}
-    return one._replace(covered=under_and_over(
-        [there.get(one.layer + k, []) for step in range(1, thick + 1) for k in (-step, step)]
+def _covered(layer: Slice, near: Sequence[Slice], thick: int) -> Slice:
+    there = {other.number: [region for region in other.regions if isinstance(region, Region)] for other in near}
+    return layer._replace(covered=under_and_over(
+        [there.get(layer.number + k, []) for step in range(1, thick + 1) for k in (-step, step)]
     ))

@@ -17,7 +17,7 @@ from ...types import Array
 from ..charts.layer import ChartLayer
 from ..margins import BORDER
 from ..surface import Slice
-from .geodesic import GeodesicField, Piece, field
+from .geodesic import GeodesicField, field
 
 FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most
 MAX_NODES = 2_000_000  # nodes, where that keeps below COARSE
@@ -34,18 +34,23 @@ def slices(group: Group, ground: Sequence[Body], strategy: SolidParameters) -> I
     base, bodies = group.base, group.bodies
     start = None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
     solids = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
-    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in ground], bodies, start, strategy)
+    name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
+    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in ground], name, start, strategy)
     worst = 0.0
     height, cut = strategy.layer_height, max(strategy.share_of_cut, 1e-3)
-    number = int(np.ceil(found.top / height - cut + 1e-6))
-    for layer in range(max(number, 0)):
-        for piece in found.pieces((layer + cut) * height):
+    layers = int(np.ceil(found.top / height - cut + 1e-6))
+    for number in range(max(layers, 0)):
+        for piece in found.pieces((number + cut) * height):
             issues: tuple[Issue, ...] = ()
             if piece.stretch > max(worst, REPORTED_DISTORTION):
                 worst = piece.stretch
-                issues = (_stretched(piece, layer),)
+                issues = (Issue(
+                    NOTE if worst <= 3.0 * REPORTED_DISTORTION else WARNING, "DISTORTED",
+                    Text("a curved layer cannot be laid flat without distortion: beads are up to {:.2g} % nearer together "
+                        "or farther apart than the bead spacing", 100.0 * worst), number,
+                ),)
             regions = tuple(region.simple(BORDER * found.grid.step) for region in piece.regions)
-            yield Slice(layer, ChartLayer(piece.chart, found, layer * height), regions, issues)
+            yield Slice(number, base, ChartLayer(piece.chart, found, number * height), regions, issues)
 
 
 def _refuse(strategy: SolidParameters) -> None:
@@ -61,10 +66,8 @@ def _refuse(strategy: SolidParameters) -> None:
 
 
 def _field(
-    solids: Sequence[SolidMesh], ground: Sequence[Array], bodies: Sequence[Body], chosen: Array | None,
-    strategy: SolidParameters,
+    solids: Sequence[SolidMesh], ground: Sequence[Array], name: str, chosen: Array | None, strategy: SolidParameters
 ) -> GeodesicField:
-    name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
     step = _step(sum(one.volume for one in solids), name, strategy)
     near = STANDING * strategy.layer_height
     if chosen is None:
@@ -128,12 +131,3 @@ def _to(triangles: Array, points: Array, near: float) -> Array:
     """Distances (n,) mm of points from triangles (k, 3, 3), with a sign."""
     under = SolidMesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
     return Search(under, 4.0 * near).signed(points)[0]
-
-
-def _stretched(piece: Piece, layer: int) -> Issue:
-    share = 100.0 * piece.stretch
-    return Issue(
-        NOTE if piece.stretch <= 3.0 * REPORTED_DISTORTION else WARNING, "DISTORTED",
-        Text("a curved layer cannot be laid flat without distortion: beads are up to {:.2g} % nearer together or farther "
-            "apart than the bead spacing", share), layer,
-    )

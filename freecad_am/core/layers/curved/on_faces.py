@@ -16,6 +16,8 @@ import numpy as np
 from ...geometry.curves.outline import estimated
 from ...geometry.formatting import place
 from ...geometry.mesh.triangle_mesh import Mesh
+from ...geometry.on_hub import Base
+from ...geometry.plane import Plane
 from ...geometry.regions.region import Region, regions
 from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
@@ -29,6 +31,7 @@ from ..charts.parted import borders, parted, stretch_of
 from ..margins import BORDER
 from ..surface import Slice
 
+PART = Base("the part", Plane(), np.eye(4))  # charts are in its coordinates
 FOLDED = 0.05  # share of its area that a triangle keeps in a layer that does not fold
 PROBE = 0.15  # of the extent of a picture, about the middle of it, along which its direction is told
 ROUNDS = 5  # of turning it: between bent ends the way is not the picture's
@@ -76,16 +79,16 @@ def pieces(sheet: PatchWall, strategy: CladdingParameters) -> list[Piece]:
 def slices(sheet: PatchWall, piece: Piece, strategy: CladdingParameters) -> Iterator[Slice]:
     """The layers of a piece outwards, each on a FaceLayer. InputError FOLDED where they reach over a hollow's middle."""
     mesh = piece.mesh
-    for layer in range(strategy.layers):
-        distance = layer * strategy.layer_height
+    for number in range(strategy.layers):
+        distance = number * strategy.layer_height
         here = Mesh(mesh.vertices + distance * piece.normals, mesh.faces)
-        _refuse_folded(mesh, here, layer, sheet.label, strategy)
+        _refuse_folded(mesh, here, number, sheet.label, strategy)
         flat = flattened(here)
         surface = _along_x(
             FaceLayer(Chart(here, flat.points), sheet, mesh.vertices, distance, stretch_of(flat, here.areas))
         )
         found = tuple(one.simple(BORDER * strategy.chord_error) for one in _regions(surface.chart, strategy.chord_error))
-        yield Slice(layer, surface, found, ())
+        yield Slice(number, PART, surface, found)
 
 
 def _along_x(layer: FaceLayer) -> FaceLayer:

@@ -9,14 +9,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.formatting import place
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base
 from ...issues import InputError
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
 from ...types import Array
-from ..margins import grown, within_margin
+from ..margins import sections
 from ..surface import Slice
 from .layer import PlaneLayer
 
@@ -39,36 +38,27 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Ite
     out. InputError TOO_LOW where no layer reaches into them."""
     local = [base.inside(body.vertices) for body in bodies]
     top = max(float(points[:, 2].max()) for points in local)
-    number = count(top, strategy)
-    if not number:
+    layers = count(top, strategy)
+    if not layers:
+        highest = np.vstack(local)
         raise InputError(
             "TOO_LOW", "strategy.layer_height", "{:g} mm is too much for {}, {:.4g} mm high along strategy.direction (the "
             "highest place is at {}): no layer is cut in its {}; give at most {:.3g} mm", strategy.layer_height,
-            ", ".join(body.name for body in bodies), top, _highest(base, local), strategy.cut_at,
+            ", ".join(body.name for body in bodies), top, base.where(highest[highest[:, 2].argmax()]), strategy.cut_at,
             0.99 * top / max(strategy.share_of_cut, 0.001),
         )
-    heights: Array = strategy.layer_height * (np.arange(number, dtype=np.float64) + strategy.share_of_cut)
+    heights: Array = strategy.layer_height * (np.arange(layers, dtype=np.float64) + strategy.share_of_cut)
     cuts = [
         PlaneCuts(points, body.triangles).loops(off_faces(points, body.triangles, heights, strategy))
         for points, body in zip(local, bodies, strict=True)
     ]
-    below: list[list[Array]] = []
-    for layer in range(number):
-        below.append([loop for one in cuts for loop in next(one)])
-        near = within_margin(below, strategy.layer_height, strategy.margin, lambda loops, _: loops)
-        found, issues = grown(near, strategy.margin, strategy.chord_error, layer)
-        if found:
-            yield Slice(layer, PlaneLayer(layer * strategy.layer_height), found, issues)
+    for number, regions, issues in sections(cuts, strategy):
+        yield Slice(number, base, PlaneLayer(number * strategy.layer_height), regions, issues)
 
 
 def footprint(base: Base, body: Body, chord_error: float) -> list[Array]:
     """The loops (n, 2) in which a body stands on the plane of its base, cut a chord error above it."""
     return next(PlaneCuts(base.inside(body.vertices), body.triangles).loops([chord_error]))
-
-
-def _highest(base: Base, local: Sequence[Array]) -> str:
-    points = np.vstack(local)
-    return place(base.placed(points[points[:, 2].argmax()][None])[0])
 
 
 def off_faces(vertices: Array, triangles: NDArray[np.int64], heights: Array, strategy: SolidParameters) -> Array:

@@ -9,59 +9,61 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...geometry.developable import Developable
-from ...geometry.formatting import place
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, middle_azimuth
 from ...geometry.regions.region import Region, regions
+from ...geometry.regions.several import grown
 from ...geometry.regions.strip import Strip, strips
 from ...issues import InputError
 from ...parameters.filled import DevelopableParameters
 from ...slicing.solids.equidistant import Facets, Loop
 from ...slicing.solids.unrolled import count, cut, moved, opened
 from ..curved.covered import under_and_over
-from ..margins import ARCS, grown, within_margin
+from ..margins import ARCS, regions_of, within_margin
 from ..surface import Slice
 from .layer import RoundLayer
 
 CUT = 0.25  # share of the chord error, of cuts
 
 
-def slices(base: Base, surface: Developable, body: Body, strategy: DevelopableParameters) -> Iterator[Slice]:
+def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[Slice]:
     """The layers of a solid from the hub outwards, at 0, d, 2 d ... mm; those without any region are left out.
 
     InputError APEX_INSIDE, TOO_FAR_ROUND.
     """
+    surface, azimuth = base.surface, middle_azimuth(base, body.vertices)
+    assert isinstance(surface, Developable)
     facets = Facets(surface, base.inside(body.vertices), body.triangles, body.name)
-    centre = middle_azimuth(base, body.vertices)
     error, height = strategy.chord_error, strategy.layer_height
     below: list[list[Loop]] = []
     ahead: list[list[Loop]] = []
     layers, thick = count(facets, height, strategy.margin, error), strategy.thick
-    for layer in range(layers):
-        while len(ahead) <= thick and layer + len(ahead) < layers:
-            ahead.append(cut(facets, (layer + len(ahead)) * height, CUT * error))
+    for number in range(layers):
+        while len(ahead) <= thick and number + len(ahead) < layers:
+            ahead.append(cut(facets, (number + len(ahead)) * height, CUT * error))
         loops = ahead.pop(0)
-        where = f"{body.name} layer {layer}"
-        at = surface.offset(layer * height)
-        _refuse_apex(loops, at, base, where)
+        where = f"{body.name} layer {number}"
+        there = surface.offset(number * height)
+        _refuse_apex(loops, there, base, where)
         below.append(loops)
-        near = within_margin(below, height, strategy.margin, lambda some, up: [moved(surface, loop, up) for loop in some])
-        if any(loop.turns for _, some in near for loop in some):
-            covered = () if thick > min(layer, layers - 1 - layer) else None
-            one = Slice(layer, RoundLayer(at), _all_round(near, at, strategy), (), covered)
+        lots = within_margin(below, height, strategy.margin, lambda some, up: [moved(surface, loop, up) for loop in some])
+        if any(loop.turns for _, some in lots for loop in some):
+            covered = () if thick > min(number, layers - 1 - number) else None
+            layer = Slice(number, base, RoundLayer(there), _all_round(lots, there, strategy), (), azimuth, covered)
         else:
             adjacent = _adjacent(surface, below, ahead, height, thick)
-            flat = opened(at, [loop for _, some in [*near, *adjacent] for loop in some], centre, where)
+            flat = opened(there, [loop for _, some in [*lots, *adjacent] for loop in some], azimuth, where)
             loops_flat = iter(flat.loops)
-            lots = [(distance, [next(loops_flat) for _ in some]) for distance, some in near]
-            one = Slice(layer, RoundLayer(at, flat.middle), *grown(lots, strategy.margin, error, layer))
+            lots_flat = [(distance, [next(loops_flat) for _ in some]) for distance, some in lots]
+            found, issues = regions_of(lots_flat, strategy.margin, error, number)
+            layer = Slice(number, base, RoundLayer(there, flat.middle), found, issues, azimuth)
             if thick:
-                there = [regions([next(loops_flat) for _ in some]) for _, some in adjacent]
-                one = one._replace(covered=under_and_over([
-                    [part for one in found for part in one.grown(strategy.margin, ARCS * error)] for found in there
-                ]))
-        if one.regions:
-            yield one
+                neighbours = [regions([next(loops_flat) for _ in some]) for _, some in adjacent]
+                layer = layer._replace(covered=under_and_over(
+                    [grown(some, strategy.margin, ARCS * error) for some in neighbours]
+                ))
+        if layer.regions:
+            yield layer
 
 
 def _adjacent(
@@ -81,19 +83,16 @@ def _refuse_apex(loops: Sequence[Loop], surface: Developable, base: Base, where:
     if sum(loop.turns for loop in loops):
         round_it = np.vstack([loop.points for loop in loops if loop.turns])
         z = float(round_it[:, 2].mean()) if surface.is_cylinder else surface.height
-        at = place(base.placed(np.array([[0.0, 0.0, z]]))[0])
         raise InputError(
             "APEX_INSIDE", where, "the solid reaches over the end of the hub's axis, at {}, where equidistant surfaces have "
-            "an apex or an end; let it end beside the axis", at,
+            "an apex or an end; let it end beside the axis", base.where(np.array([0.0, 0.0, z])),
         )
 
 
 def _all_round(
-    near: Sequence[tuple[float, list[Loop]]], surface: Developable, strategy: DevelopableParameters
+    lots: Sequence[tuple[float, list[Loop]]], surface: Developable, strategy: DevelopableParameters
 ) -> tuple[Region | Strip, ...]:
     """The strips and regions of a layer that runs all the way round the hub; above what ends below there is no margin."""
-    margin, loops = next((entry for entry in near if entry[1]), near[0])
+    margin, loops = next((lot for lot in lots if lot[1]), lots[0])
     found = strips([(surface.flat(loop.points), loop.turns) for loop in loops], RoundLayer(surface).period)
-    if margin == 0.0:
-        return found
-    return tuple(part for one in found for part in one.grown(margin, ARCS * strategy.chord_error))
+    return found if margin == 0.0 else grown(found, margin, ARCS * strategy.chord_error)

@@ -28,17 +28,17 @@ class AtSpeed(NamedTuple):
 
 def at_speed(
     bead: Bead, radius: Array, course: Array, closed: bool, process: ProcessParameters, model: BeadModel,
-    part: Array | float = 1.0,
+    share: Array | float = 1.0,
 ) -> AtSpeed:
-    """The bead at the speeds that keep its width, or a part (n,) of it, with its radii of curvature (n,) mm; speeds change
+    """The bead at the speeds that keep its width, or a share (n,) of it, with its radii of curvature (n,) mm; speeds change
     along its course, points (n, k), by no more than the process says."""
-    asked = model.speed_for(process.bead_width * part, radius)
+    asked = model.speed_for(process.bead_width * share, radius)
     speed = followed(course, asked.speed, closed, process.acceleration)
-    widths, heights, share = model.widths(speed, radius), model.heights(speed, radius), None
+    widths, heights, wire_share = model.widths(speed, radius), model.heights(speed, radius), None
     if process.wire.feed_mode == "proportional":
         heights = model.heights_of_section(widths, process.bead_width)
-        share = with_model(process, model) / model.straight_speed(process.bead_width)
-    made = replace(bead, speed=of_segments(speed), width=widths, height=heights, wire_share=share)
+        wire_share = with_model(process, model) / model.straight_speed(process.bead_width)
+    made = replace(bead, speed=of_segments(speed), width=widths, height=heights, wire_share=wire_share)
     return AtSpeed(made, asked.too_slow | asked.too_fast, asked.too_tight)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...filling.curve import PlaneCurve
 from ...geometry.angles import TURN
-from ...geometry.on_hub import Base
+from ...geometry.curves.plane_curve import arcs
 from ...geometry.regions.region import simplified
 from ...geometry.regions.telling import telling
 from ...layers.surface import LayerSurface, Slice
@@ -48,35 +48,37 @@ class Wrapped(NamedTuple):
 
 
 def bead_of(
-    curve: PlaneCurve, layer: Slice, base: Base, strategy: FilledParameters, build: BuildDirectionParameters,
-    process: ProcessParameters, model: BeadModel | None,
+    curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    model: BeadModel | None,
 ) -> Wrapped:
     """The bead of a curve of a layer as its class is laid, with the torch leaning as its class does. Where directions
     alternate every other closed one runs the other way."""
-    if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
-        curve = reversed_curve(curve)
-    name = classes.of_filled(curve.kind, layer.layer)
+    if curve.closed and process.direction == "alternate" and (layer.number + curve.ring) % 2:
+        curve = curve.reversed()
+    name = classes.of_filled(curve.kind, layer.number)
     build, process = classes.leaning(build, process, name), process.for_class(name)
     lean = leaning(curve, layer, strategy, build)
-    found = wrapped(curve, layer.surface, base, strategy, build, process, model, lean)
+    found = wrapped(curve, layer, strategy, build, process, model, lean)
     return found._replace(bead=replace(found.bead, bead_class=name))
 
 
 def wrapped(
-    curve: PlaneCurve, surface: LayerSurface, base: Base, strategy: FilledParameters,
-    build: BuildDirectionParameters, process: ProcessParameters, model: BeadModel | None, lean: Lean | None = None,
+    curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    model: BeadModel | None, lean: Lean | None = None,
 ) -> Wrapped:
     """The bead of a curve on the plane, in part coordinates; its polynomial's variable is the arc length, 2 pi in all.
 
     lean: of the torch, by default that of the build direction. Points that come so soon after another that no controller can
     be told of the move are left out.
     """
-    period = surface.period
-    start = period.moved(curve.points[:1], curve.turns) if curve.turns and period is not None else curve.points[:1]
-    ended = np.vstack([curve.points, start]) if curve.closed else curve.points
+    surface, base = layer.surface, layer.base
+    start = curve.points[:1]
+    if curve.turns and surface.period is not None:
+        start = surface.period.moved(start, curve.turns)
+    line = np.vstack([curve.points, start]) if curve.closed else curve.points
     share = np.r_[curve.share, curve.share[:1]] if curve.closed and curve.share is not None else curve.share
-    kept = None if share is None else telling(_along(ended), share, SHARES)
-    flat = dense(ended, surface, WRAP_SHARE * strategy.chord_error, kept)
+    kept = None if share is None else telling(arcs(line), share, SHARES)
+    flat = dense(line, surface, WRAP_SHARE * strategy.chord_error, kept)
     course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
     lean = Lean(build.lead, build.tilt) if lean is None else lean
     flat, local, normal, tool, turned = held(course, lean, build, strategy.chord_error)
@@ -89,20 +91,15 @@ def wrapped(
         curve.closed, kind=curve.kind, ring=curve.ring,
     )
     if share is not None:
-        asked, known = _along(flat), _along(ended)
-        share = np.interp(asked / asked[-1], known / known[-1], share)
+        arc, of_line = arcs(flat), arcs(line)
+        share = np.interp(arc / arc[-1], of_line / of_line[-1], share)
     heights = surface.heights(flat) if model is None else None
     found = _with_speed(bead, flat, curve.closed and not curve.turns, share, heights, strategy, process, model)
-    index = np.flatnonzero(_sparse(found.bead.points, found.bead.speed[1:], BRIEF))
-    if len(index) == len(found.bead):
+    kept = _sparse(found.bead.points, found.bead.speed[1:], BRIEF)
+    if kept.all():
         return found._replace(turned=turned)
-    clamped, tight = (None if mask is None else mask[index] for mask in (found.clamped, found.tight))
-    return Wrapped(found.bead.thinned(index), clamped, tight, turned)
-
-
-def _along(line: Array) -> Array:
-    """How far (n,) mm along a polyline (n, 2) its points are."""
-    return np.asarray(np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    clamped, tight = (None if mask is None else mask[kept] for mask in (found.clamped, found.tight))
+    return Wrapped(found.bead.thinned(np.flatnonzero(kept)), clamped, tight, turned)
 
 
 def _with_speed(
@@ -127,15 +124,6 @@ def _with_speed(
     return Wrapped(replace(bead, width=width, height=heights))
 
 
-def _needed(flat: Array, tolerance: float, besides: Mask | None) -> Array:
-    """A polyline (n, 2) without the points that it does without within `tolerance` mm, but for those needed besides."""
-    grid = np.ascontiguousarray(np.round(flat, GRID) + 0.0)  # of points alike the same wherever the hub stands
-    chosen = np.ascontiguousarray(simplified(grid, tolerance))
-    kept = np.isin(grid.view(np.complex128).ravel(), chosen.view(np.complex128).ravel())
-    kept[[0, -1]] = True
-    return flat[kept if besides is None else kept | besides]
-
-
 def _sparse(points: Array, speed: Array, least: float) -> Mask:
     """Which points (n, k) of a polyline stay where none may be less than `least` along it from the one kept before, lengths
     divided by the pace (n-1,) of its segments; both ends stay."""
@@ -150,22 +138,18 @@ def _sparse(points: Array, speed: Array, least: float) -> Mask:
     return kept
 
 
-def dense(flat: Array, surface: LayerSurface, chord_error: float, kept: Mask | None = None) -> Array:
-    """A polyline (n, 2) on the plane with so many points that its chords, wrapped, keep within the chord error, and with the
-    points (n,) `kept`."""
-    flat = _needed(flat, NEEDLESS * chord_error, kept)
-    flat = flat[_sparse(flat, np.ones(len(flat) - 1), CLOSE)]
-    edge = np.diff(flat, axis=0)
-    count = surface.pieces(flat, chord_error)
-    start = np.repeat(np.arange(len(edge)), count)
-    number = np.arange(len(start)) - np.repeat(np.cumsum(count) - count, count)
-    points = flat[start] + (number / count[start])[:, None] * edge[start]
-    return np.asarray(np.vstack([points, flat[-1:]]))
-
-
-def reversed_curve(curve: PlaneCurve) -> PlaneCurve:
-    """The curve run the other way, a closed one from the same start."""
-    points, share = curve.points[::-1], None if curve.share is None else curve.share[::-1]
-    if not curve.closed:
-        return replace(curve, points=points, share=share)
-    return replace(curve, points=np.roll(points, 1, axis=0), share=None if share is None else np.roll(share, 1))
+def dense(line: Array, surface: LayerSurface, chord_error: float, besides: Mask | None = None) -> Array:
+    """A polyline (n, 2) on the plane with so many points that its chords, wrapped, keep within the chord error, without
+    those that it needs not for that, but for those (n,) needed besides."""
+    grid = np.ascontiguousarray(np.round(line, GRID) + 0.0)  # of points alike the same wherever the hub stands
+    needed = np.ascontiguousarray(simplified(grid, NEEDLESS * chord_error))
+    kept = np.isin(grid.view(np.complex128).ravel(), needed.view(np.complex128).ravel())
+    kept[[0, -1]] = True
+    line = line[kept if besides is None else kept | besides]
+    line = line[_sparse(line, np.ones(len(line) - 1), CLOSE)]
+    edge = np.diff(line, axis=0)
+    count = surface.pieces(line, chord_error)
+    first = np.repeat(np.arange(len(edge)), count)
+    number = np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
+    points = line[first] + (number / count[first])[:, None] * edge[first]
+    return np.asarray(np.vstack([points, line[-1:]]))

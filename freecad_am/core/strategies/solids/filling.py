@@ -18,8 +18,6 @@ from ...filling.fill import fill, open_at_slits, open_places
 from ...filling.free_width import thinned
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest, steps
-from ...geometry.formatting import place
-from ...geometry.on_hub import Base
 from ...geometry.regions.region import Region
 from ...geometry.regions.strip import Strip
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text
@@ -52,132 +50,127 @@ class Filled(NamedTuple):
     cover: Cover
 
 
-class _Picture(NamedTuple):
-    """A region filled: what for and how, its borders, its beads, and places left open with their widths."""
+class _Asked(NamedTuple):
+    """What a layer is filled with, and at what angle, rad, on its plane."""
 
     beads: Beads
     angle: float
     infill: Infill
-    rings: tuple[Array, ...]
+
+
+class _Picture(NamedTuple):
+    """A region filled: its beads, places left open with their widths, and how well it is covered."""
+
     curves: tuple[PlaneCurve, ...]
-    left: list[tuple[Array, float]]
+    gaps: list[tuple[Array, float]]
     cover: Cover
 
 
 class Pictures:
     """Fills layers. Solids alike but for a turn about the hub's axis have equal pictures, but for rounding: the beads of the
-    first, within SAME of its own, are those of all."""
+    first, within TOLERANCE_MM of its own, are those of all."""
 
     def __init__(self, strategy: FilledParameters, process: ProcessParameters, width: float = 0.0) -> None:
         """width: mm of a bead, 0: the spacing."""
         self._strategy = strategy
         self._process = process
         self._width = width
-        self._known: dict[tuple[float, ...], list[_Picture]] = {}
+        self._known: dict[tuple[float, ...], list[tuple[Region, _Asked, _Picture]]] = {}
 
-    def filled(self, layer: Slice, centre: float, base: Base) -> Filled:
-        """The beads of a layer of a solid whose middle is at the azimuth `centre`, rad. InfeasibleError THIN_REGION."""
-        strategy, process = self._strategy, self._process
-        seam = process.seam.angle + layer.layer * process.seam.step
-        turned = layer.surface.turned(centre)  # the picture, by the cutting line
-
-        def where(point: Array) -> str:
-            return place(base.placed(layer.surface.wrap(point[None]).points)[0])
-
-        beads = Beads(
-            strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.least_bead, strategy.thin,
-            process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error, where,
-            self._width, layer.layer * OVER if strategy.starts == "spread" else None,
-        )
-        angle = strategy.fill_angle + layer.layer * strategy.fill_angle_step - turned
-        infill = Infill()
-        if strategy.fill_density < 1.0:
-            height = layer.layer * strategy.layer_height if strategy.fill == "gyroid" else 0.0
-            infill = Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.covered)
+    def filled(self, layer: Slice) -> Filled:
+        """The beads of a layer. InfeasibleError THIN_REGION."""
+        strategy, asked = self._strategy, self._asked(layer)
+        beads, _, _ = asked
         curves: list[PlaneCurve] = []
         issues: list[Issue] = []
         gaps: list[tuple[Array, float]] = []
         islands: list[int] = []
         covers: list[Cover] = []
         for number, region in enumerate(layer.regions):
-            found, left, cover = self._picture(layer, region, beads, angle, infill)
+            found, left, cover = self._picture(layer, region, asked)
             covers.append(cover)
-            found = [_from_other_end(curve) for curve in found] if beads.spread is not None and layer.layer % 2 else found
+            if beads.spread is not None and layer.number % 2:
+                found = tuple(curve if curve.closed else curve.reversed() for curve in found)
             curves += [replace(curve, sheet=region.sheet) for curve in found] if isinstance(region, Region) else found
             islands += [number] * len(found)
             gaps += left
-        plain = [region for region in layer.regions if isinstance(region, Region)]
-        if len(plain) == len(layer.regions) and strategy.fill_density == 1.0:
-            gaps = found_at if (found_at := open_at_slits(plain, curves, beads)) is not None else gaps
+        regions = [region for region in layer.regions if isinstance(region, Region)]
+        if len(regions) == len(layer.regions) and strategy.fill_density == 1.0:
+            at_slits = open_at_slits(regions, curves, beads)
+            gaps = gaps if at_slits is None else at_slits
         if gaps:
-            point, width = max(gaps, key=lambda gap: gap[1])
+            place, width = max(gaps, key=lambda gap: gap[1])
             issues.append(Issue(
                 WARNING, "OPEN_GAP", Text("beads leave {} gap(s) open, the widest of {:.3g} mm at {}; strategy.gap allows "
-                    "{:.3g} mm", len(gaps), width, where(point), beads.gap), layer.layer,
+                    "{:.3g} mm", len(gaps), width, layer.where(place), beads.gap), layer.number,
             ))
         issues += _standing_out(layer, curves, beads)
-        if strategy.fill in INSTEAD and any(isinstance(region, Strip) for region in layer.regions):
+        if strategy.fill in INSTEAD and len(regions) < len(layer.regions):
             issues.append(Issue(
                 NOTE, "PATTERN_ROUND_HUB", Text("a layer all the way round the hub is filled with {}; strategy.fill = {} is "
-                    "for regions with an end", INSTEAD[strategy.fill], strategy.fill), layer.layer,
+                    "for regions with an end", INSTEAD[strategy.fill], strategy.fill), layer.number,
             ))
         return Filled(curves, tuple(issues), islands, total(covers))
 
-    def _picture(
-        self, layer: Slice, region: Region | Strip, beads: Beads, angle: float, infill: Infill
-    ) -> tuple[Sequence[PlaneCurve], list[tuple[Array, float]], Cover]:
+    def _asked(self, layer: Slice) -> _Asked:
+        strategy, process = self._strategy, self._process
+        turned = layer.surface.turned(layer.azimuth)  # the picture, by the cutting line
+        seam = process.seam.angle + layer.number * process.seam.step
+        beads = Beads(
+            strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.least_bead, strategy.thin,
+            process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error, layer.where,
+            self._width, layer.number * OVER if strategy.starts == "spread" else None,
+        )
+        angle = strategy.fill_angle + layer.number * strategy.fill_angle_step - turned
+        if strategy.fill_density == 1.0:
+            return _Asked(beads, angle, Infill())
+        height = layer.number * strategy.layer_height if strategy.fill == "gyroid" else 0.0
+        return _Asked(beads, angle, Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.covered))
+
+    def _picture(self, layer: Slice, region: Region | Strip, asked: _Asked) -> _Picture:
+        """A region filled, as one before it where that was alike."""
+        flat = layer.surface.period is None
         if isinstance(region, Strip):
-            if layer.covered == ():
-                infill = Infill()
-            curves, left = self._made(region, beads, angle, infill)
-            return curves, left, covered(region, curves, beads, infill.density)
+            return self._made(region, asked._replace(infill=Infill()) if layer.covered == () else asked, flat)
         known = self._known.setdefault(layer.surface.alike, [])
-        for other in known:
-            alike = abs(other.angle - angle) < 1e-9 and abs(_number(other.beads) - _number(beads)) < 1e-9
-            alike = alike and other.beads.spread == beads.spread
-            if alike and _equal(other.rings, region.rings()) and _same(other.infill, infill):
-                return other.curves, other.left, other.cover
-        curves, left = self._made(region, beads, angle, infill)
+        for other, before, picture in known:
+            if _alike(before, asked) and _equal(other.rings(), region.rings()):
+                return picture
+        picture = self._made(region, asked, flat)
+        known.append((region, asked, picture))
+        return picture
+
+    def _made(self, region: Region | Strip, asked: _Asked, flat: bool) -> _Picture:
+        """A region filled; of what its beads leave open nothing is told where room is left on purpose. flat: nothing goes
+        round the surface."""
+        strategy, (beads, angle, infill) = self._strategy, asked
+        whole, (least, most) = infill.density == 1.0, strategy.spacing_range
+        links = strategy.longest_link * beads.spacing
+        adapted = region if isinstance(region, Region) and whole and least != most else None
+        share, fitting = 1.0, beads
+        if adapted is not None and strategy.rounds_alone:
+            fitting, share = fitted(adapted.width, beads, least, most)
+        curves = fill(region, fitting, strategy.fill, angle, strategy.rounds, links, infill)
+        gaps = open_places(region, curves, fitting) if whole else []
+        if adapted is not None:
+            curves = shared(adapted, curves, fitting, share, least, most)
         cover = covered(region, curves, beads, infill.density)
-        if infill.density == 1.0 and layer.surface.period is None and self._strategy.spacing_range == EVERY:
-            curves = self._thinned(curves, beads, angle, cover)
-        known.append(_Picture(beads, angle, infill, region.rings(), curves, left, cover))
-        return curves, left, cover
-
-    def _made(
-        self, region: Region | Strip, beads: Beads, angle: float, infill: Infill
-    ) -> tuple[tuple[PlaneCurve, ...], list[tuple[Array, float]]]:
-        """The beads of a region and what they leave open, of which nothing is told where room is left on purpose."""
-        strategy = self._strategy
-        links, (least, most) = strategy.longest_link * beads.spacing, strategy.spacing_range
-        share = 1.0
-        if isinstance(region, Region) and infill.density == 1.0 and strategy.rounds_alone:
-            beads, share = fitted(region, beads, least, most)
-        curves = fill(region, beads, strategy.fill, angle, strategy.rounds, links, infill)
-        left = open_places(region, curves, beads) if infill.density == 1.0 else []
-        if isinstance(region, Region) and infill.density == 1.0:
-            curves = tuple(shared(region, curves, beads, share, least, most))
-        return curves, left
-
-    def _thinned(
-        self, curves: tuple[PlaneCurve, ...], beads: Beads, angle: float, cover: Cover
-    ) -> tuple[PlaneCurve, ...]:
-        """The beads of a region, no wider than their room where much of them would be laid over others."""
-        twice = beads.spacing * math.fsum(_weighed(curve) for curve in curves) - cover.once
-        if twice <= MUCH * cover.whole or self._strategy.narrowest == 1.0:
-            return curves
-        return tuple(thinned(curves, beads, angle, self._strategy.narrowest))
+        if whole and flat and strategy.spacing_range == EVERY and strategy.narrowest < 1.0:
+            twice = beads.spacing * math.fsum(_weighed(curve) for curve in curves) - cover.once
+            if twice > MUCH * cover.whole:  # no wider than their room
+                curves = thinned(curves, beads, angle, strategy.narrowest)
+        return _Picture(curves, gaps, cover)
 
 
 @contextlib.contextmanager
-def naming(name: str, layer: int) -> Iterator[None]:
+def naming(name: str, number: int) -> Iterator[None]:
     """What cannot be filled meanwhile is told with the name of the piece and the number of the layer."""
     try:
         yield
     except InfeasibleError as error:
         raise InfeasibleError(
-            error.code, f"{name} layer {layer}", error.message,
-            issues=(Issue("error", error.code, Text("{}: {}", name, error.message), layer),)
+            error.code, f"{name} layer {number}", error.message,
+            issues=(Issue("error", error.code, Text("{}: {}", name, error.message), number),)
         ) from None
 
 
@@ -215,11 +208,11 @@ def bead_width(strategy: FilledParameters, process: ProcessParameters, model: Be
 
 def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:
     """What is told of single beads in regions narrower than they are."""
-    rings = [ring for region in layer.regions if isinstance(region, Region) for ring in region.rings()]
-    rings += [ring for region in layer.regions if isinstance(region, Strip) for ring, _ in region.rings()]
     single = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]
     if not single:
         return []
+    rings = [ring for region in layer.regions if isinstance(region, Region) for ring in region.rings()]
+    rings += [ring for region in layer.regions if isinstance(region, Strip) for ring, _ in region.rings()]
     points = np.vstack([curve.points for curve in single])
     share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in single])
     out = share * beads.inset - np.min([nearest(ring, points, closed=True).distance for ring in rings], axis=0)
@@ -228,33 +221,26 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
         return []
     return [Issue(
         NOTE, "THIN_SINGLE", Text("{} bead(s) alone in regions narrower than a bead of {:.3g} mm stand out of them, by up "
-            "to {:.3g} mm at {}", len(single), 2.0 * beads.inset, out[worst], beads.where(points[worst])), layer.layer,
+            "to {:.3g} mm at {}", len(single), 2.0 * beads.inset, out[worst], layer.where(points[worst])), layer.number,
     )]
 
 
-def _from_other_end(curve: PlaneCurve) -> PlaneCurve:
-    """An open curve the other way round; a closed one as it is."""
-    if curve.closed:
-        return curve
-    return replace(curve, points=curve.points[::-1], share=None if curve.share is None else curve.share[::-1])
-
-
-def _same(one: Infill, other: Infill) -> bool:
-    """Whether two layers are filled in part in the same way."""
-    if one.density == other.density == 1.0:
-        return True
-    if one.height != other.height or abs(one.angle - other.angle) > 1e-9 or (one.covered is None) != (other.covered is None):
+def _alike(one: _Asked, other: _Asked) -> bool:
+    """Whether regions alike are filled alike."""
+    turned = max(abs(one.angle - other.angle), np.abs(np.subtract(one.beads.start, other.beads.start)).max())
+    if turned >= 1e-9 or one.beads.spread != other.beads.spread:
         return False
-    rings, others = (tuple(ring for part in infill.covered or () for ring in part.rings()) for infill in (one, other))
+    a, b = one.infill, other.infill
+    if a.density == b.density == 1.0:
+        return True
+    if a.height != b.height or abs(a.angle - b.angle) > 1e-9 or (a.covered is None) != (b.covered is None):
+        return False
+    rings, others = (tuple(ring for region in infill.covered or () for ring in region.rings()) for infill in (a, b))
     return _equal(rings, others)
 
 
-def _number(beads: Beads) -> float:
-    return float(beads.start) if not isinstance(beads.start, tuple) else math.nan
-
-
 def _equal(rings: Sequence[Array], others: Sequence[Array]) -> bool:
-    """Whether borders (n, 2) are the same within SAME, wherever they begin."""
+    """Whether borders (n, 2) are the same within TOLERANCE_MM, wherever they begin."""
     if [len(ring) for ring in rings] != [len(ring) for ring in others]:
         return False
     for ring, other in zip(rings, others):

@@ -51,15 +51,13 @@ def leaning(
 def _borders(layer: Slice) -> list[tuple[Array, bool]]:
     """The outlines of a layer on the plane and whether each is closed; round the hub as often as anything near can ask."""
     found = []
-    for part in layer.regions:
-        if isinstance(part, Region):
-            found += [(ring, True) for ring in part.rings()]
+    for region in layer.regions:
+        if isinstance(region, Region):
+            found += [(ring, True) for ring in region.rings()]
             continue
-        for ring, turns in part.rings():
-            period = layer.surface.period
-            assert period is not None  # strips go round it
-            copies = [period.moved(ring, k) for k in (-1, 0, 1)]
-            found += [(copy, True) for copy in copies] if not turns else [(np.vstack(copies[::turns]), False)]
+        for ring, turns in region.rings():
+            rings = [region.period.moved(ring, k) for k in (-1, 0, 1)]
+            found += [(ring, True) for ring in rings] if not turns else [(np.vstack(rings[::turns]), False)]
     return found
 
 

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...filling.cover import Cover
-from ...geometry.developable import Developable
-from ...geometry.on_hub import SolidsOnHub, downwards, upright
+from ...geometry.beyond_hub import solids_beyond
+from ...geometry.on_hub import SolidsOnHub
 from ...issues import InputError, Issue
 from ...layers.field import pieces
 from ...parameters.build_direction import BuildDirectionParameters
@@ -43,7 +43,7 @@ def plan(
     InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
     THIN_REGION.
     """
-    planes, at = on_planes(solids), None
+    planes, at = solids.on_planes(), None
     _refuse_mode(planes, strategy, build)
     strategy = spaced(strategy, process)
     expected = _layers_of_a_piece(solids, strategy, process)
@@ -53,34 +53,35 @@ def plan(
     made: list[Wrapped] = []
     mended: list[Issue] = []
     covers: list[Cover] = []
-    uneven: dict[int, tuple[float, float]] = {}
-    found = [(group, one.base, number, piece) for group, one in enumerate(solids.groups)
-             for number, piece in enumerate(pieces(one, solids.surroundings, strategy))]
-    for done, (group, base, number, piece) in enumerate(found):
+    heights: dict[int, list[float]] = {}  # least and largest of each layer in all pieces, where it is not as high everywhere
+    found = [(number, solid, piece) for number, group in enumerate(solids.groups)
+             for solid, piece in enumerate(pieces(group, solids.surroundings, strategy))]
+    for done, (group, solid, piece) in enumerate(found):
         below: Array | None = None  # middles of the islands of the layer before
         before: Counter[int] = Counter()  # beads of the pieces that a curved layer has had
         for count, layer in enumerate(piece.slices):
             mended += layer.issues
-            progress((done + min(1.0, count / expected)) / len(found), f"{piece.name} layer {layer.layer}")
-            with naming(piece.name, layer.layer):
-                beads = pictures.filled(layer, piece.centre, base)
-            mended += beads.issues
-            share = 1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
-            covers.append(Cover(*(share * area for area in beads.cover)))
+            progress((done + min(1.0, count / expected)) / len(found), f"{piece.name} layer {layer.number}")
+            with naming(piece.name, layer.number):
+                filled = pictures.filled(layer)
+            mended += filled.issues
+            share = 1.0
             if layer.heights is not None:
-                uneven[layer.layer] = _both(uneven.get(layer.layer), layer.heights)
-            here = [bead_of(curve, layer, base, strategy, build, process, model) for curve in beads.curves]
+                share = layer.heights[1] / strategy.layer_height
+                heights.setdefault(layer.number, []).extend(layer.heights[::2])
+            covers.append(Cover(*(share * area for area in filled.cover)))
+            here = [bead_of(curve, layer, strategy, build, process, model) for curve in filled.curves]
             made += here
-            ranks = [curve.ring for curve in beads.curves]
+            beads, ranks = [one.bead for one in here], [curve.ring for curve in filled.curves]
             if planes:
-                if strategy.min_layer_time > 0.0 and here:
-                    order, below = as_below([one.bead for one in here], beads.islands, below)
+                if strategy.min_layer_time > 0.0 and beads:
+                    order, below = as_below(beads, filled.islands, below)
                 else:
-                    order = island_by_island([one.bead for one in here], beads.islands, at)
-                ranks = (-number * FEWER - before[layer.layer] - np.argsort(order)).tolist()
-                before[layer.layer] += len(here)
-                at = here[order[-1]].bead.points[-1] if order else at
-            ranked += [RankedBead(group, number, layer.layer, rank, one.bead) for rank, one in zip(ranks, here, strict=True)]
+                    order = island_by_island(beads, filled.islands, at)
+                ranks = (-solid * FEWER - before[layer.number] - np.argsort(order)).tolist()
+                before[layer.number] += len(beads)
+                at = beads[order[-1]].points[-1] if order else at
+            ranked += [RankedBead(group, solid, layer.number, *one) for one in zip(ranks, beads, strict=True)]
     if not ranked:
         raise InputError(
             "NOTHING_TO_DEPOSIT", solids.label, "no bead of {:g} mm or more finds room in any layer; use a smaller bead "
@@ -90,11 +91,12 @@ def plan(
     layers = waited(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
     issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
     return Toolpath(
-        layers, _frame(solids, planes), strategy.layer_height, strategy.chord_error, issues, process.overlap,
+        layers, solids.frame, strategy.layer_height, strategy.chord_error, issues, process.overlap,
         "solid" if planes else "developable",
         solids.surroundings, None if model is None else model.law(process.acceleration), nominal,
-        volumes=volumes(solids, strategy, covers), twice=twice(made, strategy, covers, nominal),
-        uneven=np.array([(layer, *uneven[layer]) for layer in sorted(uneven)]) if uneven else None,
+        volumes=volumes(None if strategy.margin else solids_beyond(solids), strategy, covers),
+        twice=twice(made, strategy, covers, nominal),
+        uneven=np.array([(number, min(both), max(both)) for number, both in sorted(heights.items())]) if heights else None,
     )
 
 
@@ -104,12 +106,6 @@ def _layers_of_a_piece(solids: SolidsOnHub, strategy: FilledParameters, process:
     size.refuse_absurd(found, strategy, None if strategy.bead_overlap is None else process.bead_width)
     together = sum(len(one.bodies) for one in solids.groups) if strategy.order == "feature" else 1
     return max(1.0, found.layers / together)
-
-
-def _both(known: tuple[float, float] | None, heights: tuple[float, float, float]) -> tuple[float, float]:
-    """The least and the largest height of a layer in several pieces."""
-    low, _, high = heights
-    return (low, high) if known is None else (min(low, known[0]), max(high, known[1]))
 
 
 def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
@@ -131,11 +127,6 @@ def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirection
         )
 
 
-def on_planes(solids: SolidsOnHub) -> bool:
-    """Whether the layers are planes, one above the other, so that nothing deposited before stands above a layer."""
-    return not any(isinstance(group.base.surface, Developable) for group in solids.groups)
-
-
 def clear_by_itself(toolpath: Toolpath, solids: SolidsOnHub) -> bool:
     """Whether nothing can stand above the tip of the nozzle: layers are planes, each wholly below the next, the tool stands
     upright on them, and what is around ends below the first."""
@@ -147,19 +138,6 @@ def clear_by_itself(toolpath: Toolpath, solids: SolidsOnHub) -> bool:
             return False
         before = height
     return all(float(((body.vertices - origin) @ up).max()) < LEVEL for body in solids.surroundings)
-
-
-def _frame(solids: SolidsOnHub, planes: bool) -> Array:
-    """The frame of the feature (interface.md, mount): Z the axis of the first base, upwards in the part; origin where the
-    lowest end of the solids is; X the part's X seen along Z. Of planes Z is the stacking direction, wherever it points."""
-    base = solids.groups[0].base
-    if planes:
-        return base.frame
-    z = base.frame[:3, 2]
-    z = -z if downwards(z) else z
-    vertices = np.vstack([body.vertices for group in solids.groups for body in group.bodies])
-    low = float(((vertices - base.frame[:3, 3]) @ z).min())
-    return upright(base.frame[:3, 3] + low * z, z)
 
 
 def without_axis_limits(build: BuildDirectionParameters) -> BuildDirectionParameters:
