@@ -50,7 +50,7 @@ def _offsets() -> list[Row]:
         region, = regions([loop])
         for distance in distances:
             for part in region.grown(float(distance), CHORD_ERROR):
-                part.rings()
+                part.borders()
         ours.append(process_time() - start)
         start = process_time()
         polygon = library.geometry.Polygon(loop)
@@ -76,7 +76,7 @@ def _filled() -> Row:
     ours = process_time() - start
     start = process_time()
     for region in (region for layer in layers for region in layer):
-        rings = region.rings()
+        rings = region.borders()
         whole = library.geometry.Polygon(rings[0], rings[1:])
         left, depth = whole, 0.5 * SPACING
         while not left.is_empty:

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..geometry.curves.plane_curve import dense, nearest
 from ..geometry.regions.region import WIDTH, Region
-from ..types import Array
 from .curve import Beads, PlaneCurve
 
 MORE = 1.002  # of the thickness, beside what the measure of it may be short of: a contour in the middle is not a thin loop
@@ -18,11 +17,12 @@ PLACES = 0.25  # of the spacing, mm between places at which widths are looked at
 MIDDLE = ("centre", "closing")  # kinds of beads that lie in what others leave
 
 
-def fitted(thickness: float, beads: Beads, least: float, most: float) -> tuple[Beads, float]:
-    """Beads of which a whole number fits into the thickest place (mm) of a region, and their share of the usual width,
-    between least and most and as near to 1 as may be; the usual ones where there is no such number."""
-    width = 2.0 * beads.inset
-    thickness = MORE * (1.0 + WIDTH) * thickness
+def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Beads, float]:
+    """Beads of which a whole number fits into the thickest place of a region, and their share of the usual width, between
+    least and most and as near to 1 as may be; the usual ones where there is no such number."""
+    if least == most:
+        return beads, 1.0
+    width, thickness = 2.0 * beads.inset, MORE * (1.0 + WIDTH) * region.width
     excess = (thickness - width) / beads.spacing  # so many more than one
     share = 1.0
     if excess > 0.0:
@@ -39,6 +39,8 @@ def shared(
 ) -> tuple[PlaneCurve, ...]:
     """The curves with the share of the usual width that each of their points has: that of the fitted beads, of those in the
     middle what room their neighbours leave them. Between least and most."""
+    if least == most:
+        return tuple(curves)
     others = [curve for curve in curves if curve.kind not in MIDDLE]
     found = []
     for curve in curves:
@@ -60,9 +62,7 @@ def _within_width(
     else:  # there and back is a ring, of which the way there is the first half
         points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)
         points = points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
-    border = 2.0 * region.nearest(points)[1] / (2.0 * beads.inset)
-    gap: Array = np.full(len(points), np.inf)
+    free = region.nearest(points)[1] / beads.inset
     for other in others:
-        gap = np.minimum(gap, nearest(other.points, points, other.closed).distance)
-    free = np.minimum(border, 2.0 * gap / beads.spacing - 1.0)
+        free = np.minimum(free, 2.0 * nearest(other.points, points, other.closed).distance / beads.spacing - 1.0)
     return replace(curve, points=points, share=np.clip(share * free, least, most))

@@ -126,20 +126,19 @@ def _necks(region: Region, inner: Sequence[Region], beads: Beads) -> tuple[Regio
 def _is_rib(part: Region, foot: Region, width: float) -> bool:
     if part.area <= RIB * width**2:  # less than the least rib has
         return False
-    out = float(foot.nearest(part.rings()[0])[1].max())
+    out = float(foot.nearest(part.borders()[0])[1].max())
     return out > width and part.area > RIB * width * out
 
 
 def _along_border(region: Region) -> tuple[Array, bool]:
     """The border (n, 2) of a sliver from one of its ends to the other, and whether it is closed: the way round a hole."""
-    rings = region.rings()
-    if len(rings) > 1:
-        return rings[0], True
-    ring = rings[0]
+    border, *holes = region.borders()
+    if holes:
+        return border, True
     end = 0
     for _ in range(2):
-        start, end = end, int(np.argmax(np.hypot(*(ring - ring[end]).T)))
-    ways = [np.roll(ring, -start, axis=0)[: (end - start) % len(ring) + 1] for start, end in ((start, end), (end, start))]
+        start, end = end, int(np.argmax(np.hypot(*(border - border[end]).T)))
+    ways = [np.roll(border, -a, axis=0)[: (b - a) % len(border) + 1] for a, b in ((start, end), (end, start))]
     return min(ways, key=lambda way: length(way, False)), False
 
 
@@ -166,7 +165,7 @@ def _smooth(points: Array, closed: bool, tolerance: float) -> Array:
 def _dab(region: Region, beads: Beads) -> Array:
     """Two places (2, 2) in the middle of a region too round for a path, along it."""
     core = max(region.grown(-0.5 * beads.gap, beads.chord_error), key=lambda part: part.area)
-    border = region.rings()[0]
+    border = region.borders()[0]
     way = np.linalg.svd(border - border.mean(axis=0), full_matrices=False)[2][0]
     reach = 0.5 * ENDS * beads.gap * way
     ends: Array = core.inside() + np.stack([-reach, reach])

@@ -109,7 +109,7 @@ def _loop(curve: PlaneCurve, half: float, beads: Beads) -> PlaneCurve:
     if curve.closed:
         return curve
     parts = along([(curve.points, False)], half, beads.chord_error)
-    return begun(PlaneCurve(parts[0].rings()[0], True, curve.kind, curve.ring), beads)
+    return begun(PlaneCurve(parts[0].borders()[0], True, curve.kind, curve.ring), beads)
 
 
 def _joined(rings: list[Ring], links: list[list[Link]], beads: Beads) -> set[int]:

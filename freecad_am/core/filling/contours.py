@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grown, longer, without
 from .centre import centre_beads, outermost, single_beads
-from .curve import Beads, PlaneCurve, begun, borders, long_enough
+from .curve import Beads, PlaneCurve, begun, contours_of, long_enough
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def contours(region: Region, beads: Beads) -> list[PlaneCurve]:
 
 def rounds(found: Levels, beads: Beads) -> list[PlaneCurve]:
     """The contours, from outside in."""
-    return [curve for k, regions in enumerate(found.regions) for curve in borders(regions, beads, k)]
+    return [curve for k, regions in enumerate(found.regions) for curve in contours_of(regions, beads, k)]
 
 
 def middles(found: Levels, beads: Beads) -> list[PlaneCurve]:

@@ -118,15 +118,16 @@ def begun(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
     return replace(curve, points=beads.ring(curve.points, curve.ring)) if curve.closed and not curve.turns else curve
 
 
-def borders(parts: Sequence[Strip | Region], beads: Beads, ring: int) -> list[PlaneCurve]:
+def contours_of(parts: Sequence[Strip | Region], beads: Beads, ring: int) -> list[PlaneCurve]:
     """The borders of regions and strips as contours."""
     curves = []
     for part in parts:
         if isinstance(part, Region):
-            curves += [begun(PlaneCurve(points, True, "contour", ring, sheet=part.sheet), beads) for points in part.rings()]
+            curves += [PlaneCurve(border, True, "contour", ring, sheet=part.sheet) for border in part.borders()]
             continue
-        for points, turns in part.rings():
+        for border, turns in part.borders():
             against = turns != 0 and (turns < 0) != beads.clockwise
-            curve = PlaneCurve(points[::-1] if against else points, True, "contour", ring, -turns if against else turns)
-            curves.append(begun(curve, beads))
-    return curves
+            curves.append(
+                PlaneCurve(border[::-1] if against else border, True, "contour", ring, -turns if against else turns)
+            )
+    return [begun(curve, beads) for curve in curves]

@@ -29,23 +29,23 @@ def families(region: Region, pattern: str, spacing: float, density: float, angle
 
 def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
     """Pieces (2, 2) of the lines at whole periods (mm) from the origin, at an angle, rad, in a region; row by row."""
-    rings = [turned(ring, -angle) for ring in region.rings()]
-    low, high = float(rings[0][:, 1].min()), float(rings[0][:, 1].max())
+    borders = [turned(border, -angle) for border in region.borders()]
+    low, high = float(borders[0][:, 1].min()), float(borders[0][:, 1].max())
     found = []
     for k in range(math.ceil(low / period), math.floor(high / period) + 1):
-        x = crossings(rings, k * period)
+        x = crossings(borders, k * period)
         ends = np.stack([x, np.full(len(x), k * period)], axis=1).reshape(-1, 2, 2)
         found.append([turned(piece, angle) for piece in ends if piece[1, 0] > piece[0, 0]])
     return found
 
 
-def crossings(rings: list[Array], level: float) -> Array:
-    """Where rings cross a height, ascending; an even number."""
+def crossings(borders: list[Array], level: float) -> Array:
+    """Where borders (n, 2) cross a height, ascending; an even number."""
     found = []
-    for ring in rings:
-        following = np.roll(ring, -1, axis=0)
-        k = np.flatnonzero((ring[:, 1] <= level) != (following[:, 1] <= level))
-        a, b = ring[k], following[k]
+    for border in borders:
+        following = np.roll(border, -1, axis=0)
+        k = np.flatnonzero((border[:, 1] <= level) != (following[:, 1] <= level))
+        a, b = border[k], following[k]
         found.append(a[:, 0] + (level - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]))
     return np.sort(np.concatenate(found))
 
@@ -106,5 +106,5 @@ def gyroid(region: Region, spacing: float, density: float, angle: float, height:
 
 def _box(region: Region, angle: float) -> tuple[Array, Array]:
     """Lowest and highest coordinates (2,) of a region in axes turned by an angle, rad."""
-    border = turned(region.rings()[0], -angle)
+    border = turned(region.borders()[0], -angle)
     return border.min(axis=0), border.max(axis=0)

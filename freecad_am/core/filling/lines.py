@@ -13,7 +13,7 @@ from ..geometry.regions.region import Region
 from ..geometry.regions.several import grown, longer
 from ..types import Array
 from .centre import closing, outermost, single_beads
-from .curve import Beads, PlaneCurve, borders, long_enough
+from .curve import Beads, PlaneCurve, contours_of, long_enough
 from .lattice import crossings
 from .zigzag import in_rows
 
@@ -22,7 +22,7 @@ TOGETHER, APART = 0.01, 0.002  # of the spacing; lines are moved no more than th
 
 
 class Frame(NamedTuple):
-    """curves: the contours round the lines, if any; room: the regions between whose borders lines are spread; ends: those
+    """curves: the contours round the lines, if any; regions: those between whose borders lines are spread; ends: those
     that they run through, which reach onto the contour; thin: the region, or necks of it, narrower than a bead."""
 
     curves: list[PlaneCurve]
@@ -42,7 +42,7 @@ def frame(region: Region, beads: Beads, walls: int) -> Frame:
     for k in range(walls):
         if k:
             inner = longer(region.grown(-beads.inset - 2 * k * half, error), beads.shortest)
-        curves += borders(inner, beads, k)
+        curves += contours_of(inner, beads, k)
         if not inner:
             break
     return Frame(curves, grown(inner, -2.0 * half, error), grown(inner, -half, error), thin)
@@ -62,23 +62,23 @@ def lines(
     longest_link: mm; lines are linked to zigzags along the border of the room that beads have, so that no link is outside;
     beside contours links lie inside of their beads, so that little is laid twice. None: no line is linked.
     """
-    place = frame(region, beads, walls)
-    curves = single_beads(place.thin, beads) + place.curves
+    framed = frame(region, beads, walls)
+    curves = single_beads(framed.thin, beads) + framed.curves
     inside = INSIDE * beads.spacing if walls else 0.0
-    curves += in_rows(rows(place, beads, angle), place.ends, beads, walls, longest_link, inside)
+    curves += in_rows(rows(framed, beads, angle), framed.ends, beads, walls, longest_link, inside)
     curves += closing(region, curves, beads, walls)
     return long_enough(curves, beads.shortest)
 
 
-def rows(place: Frame, beads: Beads, angle: float) -> list[list[Array]]:
+def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
     """Level by level the pieces (2, 2) of lines, all in the direction of the angle (rad)."""
-    if not place.regions or not place.ends:  # too narrow for lines; what they would fill gets beads along its middle
+    if not framed.regions or not framed.ends:  # too narrow for lines; what they would fill gets beads along its middle
         return []
-    rings = [turned(ring, -angle) for region in place.ends for ring in region.rings()]
-    height = np.concatenate([turned(region.rings()[0], -angle)[:, 1] for region in place.regions])
+    borders = [turned(border, -angle) for region in framed.ends for border in region.borders()]
+    height = np.concatenate([turned(region.borders()[0], -angle)[:, 1] for region in framed.regions])
     found = []
     for level in levels_between(float(height.min()), float(height.max()), beads):
-        x = crossings(rings, level)
+        x = crossings(borders, level)
         ends = np.stack([x, np.full(len(x), level)], axis=1).reshape(-1, 2, 2)
         found.append([turned(piece, angle) for piece in ends if piece[1, 0] > piece[0, 0]])
     return found

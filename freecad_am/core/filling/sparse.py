@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grown, wider, without
 from .centre import centre_beads, left_open, single_beads
-from .curve import Beads, PlaneCurve, borders, long_enough
+from .curve import Beads, PlaneCurve, contours_of, long_enough
 from .lattice import families, gyroid, honeycomb
 from .lines import Frame, frame, rows
 from .zigzag import in_rows
@@ -41,13 +41,13 @@ def sparse(
     angle (rad): of lines and zigzags, and of the lines where the whole is filled. longest_link: as of `lines`.
     InfeasibleError THIN_REGION.
     """
-    place = frame(region, beads, walls)
-    curves = single_beads(place.thin, beads) + place.curves
+    framed = frame(region, beads, walls)
+    curves = single_beads(framed.thin, beads) + framed.curves
     inner = region.grown(-beads.inset, beads.chord_error)
-    if place.curves:
-        left = wider(without(left_open(curves, inner, beads), place.ends), beads.gap, beads.chord_error)
+    if framed.curves:
+        left = wider(without(left_open(curves, inner, beads), framed.ends), beads.gap, beads.chord_error)
         curves += centre_beads(left, beads, walls, inner, "closing")
-    loose, whole = _divided(place.ends, infill.covered, beads)
+    loose, whole = _divided(framed.ends, infill.covered, beads)
     for part in whole:
         curves += _whole(part, beads, angle, walls, longest_link)
     for part in loose:
@@ -102,6 +102,6 @@ def _rounds(region: Region, beads: Beads, ring: int, first: float, apart: float)
     """Contours so far apart, the first so far inside of a region, mm."""
     curves, k = [], 0
     while inner := region.grown(-first - k * apart, beads.chord_error):
-        curves += borders(inner, beads, ring + k)
+        curves += contours_of(inner, beads, ring + k)
         k += 1
     return curves

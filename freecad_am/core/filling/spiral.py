@@ -25,7 +25,7 @@ def spiral(region: Region, beads: Beads) -> list[PlaneCurve]:
     """One curve from each outer contour and from each hole as far as contours follow one another singly; where they split or
     join, new ones begin. A contour of its own stays closed. What contours leave open is filled as theirs is."""
     found = levels(region, beads)
-    rings = [[ring for region in regions for ring in region.rings()] for regions in found.regions]
+    rings = [[border for region in regions for border in region.borders()] for regions in found.regions]
     follower = [_followers(here, there, beads.spacing) for here, there in zip(rings, rings[1:])] + [{}]
     led: set[tuple[int, int]] = set()
     curves = []

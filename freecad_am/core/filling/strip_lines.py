@@ -15,7 +15,7 @@ from ..geometry.regions.region import Region, regions
 from ..geometry.regions.several import grown
 from ..geometry.regions.strip import Strip
 from ..types import Array
-from .curve import Beads, PlaneCurve, borders, long_enough
+from .curve import Beads, PlaneCurve, contours_of, long_enough
 from .lines import levels_between
 from .strip_closing import strip_closing
 from .strips import round_count, single
@@ -37,22 +37,22 @@ def _frame(strip: Strip, beads: Beads, walls: int) -> _Frame:
     inner = strip.grown(-beads.inset, error)
     if not walls or not inner:
         return _Frame([], inner, beads.inset)
-    curves, done = borders(inner, beads, 0), 1
+    curves, done = contours_of(inner, beads, 0), 1
     while done < walls and (further := grown(inner, -2.0 * half, error)):
-        curves, inner, done = curves + borders(further, beads, done), further, done + 1
+        curves, inner, done = curves + contours_of(further, beads, done), further, done + 1
     return _Frame(curves, grown(inner, -half, error), beads.inset + 2.0 * half * done)
 
 
 def lines_round(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0) -> list[PlaneCurve]:
     """Lines round the hub, half a bead inside the borders' farthest places and at the spacing between, see `lines`.
     Closed where nothing interrupts them. density: below 1, lines are as much farther apart."""
-    place = _frame(strip, beads, walls)
-    if not place.ends and not place.curves:
+    framed = _frame(strip, beads, walls)
+    if not framed.ends and not framed.curves:
         return single(strip, beads)
     low, high = strip.levels
-    turn, within = strip.period.around, _Inside(strip, place.ends)
-    curves = list(place.curves)
-    for row, level in enumerate(_levels(low + place.inset, high - place.inset, beads, density)):
+    turn, within = strip.period.around, _Inside(strip, framed.ends)
+    curves = list(framed.curves)
+    for row, level in enumerate(_levels(low + framed.inset, high - framed.inset, beads, density)):
         count = round_count(strip, level, beads)
         u = -0.5 * turn + turn / count * np.arange(count + 1)
         inside = within.contains(np.stack([u, np.full(len(u), level)], axis=1))
@@ -70,10 +70,10 @@ def lines_round(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0
 def lines_along(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0) -> list[PlaneCurve]:
     """Lines along generatrices, evenly round the hub, no farther apart than the spacing; on a cone that is where they are
     farthest from the apex, and they come nearer to each other towards it. Every other one runs the other way."""
-    place = _frame(strip, beads, walls)
-    if not place.ends and not place.curves:
+    framed = _frame(strip, beads, walls)
+    if not framed.ends and not framed.curves:
         return single(strip, beads)
-    turn, interior = strip.period.around, _Inside(strip, place.ends)
+    turn, interior = strip.period.around, _Inside(strip, framed.ends)
     apart = beads.spacing / density
     count = max(1, math.ceil(turn * _stretch(strip) / apart - 0.01 * turn / apart))
     low, high = strip.levels
@@ -86,7 +86,7 @@ def lines_along(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0
         interior.border(u[line], v[within], v[np.clip(beyond, 0, len(v) - 1)])
         for within, beyond in ((first, first - 1), (past - 1, past))
     )
-    curves = list(place.curves)
+    curves = list(framed.curves)
     for number, *levels in zip(line.tolist(), bottom, top):
         ends = strip.period.unroll(np.stack([np.full(2, u[number]), levels], axis=1))
         curves.append(PlaneCurve(ends[::-1] if number % 2 else ends, False, "line", walls))
@@ -110,7 +110,7 @@ class _Inside:
         reach = 0.75 * turn
         self.unrolled = [piece for part in parts if isinstance(part, Strip) for piece in part.between(-reach, reach)]
         for part in (part for part in parts if isinstance(part, Region)):
-            covers = [strip.period.followed(dense(ring, 0.001 * turn), part.sheet) for ring in part.rings()]
+            covers = [strip.period.followed(dense(border, 0.001 * turn), part.sheet) for border in part.borders()]
             for hole in covers[1:] if math.isfinite(strip.period.whole) else ():
                 away = 0.5 * (covers[0][:, 0].min() + covers[0][:, 0].max()) - hole[0, 0]
                 hole[:, 0] += strip.period.whole * np.round(away / strip.period.whole)

@@ -16,7 +16,7 @@ from ..geometry.regions.several import grown
 from ..geometry.regions.strip import Strip
 from ..issues import InfeasibleError
 from .centre import FINE, centre_beads
-from .curve import Beads, PlaneCurve, begun, borders, long_enough
+from .curve import Beads, PlaneCurve, begun, contours_of, long_enough
 from .strip_closing import strip_closing
 
 AFRESH = 4  # contours made from the same borders; farther in, windows would get too narrow and errors are small yet
@@ -32,7 +32,7 @@ def strip_contours(strip: Strip, beads: Beads) -> list[PlaneCurve]:
     start: tuple[Strip | Region, ...] = (strip,)
     k = first = 0
     while inner:
-        curves += borders(inner, beads, k)
+        curves += contours_of(inner, beads, k)
         if k - first == AFRESH:
             start, first = grown(inner, -half, error), k + 1
         k += 1

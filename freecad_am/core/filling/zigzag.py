@@ -29,7 +29,7 @@ def in_rows(
             PlaneCurve(line[::-1] if row % 2 else line, False, "line", ring)
             for row, lines in enumerate(rows) for line in lines if length(line, False) >= beads.shortest
         ]
-    borders = [border for region in ends for border in region.rings()]
+    borders = [border for region in ends for border in region.borders()]
     least = max(FLOOR * beads.chord_error, 1e-6 * beads.spacing)
     levels = [[line for line in lines if length(line, False) > least] for lines in rows]
     open_ = [list(range(len(level))) for level in levels]

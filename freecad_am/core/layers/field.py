@@ -31,7 +31,7 @@ class Piece(NamedTuple):
     slices: Iterator[Slice]
 
 
-def pieces(group: Group, ground: Sequence[Body], strategy: FilledParameters) -> list[Piece]:
+def pieces(group: Group, substrate: Sequence[Body], strategy: FilledParameters) -> list[Piece]:
     """All solids of a group: on a cylinder or cone each by itself, on a plane those that are fused as one."""
     surface = group.base.surface
     if isinstance(surface, Developable):
@@ -39,7 +39,7 @@ def pieces(group: Group, ground: Sequence[Body], strategy: FilledParameters) -> 
         return [Piece(body.name, rotary.slices(group.base, body, strategy)) for body in group.bodies]
     assert isinstance(strategy, SolidParameters)
     if strategy.layers in ("geodesic", "offset"):
-        return [Piece(group.bodies[0].name, curved.slices(group, ground, strategy))]
+        return [Piece(group.bodies[0].name, curved.slices(group, substrate, strategy))]
     lots = [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
     made: list[Piece] = []
     for lot in lots:

@@ -55,14 +55,14 @@ def regions_of(
     """The regions of a layer from loops (n, 2) and how far (mm) each lot of them grows, without slits thinner than the chord
     error; and what was mended."""
     issues: tuple[Issue, ...] = ()
-    rings: list[Array] = []
+    borders: list[Array] = []
     whole: tuple[Region, ...] = ()
     for distance, loops in lots:
         read = mended(loops)
         issues += read.issues(number)
         whole = grown(read.regions, distance, ARCS * chord_error)
-        rings += [ring for region in whole for ring in region.rings()]
+        borders += [border for region in whole for border in region.borders()]
     if margin > 0.0:
-        whole = regions(rings)
+        whole = regions(borders)
     whole = joined(whole, chord_error)
     return tuple(region.simple(BORDER * chord_error) for region in whole), issues

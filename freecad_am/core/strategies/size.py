@@ -16,7 +16,6 @@ from scipy.spatial import cKDTree
 from ..geometry.curves.profile import RevolvedWall
 from ..geometry.formatting import at_least, count
 from ..geometry.mesh.facets import doubled_areas
-from ..geometry.obstacles import Body
 from ..geometry.on_hub import SolidsOnHub
 from ..issues import NOTE, InputError, Issue, Text, Word
 from ..parameters.filled import CladdingParameters, FilledParameters
@@ -115,11 +114,11 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
     for group in solids.groups:
         deep = []
         for body in group.bodies:
-            apart = group.base.surface.distance(group.base.inside(body.vertices))
-            away, within = max(0.0, float(apart.max())), max(0.0, -float(apart.min()))
+            distance = group.base.surface.distance(group.base.inside(body.vertices))
+            away, within = max(0.0, float(distance.max())), max(0.0, -float(distance.min()))
             deep.append((away + strategy.margin) / strategy.layer_height)
             grown = float(np.prod(1.0 + 2.0 * strategy.margin / np.ptp(body.vertices, axis=0)))
-            length = _volume(body) * grown * away / max(away + within, 1e-9) / strategy.layer_height / spacing
+            length = body.volume() * grown * away / max(away + within, 1e-9) / strategy.layer_height / spacing
             # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
             extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
             around = 0.5 / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(away, extent))
@@ -250,9 +249,3 @@ def _chords(points: Array, closed: bool, chord_error: float) -> tuple[float, flo
     cosine = np.einsum("ij,ij->i", chord[:-1], chord[1:]) / (length[:-1] * length[1:])
     turn = np.arccos(np.clip(cosine, -1.0, 1.0))
     return float(np.sqrt(turn * 0.5 * (length[:-1] + length[1:]) / (8.0 * chord_error)).sum()), float(length.sum())
-
-
-def _volume(body: Body) -> float:
-    """mm3."""
-    a, b, c = (body.vertices[body.triangles[:, k]] - body.vertices[0] for k in range(3))
-    return abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6.0

@@ -27,7 +27,7 @@ STEP = 0.1
 
 
 def adapted(region, pattern, least, most):
-    beads, share = fitted(region.width, BEADS, least, most)
+    beads, share = fitted(region, BEADS, least, most)
     return shared(region, fill(region, beads, pattern), beads, share, least, most), share
 
 

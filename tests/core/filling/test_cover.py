@@ -176,7 +176,7 @@ def test_slits_are_closed_and_wedges_beside_them_told():
 
     for slit in (0.0, 1e-6, 0.02):
         whole, = joined(regions(halves(slit)), 0.05)
-        assert len(whole.rings()) == 1 and whole.area == pytest.approx(1600.0, abs=0.3 + 20.0 * slit)
+        assert len(whole.borders()) == 1 and whole.area == pytest.approx(1600.0, abs=0.3 + 20.0 * slit)
     apart = regions(halves(0.5))
     assert joined(apart, 0.05) == apart and len(apart) == 2
     curves = [curve for region in apart for curve in fill(region, BEADS)]

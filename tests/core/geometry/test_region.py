@@ -29,18 +29,18 @@ def test_islands_in_holes_are_regions_of_their_own(scale):
     island = 0.3 * (SQUARE - 5.0) + 5.0
     outer, inner = regions([island * scale, HOLE * scale, SQUARE * scale])
     assert [outer.area / scale**2, inner.area / scale**2] == pytest.approx([64.0, 9.0])
-    assert [len(outer.rings()), len(inner.rings())] == [2, 1]
+    assert [len(outer.borders()), len(inner.borders())] == [2, 1]
     assert outer.width / scale == pytest.approx(2.343, rel=0.006) and inner.width / scale == pytest.approx(3.0, rel=0.006)
     assert outer.contains(scale * np.array([[1.0, 1.0], [5.0, 5.0], [11.0, 5.0]])).tolist() == [True, False, False]
 
 
 def test_order_and_starts_do_not_depend_on_how_loops_come():
     loops = [SQUARE, HOLE, SQUARE + [20.0, 0.0], HOLE + [20.0, 0.0]]
-    known = [ring for one in regions(loops) for ring in one.rings()]
+    known = [ring for one in regions(loops) for ring in one.borders()]
     rng = np.random.default_rng(0)
     for _ in range(10):
         mixed = [np.roll(loops[k], rng.integers(4), axis=0) for k in rng.permutation(4)]
-        again = [ring for one in regions(mixed) for ring in one.rings()]
+        again = [ring for one in regions(mixed) for ring in one.borders()]
         assert all(np.array_equal(a, b) for a, b in zip(known, again, strict=True))
     assert known[0][0].tolist() == [0.0, 0.0]
 
@@ -68,7 +68,7 @@ def test_parallel_curves_are_at_the_distance(distance):
     loops = [round_ * (60 + 9 * np.sin(5 * a))[:, None], (round_ * 8 + [20, 5])[::-1]]
     whole, = regions(loops)
     for part in whole.grown(distance, 0.01):
-        for ring in part.rings():
+        for ring in part.borders():
             middles = 0.5 * (ring + np.roll(ring, -1, axis=0))
             assert np.abs(away(loops, ring) - abs(distance)).max() < 1e-3
             off = away(loops, middles) - abs(distance)
@@ -97,11 +97,11 @@ def test_pieces_without_room_for_a_circle_are_left_out_and_no_others():
     rng = np.random.default_rng(3)
     square = regions([40.0 * SQUARE])[0]
     discs = regions([SQUARE])[0].grown(1.0, 0.05)
-    bites = [one for place in rng.uniform(0.0, 390.0, (900, 2)) for one in regions([discs[0].rings()[0] * 1.2 + place])]
+    bites = [one for place in rng.uniform(0.0, 390.0, (900, 2)) for one in regions([discs[0].borders()[0] * 1.2 + place])]
     whole = square.without(bites)
     for wide in (0.5, 2.0, 6.0):
         for error in (0.5, 0.001):
-            room = [one.rings()[0] for one in whole if one.grown(-0.5 * wide, error)]
-            found = [one.rings()[0] for one in square.without(bites, wide) if one.grown(-0.5 * wide, error)]
+            room = [one.borders()[0] for one in whole if one.grown(-0.5 * wide, error)]
+            found = [one.borders()[0] for one in square.without(bites, wide) if one.grown(-0.5 * wide, error)]
             assert all(np.array_equal(a, b) for a, b in zip(room, found, strict=True))
         assert len(room) < len(square.without(bites, wide)) < len(whole)

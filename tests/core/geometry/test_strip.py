@@ -55,7 +55,7 @@ def test_contours_run_on_over_the_cut(name):
     assert isinstance(strip, Strip)
     curves = [curve for curve in fill(strip, BEADS) if curve.kind == "contour"]
     assert {curve.turns for curve in curves} == {1} and len(curves) == 6
-    edges = [in_space(hub, strip, flat, turns) for flat, turns in strip.rings()]
+    edges = [in_space(hub, strip, flat, turns) for flat, turns in strip.borders()]
     for curve in curves:
         points = in_space(hub, strip, curve.points, curve.turns)
         assert np.linalg.norm(np.diff(points, axis=0, append=points[:1]), axis=1).max() < 0.04, "closed, no jump at the cut"

@@ -35,7 +35,7 @@ def layers(through_tee):
         for piece in through_tee.pieces((number + 0.5) * HEIGHT):
             for region in piece.regions:
                 area += region.area
-                ring = region.rings()[0]
+                ring = region.borders()[0]
                 axes = [np.arange(low + 0.15, high, 0.3) for low, high in zip(ring.min(axis=0), ring.max(axis=0))]
                 flat = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
                 places.append(piece.chart.wrap(flat[region.contains(flat)]))

@@ -46,7 +46,7 @@ def spine(region: Region, least: float, step: float) -> tuple[Array, bool]:
         links = axis.links[(axis.spread >= spread) & (axis.clearance[axis.links] >= least).all(axis=1)]
         if not len(links):
             continue
-        ring = _cycle(axis.points, links) if len(region.rings()) > 1 else None
+        ring = _cycle(axis.points, links) if len(region.borders()) > 1 else None
         if ring is not None:
             return axis.points[ring], True
         path = _longest(axis.points, links)
@@ -58,7 +58,7 @@ def spine(region: Region, least: float, step: float) -> tuple[Array, bool]:
 
 def _axis(region: Region, least: float, step: float) -> _Axis:
     """The axis inside of a region where it is wider than 2 `least` mm, without what runs into corners."""
-    places, follows = _places(region.rings(), step)
+    places, follows = _places(region.borders(), step)
     middle, size = places.mean(axis=0), max(region.extent, 1e-300)
     scaled = (places - middle) / size
     moved = scaled + MOVED * np.random.default_rng(0).uniform(-1.0, 1.0, scaled.shape)
@@ -79,7 +79,7 @@ def _axis(region: Region, least: float, step: float) -> _Axis:
     ends, away, spread = ends[use], away[use], spread[use]
     members = np.unique(ends)
     inside = np.zeros(len(corners), dtype=bool)
-    inside[members] = winding(region.rings(), corners[members]) > 0
+    inside[members] = winding(region.borders(), corners[members]) > 0
     use = inside[ends].all(axis=1)
     ends = ends[use]
     clearance = np.zeros(len(corners))

@@ -59,15 +59,15 @@ class Region:
     sheet: float = 0.0  # u (`strip.Period`), mm, of its middle, where it goes round more than half a turn of the plane
 
     @cached_property
-    def _rings(self) -> tuple[Array, ...]:
+    def _borders(self) -> tuple[Array, ...]:
         outer = _ring(self.shape.exterior, 1.0)
         holes = [_ring(hole, -1.0) for hole in self.shape.interiors]
         return (outer, *sorted(holes, key=lambda ring: (ring[0, 0], ring[0, 1])))
 
-    def rings(self) -> tuple[Array, ...]:
+    def borders(self) -> tuple[Array, ...]:
         """Its borders (n, 2), material to the left, the outer one first; each begins at its leftmost point, not repeated at
         its end, and the holes are in the order of these points."""
-        return self._rings
+        return self._borders
 
     @property
     def area(self) -> float:
@@ -77,20 +77,20 @@ class Region:
     @cached_property
     def extent(self) -> float:
         """Diagonal of the box about it, mm."""
-        return float(np.hypot(*np.ptp(self._rings[0], axis=0)))
+        return float(np.hypot(*np.ptp(self._borders[0], axis=0)))
 
     def contains(self, points: Array) -> Mask:
         """Whether points (..., 2) lie inside; on the border either may be said."""
-        return np.reshape(winding(self._rings, np.reshape(points, (-1, 2))) > 0, np.shape(points)[:-1])
+        return np.reshape(winding(self._borders, np.reshape(points, (-1, 2))) > 0, np.shape(points)[:-1])
 
     @cached_property
     def _boxes(self) -> tuple[Array, Array]:
         """Lowest and highest coordinates (n, 2) of the borders."""
-        return np.array([ring.min(axis=0) for ring in self._rings]), np.array([ring.max(axis=0) for ring in self._rings])
+        return np.array([each.min(axis=0) for each in self._borders]), np.array([each.max(axis=0) for each in self._borders])
 
     def nearest(self, points: Array) -> tuple[Array, Array]:
         """The places (n, 2) on the border nearest to points (n, 2), and how far they are (n,), mm."""
-        return nearest_of(self._rings, self._boxes, points)
+        return nearest_of(self._borders, self._boxes, points)
 
     @cached_property
     def width(self) -> float:
@@ -289,7 +289,7 @@ def _parts(shape: Any, least_area: float, sheet: float = 0.0) -> tuple[Region, .
     found = [Region(part, sheet) for part in _polygons(shape) if part.area > least_area]
     if len(found) < 2:
         return tuple(found)
-    return tuple(sorted(found, key=lambda region: (region.rings()[0][0, 0], region.rings()[0][0, 1])))
+    return tuple(sorted(found, key=lambda region: (region.borders()[0][0, 0], region.borders()[0][0, 1])))
 
 
 def _polygons(shape: Any) -> list[Any]:

@@ -41,4 +41,4 @@ def wider(regions: Sequence[Region], width: float, chord_error: float) -> list[R
 
 def longer(regions: Sequence[Region], least: float) -> tuple[Region, ...]:
     """Those of regions whose outer border is at least so long, mm."""
-    return tuple(region for region in regions if length(region.rings()[0], True) >= least)
+    return tuple(region for region in regions if length(region.borders()[0], True) >= least)

@@ -107,7 +107,7 @@ class Strip:
     upper: Array
     holes: tuple[Array, ...] = ()
 
-    def rings(self) -> tuple[tuple[Array, int], ...]:
+    def borders(self) -> tuple[tuple[Array, int], ...]:
         """The borders (n, 2) laid flat and how often each goes round: 1, -1 and 0 for holes."""
         found = [(self.lower, 1), (self.upper, -1), *((hole, 0) for hole in self.holes)]
         return tuple((self.period.unroll(points), turns) for points, turns in found)
@@ -128,7 +128,7 @@ class Strip:
         for about, low, high, margin in windows:
             found: list[Array] = []
             for part in (part for region in self.flat(low - margin, high + margin, about) for part in operation(region)):
-                cover = [self._cut(ring, about, (low - about, high - about)) for ring in part.rings()]
+                cover = [self._cut(ring, about, (low - about, high - about)) for ring in part.borders()]
                 found += [ring for inner in regions(cover) for ring in _boxed(inner, low, high)]
             pieces.append(found)
         return parts(*chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])), self.period)
@@ -149,7 +149,7 @@ class Strip:
         """The strip from u = low to u = high as regions of the plane, laid flat about a u."""
         return [
             part for region in self.between(low, high)
-            for part in regions([self.period.unroll(ring, about) for ring in region.rings()])
+            for part in regions([self.period.unroll(ring, about) for ring in region.borders()])
         ]
 
     def _repeated(self, border: Array, low: float, high: float) -> Array:
@@ -287,6 +287,6 @@ def _box(low: float, high: float, bottom: float, top: float) -> Array:
 
 def _boxed(region: Region, low: float, high: float) -> list[Array]:
     """The rings of what of a region lies between two generatrices."""
-    v = region.rings()[0][:, 1]
+    v = region.borders()[0][:, 1]
     box = regions([_box(low, high, float(v.min()), float(v.max()))])
-    return [ring for part in region.common(box) for ring in part.rings()]
+    return [ring for part in region.common(box) for ring in part.borders()]

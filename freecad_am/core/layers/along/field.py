@@ -74,10 +74,10 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
     made: list[Slice] = []
     for number, regions, issues in sections(cuts, strategy):
         surface = between(guide, number * height, (number + 1) * height, strategy.share_of_cut)
-        rings = [ring for region in regions for ring in region.rings()]
+        borders = [border for region in regions for border in region.borders()]
         if guide.way[0] <= heights[number] <= guide.way[-1]:  # beyond its ends, slanted ends of a part may be beside it
-            _refuse_outside(rings, surface, base, number)
-        made.append(Slice(number, base, surface, regions, issues, heights=_heights(rings, surface)))
+            _refuse_outside(borders, surface, base, number)
+        made.append(Slice(number, base, surface, regions, issues, heights=_heights(borders, surface)))
     _refuse_uneven(made, strategy)
     return made
 
@@ -120,24 +120,24 @@ def _refuse_tight(
     worst = int(bent.argmax())
     if bent[worst] <= TIGHTEST and not leaps.any():
         return
-    spot = points[worst] if bent[worst] > TIGHTEST else points[side[np.argmax(leaps), 0]]
-    foot = guide.at(guide.distance(spot[None]))[0][0]
+    point = points[worst] if bent[worst] > TIGHTEST else points[side[np.argmax(leaps), 0]]
+    foot = guide.at(guide.distance(point[None]))[0][0]
     raise InputError(
         "GUIDE_TIGHT", name, "the guide bends more tightly at {} than the part is wide there: planes normal to it cross one "
         "another within the part, at {}; choose a guide nearer to the inside of the bend or with a larger radius, or "
-        "strategy.layers: geodesic", base.where(foot), base.where(spot),
+        "strategy.layers: geodesic", base.where(foot), base.where(point),
     )
 
 
-def _heights(rings: Sequence[Array], surface: AlongLayer) -> tuple[float, float, float]:
+def _heights(borders: Sequence[Array], surface: AlongLayer) -> tuple[float, float, float]:
     """The least, the mean and the largest height of a layer by the borders (n, 2) of its regions, mm."""
-    high = np.concatenate([surface.heights(ring) for ring in rings])
+    high = np.concatenate([surface.heights(border) for border in borders])
     area, moment = 0.0, np.zeros(2)
-    for ring in rings:
-        following = np.roll(ring, -1, axis=0)
-        cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
+    for border in borders:
+        following = np.roll(border, -1, axis=0)
+        cross = border[:, 0] * following[:, 1] - border[:, 1] * following[:, 0]
         area += 0.5 * float(cross.sum())
-        moment += (cross[:, None] * (ring + following)).sum(axis=0) / 6.0
+        moment += (cross[:, None] * (border + following)).sum(axis=0) / 6.0
     mean = float(surface.heights((moment / area)[None])[0]) if abs(area) > 0.0 else float(high.mean())
     return float(high.min()), mean, float(high.max())
 
@@ -150,26 +150,26 @@ def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
         return
     worst = max(uneven, key=lambda one: max(height - one.heights[0], one.heights[2] - height) if one.heights else 0.0)
     assert isinstance(worst.surface, AlongLayer) and worst.heights
-    rings = np.vstack([ring for region in worst.regions for ring in region.rings()])  # type: ignore[misc]
-    off = worst.surface.heights(rings) - height
-    spot = rings[int(np.abs(off).argmax())]
+    points = np.vstack([border for region in worst.regions for border in region.borders()])  # type: ignore[misc]
+    off = worst.surface.heights(points) - height
+    point = points[int(np.abs(off).argmax())]
     need = float(np.abs(off).max()) / height
     message = Text(
         "{} of {} layers are not as high everywhere as asked for: layer {} is {:.3g} to {:.3g} mm high, farthest off the "
         "{:g} mm at {}; strategy.band allows {:.3g} %, and {:.3g} % would be needed: raise it, or choose a guide in the "
         "middle of the part or one that bends less", len(uneven), len(made), worst.number, worst.heights[0],
-        worst.heights[2], height, worst.where(spot), 100.0 * strategy.band, 100.0 * need
+        worst.heights[2], height, worst.where(point), 100.0 * strategy.band, 100.0 * need
     )
     raise InfeasibleError(
         HEIGHT, f"{worst.base.name} layer {worst.number}", message, issues=(Issue(ERROR, HEIGHT, message, worst.number),)
     )
 
 
-def _refuse_outside(rings: Sequence[Array], surface: AlongLayer, base: Base, number: int) -> None:
+def _refuse_outside(borders: Sequence[Array], surface: AlongLayer, base: Base, number: int) -> None:
     """InputError GUIDE_OUTSIDE where the guide goes through a plane outside of what encloses the section there."""
     from scipy.spatial import ConvexHull
 
-    points = np.vstack(rings)
+    points = np.vstack(borders)
     hull = ConvexHull(points)
     away = float(hull.equations[:, 2].max())
     if away > BEYOND * float(np.ptp(points, axis=0).max()):

@@ -27,15 +27,15 @@ FACETS = 1.5  # chord errors between triangles of a face, however made
 REPORTED_DISTORTION = 0.05  # distortion of a piece that is told
 
 
-def slices(group: Group, ground: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
-    """The layers of a group of solids outwards from the plane of its base and the `ground` that they touch, or from the
+def slices(group: Group, substrate: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+    """The layers of a group of solids outwards from the plane of its base and the `substrate` that they touch, or from the
     start faces; several of one number where a layer is in pieces. InputError TOO_FINE, NOT_STANDING, NOT_CONNECTED."""
     _refuse(strategy)
     base, bodies = group.base, group.bodies
     start = None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
     solids = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
-    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in ground], name, start, strategy)
+    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in substrate], name, start, strategy)
     worst = 0.0
     height, cut = strategy.layer_height, max(strategy.share_of_cut, 1e-3)
     layers = int(np.ceil(found.top / height - cut + 1e-6))
@@ -66,15 +66,15 @@ def _refuse(strategy: SolidParameters) -> None:
 
 
 def _field(
-    solids: Sequence[SolidMesh], ground: Sequence[Array], name: str, chosen: Array | None, strategy: SolidParameters
+    solids: Sequence[SolidMesh], substrate: Sequence[Array], name: str, chosen: Array | None, strategy: SolidParameters
 ) -> GeodesicField:
     step = _step(sum(one.volume for one in solids), name, strategy)
     near = STANDING * strategy.layer_height
     if chosen is None:
-        below = [triangles for triangles in ground if triangles[:, :, 2].min() < -near]
+        below = [triangles for triangles in substrate if triangles[:, :, 2].min() < -near]
         # what is carried by something that reaches below it has its lowest place in the air, not on the platform
         held = any(len(_standing(one, below, near, plane=False)) for one in solids)
-        start = np.concatenate([_standing(one, ground, near, plane=not held) for one in solids])
+        start = np.concatenate([_standing(one, substrate, near, plane=not held) for one in solids])
     else:
         near = max(near, FACETS * strategy.chord_error)
         start = np.concatenate([_standing(one, [chosen], near, plane=False) for one in solids])
@@ -112,12 +112,12 @@ def _step(volume: float, name: str, strategy: SolidParameters) -> float:
     return step
 
 
-def _standing(solid: SolidMesh, ground: Sequence[Array], near: float, plane: bool = True) -> Array:
-    """The triangles (k, 3, 3) of a solid that lie on the plane z = 0 facing down, or on triangles of the ground, to `near`
-    mm."""
+def _standing(solid: SolidMesh, substrate: Sequence[Array], near: float, plane: bool = True) -> Array:
+    """The triangles (k, 3, 3) of a solid that lie on the plane z = 0 facing down, or on triangles of the substrate, to
+    `near` mm."""
     corners = solid.vertices[solid.triangles]
     chosen = plane & (np.abs(corners[:, :, 2]) < near).all(axis=1) & (solid.units[:, 2] < -0.5)
-    for triangles in ground:
+    for triangles in substrate:
         low, high = triangles.min(axis=(0, 1)) - near, triangles.max(axis=(0, 1)) + near
         asked = np.flatnonzero(((corners > low) & (corners < high)).all(axis=(1, 2)))
         if len(asked):

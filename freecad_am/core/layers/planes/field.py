@@ -36,21 +36,21 @@ def count(top: float, strategy: SolidParameters) -> int:
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     """The layers of bodies upwards, on the planes 0, h, 2 h ... mm above that of the base; those without any region are left
     out. InputError TOO_LOW where no layer reaches into them."""
-    local = [base.inside(body.vertices) for body in bodies]
-    top = max(float(points[:, 2].max()) for points in local)
+    vertices = [base.inside(body.vertices) for body in bodies]
+    top = max(float(points[:, 2].max()) for points in vertices)
     layers = count(top, strategy)
     if not layers:
-        highest = np.vstack(local)
+        points = np.vstack(vertices)
         raise InputError(
             "TOO_LOW", "strategy.layer_height", "{:g} mm is too much for {}, {:.4g} mm high along strategy.direction (the "
             "highest place is at {}): no layer is cut in its {}; give at most {:.3g} mm", strategy.layer_height,
-            ", ".join(body.name for body in bodies), top, base.where(highest[highest[:, 2].argmax()]), strategy.cut_at,
+            ", ".join(body.name for body in bodies), top, base.where(points[points[:, 2].argmax()]), strategy.cut_at,
             0.99 * top / max(strategy.share_of_cut, 0.001),
         )
     heights: Array = strategy.layer_height * (np.arange(layers, dtype=np.float64) + strategy.share_of_cut)
     cuts = [
         PlaneCuts(points, body.triangles).loops(off_faces(points, body.triangles, heights, strategy))
-        for points, body in zip(local, bodies, strict=True)
+        for points, body in zip(vertices, bodies, strict=True)
     ]
     for number, regions, issues in sections(cuts, strategy):
         yield Slice(number, base, PlaneLayer(number * strategy.layer_height), regions, issues)

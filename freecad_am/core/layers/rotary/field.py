@@ -51,31 +51,31 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
             covered = () if thick > min(number, layers - 1 - number) else None
             layer = Slice(number, base, RoundLayer(there), _all_round(lots, there, strategy), (), azimuth, covered)
         else:
-            adjacent = _adjacent(surface, below, ahead, height, thick)
-            flat = opened(there, [loop for _, some in [*lots, *adjacent] for loop in some], azimuth, where)
-            loops_flat = iter(flat.loops)
-            lots_flat = [(distance, [next(loops_flat) for _ in some]) for distance, some in lots]
+            neighbours = _neighbours(surface, below, ahead, height, thick)
+            loops = [loop for some in (*(some for _, some in lots), *neighbours) for loop in some]
+            flat = opened(there, loops, azimuth, where)
+            next_loop = iter(flat.loops)
+            lots_flat = [(distance, [next(next_loop) for _ in some]) for distance, some in lots]
             found, issues = regions_of(lots_flat, strategy.margin, error, number)
             layer = Slice(number, base, RoundLayer(there, flat.middle), found, issues, azimuth)
             if thick:
-                neighbours = [regions([next(loops_flat) for _ in some]) for _, some in adjacent]
-                layer = layer._replace(covered=under_and_over(
-                    [grown(some, strategy.margin, ARCS * error) for some in neighbours]
-                ))
+                layer = layer._replace(covered=under_and_over([
+                    grown(regions([next(next_loop) for _ in some]), strategy.margin, ARCS * error) for some in neighbours
+                ]))
         if layer.regions:
             yield layer
 
 
-def _adjacent(
+def _neighbours(
     surface: Developable, below: Sequence[list[Loop]], ahead: Sequence[list[Loop]], height: float, thick: int
-) -> list[tuple[int, list[Loop]]]:
-    """The loops of so many layers under and over the last one below, moved to it, each lot with its number from there: none
-    of those that are not there, or that go round the hub."""
+) -> list[list[Loop]]:
+    """The loops of so many layers under and over the last one below, moved to it: none of those that are not there, or that
+    go round the hub."""
     here = len(below) - 1
     found = []
     for k in (k for step in range(1, thick + 1) for k in (-step, step)):
         there = below[here + k] if -here <= k < 0 else ahead[k - 1] if 0 < k <= len(ahead) else []
-        found.append((k, [moved(surface, loop, -k * height) for loop in there if not loop.turns]))
+        found.append([moved(surface, loop, -k * height) for loop in there if not loop.turns])
     return found
 
 

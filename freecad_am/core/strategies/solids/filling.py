@@ -99,10 +99,10 @@ class Pictures:
             at_slits = open_at_slits(regions, curves, beads)
             gaps = gaps if at_slits is None else at_slits
         if gaps:
-            place, width = max(gaps, key=lambda gap: gap[1])
+            point, width = max(gaps, key=lambda gap: gap[1])
             issues.append(Issue(
                 WARNING, "OPEN_GAP", Text("beads leave {} gap(s) open, the widest of {:.3g} mm at {}; strategy.gap allows "
-                    "{:.3g} mm", len(gaps), width, layer.where(place), beads.gap), layer.number,
+                    "{:.3g} mm", len(gaps), width, layer.where(point), beads.gap), layer.number,
             ))
         issues += _standing_out(layer, curves, beads)
         if strategy.fill in INSTEAD and len(regions) < len(layer.regions):
@@ -134,7 +134,7 @@ class Pictures:
             return self._made(region, asked._replace(infill=Infill()) if layer.covered == () else asked, flat)
         known = self._known.setdefault(layer.surface.alike, [])
         for other, before, picture in known:
-            if _alike(before, asked) and _equal(other.rings(), region.rings()):
+            if _alike(before, asked) and _equal(other.borders(), region.borders()):
                 return picture
         picture = self._made(region, asked, flat)
         known.append((region, asked, picture))
@@ -146,14 +146,13 @@ class Pictures:
         strategy, (beads, angle, infill) = self._strategy, asked
         whole, (least, most) = infill.density == 1.0, strategy.spacing_range
         links = strategy.longest_link * beads.spacing
-        adapted = region if isinstance(region, Region) and whole and least != most else None
-        share, fitting = 1.0, beads
-        if adapted is not None and strategy.rounds_alone:
-            fitting, share = fitted(adapted.width, beads, least, most)
+        fitting, share = beads, 1.0
+        if isinstance(region, Region) and whole and strategy.rounds_alone:
+            fitting, share = fitted(region, beads, least, most)
         curves = fill(region, fitting, strategy.fill, angle, strategy.rounds, links, infill)
         gaps = open_places(region, curves, fitting) if whole else []
-        if adapted is not None:
-            curves = shared(adapted, curves, fitting, share, least, most)
+        if isinstance(region, Region) and whole:
+            curves = shared(region, curves, fitting, share, least, most)
         cover = covered(region, curves, beads, infill.density)
         if whole and flat and strategy.spacing_range == EVERY and strategy.narrowest < 1.0:
             twice = beads.spacing * math.fsum(_weighed(curve) for curve in curves) - cover.once
@@ -211,11 +210,11 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
     single = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]
     if not single:
         return []
-    rings = [ring for region in layer.regions if isinstance(region, Region) for ring in region.rings()]
-    rings += [ring for region in layer.regions if isinstance(region, Strip) for ring, _ in region.rings()]
+    borders = [border for region in layer.regions if isinstance(region, Region) for border in region.borders()]
+    borders += [border for region in layer.regions if isinstance(region, Strip) for border, _ in region.borders()]
     points = np.vstack([curve.points for curve in single])
     share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in single])
-    out = share * beads.inset - np.min([nearest(ring, points, closed=True).distance for ring in rings], axis=0)
+    out = share * beads.inset - np.min([nearest(border, points, closed=True).distance for border in borders], axis=0)
     worst = int(np.argmax(out))
     if (share < 1.0).any() and out[worst] < 0.02 * beads.inset:
         return []
@@ -235,16 +234,18 @@ def _alike(one: _Asked, other: _Asked) -> bool:
         return True
     if a.height != b.height or abs(a.angle - b.angle) > 1e-9 or (a.covered is None) != (b.covered is None):
         return False
-    rings, others = (tuple(ring for region in infill.covered or () for ring in region.rings()) for infill in (a, b))
-    return _equal(rings, others)
+    borders, others = (
+        tuple(border for region in infill.covered or () for border in region.borders()) for infill in (a, b)
+    )
+    return _equal(borders, others)
 
 
-def _equal(rings: Sequence[Array], others: Sequence[Array]) -> bool:
+def _equal(borders: Sequence[Array], others: Sequence[Array]) -> bool:
     """Whether borders (n, 2) are the same within TOLERANCE_MM, wherever they begin."""
-    if [len(ring) for ring in rings] != [len(ring) for ring in others]:
+    if [len(border) for border in borders] != [len(other) for other in others]:
         return False
-    for ring, other in zip(rings, others):
-        first = int(np.argmin(((other - ring[0]) ** 2).sum(axis=1)))
-        if np.abs(np.roll(other, -first, axis=0) - ring).max() > TOLERANCE_MM:
+    for border, other in zip(borders, others):
+        first = int(np.argmin(((other - border[0]) ** 2).sum(axis=1)))
+        if np.abs(np.roll(other, -first, axis=0) - border).max() > TOLERANCE_MM:
             return False
     return True

@@ -53,11 +53,11 @@ def _borders(layer: Slice) -> list[tuple[Array, bool]]:
     found = []
     for region in layer.regions:
         if isinstance(region, Region):
-            found += [(ring, True) for ring in region.rings()]
+            found += [(border, True) for border in region.borders()]
             continue
-        for ring, turns in region.rings():
-            rings = [region.period.moved(ring, k) for k in (-1, 0, 1)]
-            found += [(ring, True) for ring in rings] if not turns else [(np.vstack(rings[::turns]), False)]
+        for border, turns in region.borders():
+            moved = [region.period.moved(border, k) for k in (-1, 0, 1)]
+            found += [(border, True) for border in moved] if not turns else [(np.vstack(moved[::turns]), False)]
     return found
 
 

@@ -65,10 +65,9 @@ def plan(
             with naming(piece.name, layer.number):
                 filled = pictures.filled(layer)
             mended += filled.issues
-            share = 1.0
             if layer.heights is not None:
-                share = layer.heights[1] / strategy.layer_height
                 heights.setdefault(layer.number, []).extend(layer.heights[::2])
+            share = 1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
             covers.append(Cover(*(share * area for area in filled.cover)))
             here = [bead_of(curve, layer, strategy, build, process, model) for curve in filled.curves]
             made += here
@@ -87,8 +86,7 @@ def plan(
             "NOTHING_TO_DEPOSIT", solids.label, "no bead of {:g} mm or more finds room in any layer; use a smaller bead "
             "spacing, or thin = single", strategy.least_bead,
         )
-    course = ordered(ranked, strategy.order)
-    layers = waited(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
+    layers = waited(ordered(ranked, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
     issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
     return Toolpath(
         layers, solids.frame, strategy.layer_height, strategy.chord_error, issues, process.overlap,
