@@ -26,7 +26,6 @@ LONG_FUNCTIONS = {
     "core/process/deposit/support.py _alone": 49,
     "core/simulation/rapid_look.py looked_at": 45,
     "core/strategies/cladding.py plan": 47,
-    "core/strategies/solids/filling.py filled": 47,
     "core/strategies/solids/lean.py _spread": 46,
     "core/strategies/solids/plan.py plan": 63,
     "gui/redundancy_map/controls.py __init__": 50,

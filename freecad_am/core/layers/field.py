@@ -24,24 +24,24 @@ from .rotary import field as rotary
 from .surface import Slice
 
 
-class Piece(NamedTuple):
+class Stack(NamedTuple):
     """Solids that are filled as one: what messages call them, and their layers."""
 
     name: str
     slices: Iterator[Slice]
 
 
-def pieces(group: Group, substrate: Sequence[Body], strategy: FilledParameters) -> list[Piece]:
+def stacks(group: Group, substrate: Sequence[Body], strategy: FilledParameters) -> list[Stack]:
     """All solids of a group: on a cylinder or cone each by itself, on a plane those that are fused as one."""
     surface = group.base.surface
     if isinstance(surface, Developable):
         assert isinstance(strategy, DevelopableParameters)
-        return [Piece(body.name, rotary.slices(group.base, body, strategy)) for body in group.bodies]
+        return [Stack(body.name, rotary.slices(group.base, body, strategy)) for body in group.bodies]
     assert isinstance(strategy, SolidParameters)
     if strategy.layers in ("geodesic", "offset"):
-        return [Piece(group.bodies[0].name, curved.slices(group, substrate, strategy))]
+        return [Stack(group.bodies[0].name, curved.slices(group, substrate, strategy))]
     lots = [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
-    made: list[Piece] = []
+    found: list[Stack] = []
     for lot in lots:
         layers: Iterable[Slice]
         if isinstance(surface, Guide):
@@ -50,8 +50,8 @@ def pieces(group: Group, substrate: Sequence[Body], strategy: FilledParameters) 
             layers = planes.slices(group.base, lot, strategy)
         layers = with_overhangs(layers, strategy)
         name = lot[0].name if len(lot) == 1 else f"{len(lot)} solids"
-        made.append(Piece(name, with_covered(layers, strategy.thick)))
-    return made
+        found.append(Stack(name, with_covered(layers, strategy.thick)))
+    return found
 
 
 def footprints(group: Group, chord_error: float) -> list[list[Array]]:

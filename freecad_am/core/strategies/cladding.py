@@ -17,7 +17,7 @@ from ..process.order import RankedBead, ordered, waited
 from ..toolpath import Toolpath
 from ..types import Array
 from .progress import Progress, silent
-from .solids.beads import Wrapped, bead_of
+from .solids.beads import MadeBead, bead_of
 from .solids.filling import Pictures, bead_width, naming, spaced
 from .solids.islands import island_by_island
 from .solids.lean_notes import lean_notes
@@ -41,7 +41,7 @@ def plan(
     pictures = Pictures(strategy, process, nominal)
     found = [(sheet, piece) for sheet in given.sheets for piece in pieces(sheet, strategy)]
     ranked: list[RankedBead] = []
-    made: list[Wrapped] = []
+    made: list[MadeBead] = []
     mended: list[Issue] = []
     covers: list[Cover] = []
     stretch = 0.0

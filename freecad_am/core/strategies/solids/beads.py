@@ -37,9 +37,9 @@ AGILE = 500.0  # mm/s^2; what every machine follows, where nothing but the speed
 BRIEF = 1.0001e-4  # s; no controller is told a shorter move, as narrow beads, which are laid faster, would have
 
 
-class Wrapped(NamedTuple):
-    """A bead, where (n,) the speed is not what the width asks for, and where it bends more than the table's beads; None
-    without a bead model."""
+class MadeBead(NamedTuple):
+    """A bead with what is to be told of it: where (n,) the speed is not what the width asks for, where it bends more than
+    the table's beads, None without a bead model; and how the torch turns."""
 
     bead: Bead
     clamped: Mask | None = None
@@ -50,7 +50,7 @@ class Wrapped(NamedTuple):
 def bead_of(
     curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
     model: BeadModel | None,
-) -> Wrapped:
+) -> MadeBead:
     """The bead of a curve of a layer as its class is laid, with the torch leaning as its class does. Where directions
     alternate every other closed one runs the other way."""
     if curve.closed and process.direction == "alternate" and (layer.number + curve.ring) % 2:
@@ -65,7 +65,7 @@ def bead_of(
 def wrapped(
     curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
     model: BeadModel | None, lean: Lean | None = None,
-) -> Wrapped:
+) -> MadeBead:
     """The bead of a curve on the plane, in part coordinates; its polynomial's variable is the arc length, 2 pi in all.
 
     lean: of the torch, by default that of the build direction. Points that come so soon after another that no controller can
@@ -99,29 +99,29 @@ def wrapped(
     if kept.all():
         return found._replace(turned=turned)
     clamped, tight = (None if mask is None else mask[kept] for mask in (found.clamped, found.tight))
-    return Wrapped(found.bead.thinned(np.flatnonzero(kept)), clamped, tight, turned)
+    return MadeBead(found.bead.thinned(np.flatnonzero(kept)), clamped, tight, turned)
 
 
 def _with_speed(
     bead: Bead, flat: Array, closed: bool, share: Array | None, heights: Array | None, strategy: FilledParameters,
     process: ProcessParameters, model: BeadModel | None,
-) -> Wrapped:
+) -> MadeBead:
     """The bead, flat (n, 2) on the plane, at the speeds that hold its width. share: (n,) of the usual one; heights: (n,) mm
     of the layer there, which no bead model asks for; None where they are as ever."""
     if model is not None:
         radius = radii(flat, closed, process.bead_width)
-        return Wrapped(*at_speed(bead, radius, flat, closed, process, model, 1.0 if share is None else share))
+        return MadeBead(*at_speed(bead, radius, flat, closed, process, model, 1.0 if share is None else share))
     if share is None and heights is None:
-        return Wrapped(bead)
+        return MadeBead(bead)
     high = np.ones(len(flat)) if heights is None else heights / strategy.layer_height
     section = high if share is None else high * share
     speed = followed(flat, process.travel_speed / section, closed, max(process.acceleration, AGILE))
     section = process.travel_speed / speed  # at one wire feed
     bead = replace(bead, speed=of_segments(speed))
     if share is None:
-        return Wrapped(replace(bead, height=strategy.layer_height * section))
+        return MadeBead(replace(bead, height=strategy.layer_height * section))
     width = bead_width(strategy, process, model) * section / high
-    return Wrapped(replace(bead, width=width, height=heights))
+    return MadeBead(replace(bead, width=width, height=heights))
 
 
 def _sparse(points: Array, speed: Array, least: float) -> Mask:

@@ -163,7 +163,7 @@ class Pictures:
 
 @contextlib.contextmanager
 def naming(name: str, number: int) -> Iterator[None]:
-    """What cannot be filled meanwhile is told with the name of the piece and the number of the layer."""
+    """What cannot be filled meanwhile is told with the name of the stack and the number of the layer."""
     try:
         yield
     except InfeasibleError as error:

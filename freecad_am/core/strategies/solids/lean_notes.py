@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...parameters.build_direction import BuildDirectionParameters
 from ...toolpath import Layer
-from .beads import Wrapped
+from .beads import MadeBead
 from .course import LEAST_DEPARTURE
 from .lean import Turned
 
 
-def lean_notes(made: Sequence[Wrapped], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
+def lean_notes(made: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
     """At most one issue of a kind, at the bead where it is worst."""
     turned = {id(one.bead): one.turned for one in made if one.turned is not None}
     places = [(bead, i, j) for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)]

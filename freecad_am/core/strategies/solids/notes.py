@@ -11,11 +11,11 @@ from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
 from ...process.model.notes import of_model
 from ...toolpath import Layer
-from .beads import Wrapped
+from .beads import MadeBead
 
 
 def notes(
-    made: Sequence[Wrapped], layers: Sequence[Layer], mended: Sequence[Issue], strategy: FilledParameters,
+    made: Sequence[MadeBead], layers: Sequence[Layer], mended: Sequence[Issue], strategy: FilledParameters,
     process: ProcessParameters, model: BeadModel | None,
 ) -> list[Issue]:
     """All of them."""
@@ -56,8 +56,7 @@ def _mended(issues: Sequence[Issue]) -> list[Issue]:
     """One of each kind, with how many layers of solids there are like it."""
     found = []
     for code in sorted({issue.code for issue in issues}):
-        alike = [issue for issue in issues if issue.code == code]
-        first, more = alike[0], len(alike) - 1
-        text = Text("{} (more layers like it: {})", first.message, more) if more else first.message
+        first, *others = [issue for issue in issues if issue.code == code]
+        text = Text("{} (more layers like it: {})", first.message, len(others)) if others else first.message
         found.append(Issue(first.level, code, text, first.layer))
     return found

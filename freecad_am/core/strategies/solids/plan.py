@@ -12,7 +12,7 @@ from ...filling.cover import Cover
 from ...geometry.beyond_hub import solids_beyond
 from ...geometry.on_hub import SolidsOnHub
 from ...issues import InputError, Issue
-from ...layers.field import pieces
+from ...layers.field import stacks
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
@@ -22,7 +22,7 @@ from ...toolpath import Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
-from .beads import Wrapped, bead_of
+from .beads import MadeBead, bead_of
 from .filling import Pictures, bead_width, naming, spaced
 from .islands import as_below, island_by_island
 from .lean_notes import lean_notes
@@ -46,23 +46,23 @@ def plan(
     planes, at = solids.on_planes(), None
     _refuse_mode(planes, strategy, build)
     strategy = spaced(strategy, process)
-    expected = _layers_of_a_piece(solids, strategy, process)
+    expected = _layers_of_a_stack(solids, strategy, process)
     nominal = bead_width(strategy, process, model)
     pictures = Pictures(strategy, process, nominal)
     ranked: list[RankedBead] = []
-    made: list[Wrapped] = []
+    made: list[MadeBead] = []
     mended: list[Issue] = []
     covers: list[Cover] = []
-    heights: dict[int, list[float]] = {}  # least and largest of each layer in all pieces, where it is not as high everywhere
-    found = [(number, solid, piece) for number, group in enumerate(solids.groups)
-             for solid, piece in enumerate(pieces(group, solids.surroundings, strategy))]
-    for done, (group, solid, piece) in enumerate(found):
+    heights: dict[int, list[float]] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
+    found = [(number, solid, stack) for number, group in enumerate(solids.groups)
+             for solid, stack in enumerate(stacks(group, solids.surroundings, strategy))]
+    for done, (group, solid, stack) in enumerate(found):
         below: Array | None = None  # middles of the islands of the layer before
         before: Counter[int] = Counter()  # beads of the pieces that a curved layer has had
-        for count, layer in enumerate(piece.slices):
+        for count, layer in enumerate(stack.slices):
             mended += layer.issues
-            progress((done + min(1.0, count / expected)) / len(found), f"{piece.name} layer {layer.number}")
-            with naming(piece.name, layer.number):
+            progress((done + min(1.0, count / expected)) / len(found), f"{stack.name} layer {layer.number}")
+            with naming(stack.name, layer.number):
                 filled = pictures.filled(layer)
             mended += filled.issues
             if layer.heights is not None:
@@ -98,11 +98,11 @@ def plan(
     )
 
 
-def _layers_of_a_piece(solids: SolidsOnHub, strategy: FilledParameters, process: ProcessParameters) -> float:
-    """About how many layers a piece has, at least one. InputError TOO_MANY."""
+def _layers_of_a_stack(solids: SolidsOnHub, strategy: FilledParameters, process: ProcessParameters) -> float:
+    """About how many layers a stack has, at least one. InputError TOO_MANY."""
     found = size.of_solids(solids, strategy, strategy.bead_spacing)
     size.refuse_absurd(found, strategy, None if strategy.bead_overlap is None else process.bead_width)
-    together = sum(len(one.bodies) for one in solids.groups) if strategy.order == "feature" else 1
+    together = sum(len(group.bodies) for group in solids.groups) if strategy.order == "feature" else 1
     return max(1.0, found.layers / together)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...filling.cover import Cover, total
 from ...parameters.filled import FilledParameters
-from .beads import Wrapped
+from .beads import MadeBead
 
 
 def of_layers(strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[float, float, float]:
@@ -28,7 +28,7 @@ def volumes(part: float | None, strategy: FilledParameters, covers: Sequence[Cov
     return part, left + max(part - whole, 0.0), outside + max(whole - part, 0.0)
 
 
-def twice(made: Sequence[Wrapped], strategy: FilledParameters, covers: Sequence[Cover], width: float) -> float:
+def twice(made: Sequence[MadeBead], strategy: FilledParameters, covers: Sequence[Cover], width: float) -> float:
     """mm3 of beads that count as `width` mm wide, each as wide as they are apart, beyond what they cover."""
     area = 0.0
     for bead in (one.bead for one in made):
