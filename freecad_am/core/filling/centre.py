@@ -53,14 +53,8 @@ def centre_beads(
 def left_open(curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Beads) -> list[Region]:
     """What curves leave open, wider than the gap allowed, of what beads can reach with their middles in `inner`."""
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
-    covered = along([(thinned(curve.points, curve.closed, error), curve.closed) for curve in curves], half, error)
+    covered = along([(simplified(curve.points, error, curve.closed), curve.closed) for curve in curves], half, error)
     return wider(without(grown(inner, half, error), covered, beads.gap), beads.gap, error)
-
-
-def thinned(points: Array, closed: bool, tolerance: float) -> Array:
-    """A curve (n, 2) with no more points than `tolerance` mm asks for."""
-    thin = simplified(np.vstack([points, points[:1]]) if closed else points, tolerance)
-    return thin[:-1] if closed else thin
 
 
 def closing(region: Region, curves: Sequence[PlaneCurve], beads: Beads, ring: int) -> list[PlaneCurve]:

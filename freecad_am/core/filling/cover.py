@@ -10,11 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.regions.region import Region, along
+from ..geometry.regions.region import Region, along, simplified
 from ..geometry.regions.several import common
 from ..geometry.regions.strip import Strip
 from ..types import Array
-from .centre import thinned
 from .curve import Beads, PlaneCurve
 from .strip_closing import near_windows
 
@@ -68,7 +67,7 @@ def _of_strip(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Cover
     covers = []
     beads = replace(beads, chord_error=max(beads.chord_error, COARSE * beads.inset))
     for window, near in near_windows(strip, curves, 2.0 * beads.inset):
-        lines = [(thinned(curve.points, curve.closed, beads.chord_error), curve.closed) for curve in near]
+        lines = [(simplified(curve.points, beads.chord_error, curve.closed), curve.closed) for curve in near]
         regions = strip.flat(window.low, window.high, window.about)
         covers.append(_of_regions(regions, [(lines, [1.0] * len(lines))], beads, strip.pane(window)))
     return total(covers)

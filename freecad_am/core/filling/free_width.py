@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads laid thinner where others leave them less than their usual room, so that layers do not get higher there."""
+"""Beads narrower or wider than usual: so that contours come out even over the thickness of a region, and where others leave
+them less than their usual room, so that layers do not get higher there."""
 
 from __future__ import annotations
 
@@ -10,11 +11,15 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.curves.plane_curve import arcs, steps
+from ..geometry.curves.plane_curve import arcs, dense, nearest, steps
+from ..geometry.regions.region import WIDTH, Region
 from ..geometry.regions.telling import telling
 from ..types import Array, Index, Mask
 from .curve import Beads, PlaneCurve
 
+MORE = 1.002  # of the thickness, beside what the measure of it may be short of: a contour in the middle is not a thin loop
+PLACES = 0.25  # of the spacing, mm between places at which widths are looked at
+MIDDLE = ("centre", "closing")  # kinds of beads that lie in what others leave
 STEP = 0.2  # of the spacing, mm between places at which rooms are looked at
 ROUND = 1.6  # arc over chord; a bead comes beside itself where it returns farther round than half a circle
 SHARE_TOLERANCE = 0.04  # of the usual width; shares that a straight line tells as well need no point of their own
@@ -34,7 +39,58 @@ class _Edges(NamedTuple):
     around: Array
 
 
-def thinned(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float) -> tuple[PlaneCurve, ...]:
+def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Beads, float]:
+    """Beads of which a whole number fits into the thickest place of a region, and their share of the usual width, between
+    least and most and as near to 1 as may be; the usual ones where there is no such number."""
+    if least == most:
+        return beads, 1.0
+    width, thickness = 2.0 * beads.inset, MORE * (1.0 + WIDTH) * region.width
+    excess = (thickness - width) / beads.spacing  # so many more than one
+    share = 1.0
+    if excess > 0.0:
+        count = np.arange(max(int(excess) - 1, 0), int(excess) + 3)
+        shares = thickness / (width + count * beads.spacing)
+        share = float(shares[np.argmin(np.abs(np.log(shares)))])
+    if not least <= share <= most * MORE * (1.0 + WIDTH):
+        share = 1.0
+    return replace(beads, spacing=share * beads.spacing, width=share * width, gap=share * beads.gap), share
+
+
+def shared(
+    region: Region, curves: Sequence[PlaneCurve], beads: Beads, share: float, least: float, most: float
+) -> tuple[PlaneCurve, ...]:
+    """The curves with the share of the usual width that each of their points has: that of the fitted beads, of those in the
+    middle what room their neighbours leave them. Between least and most."""
+    if least == most:
+        return tuple(curves)
+    others = [curve for curve in curves if curve.kind not in MIDDLE]
+    found = []
+    for curve in curves:
+        if curve.kind in MIDDLE:
+            curve = _within_width(curve, others, region, beads, share, least, most)
+        elif share != 1.0:
+            curve = replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
+        found.append(curve)
+    return tuple(found)
+
+
+def _within_width(
+    curve: PlaneCurve, others: Sequence[PlaneCurve], region: Region, beads: Beads, share: float, least: float, most: float
+) -> PlaneCurve:
+    """A bead with points as dense as its width may change, as wide as the room about it."""
+    step = PLACES * beads.spacing
+    if curve.closed:
+        points = dense(curve.points, step)
+    else:  # there and back is a ring, of which the way there is the first half
+        points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)
+        points = points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
+    free = region.nearest(points)[1] / beads.inset
+    for other in others:
+        free = np.minimum(free, 2.0 * nearest(other.points, points, other.closed).distance / beads.spacing - 1.0)
+    return replace(curve, points=points, share=np.clip(share * free, least, most))
+
+
+def narrowed(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float) -> tuple[PlaneCurve, ...]:
     """The curves with the share of their usual width that they have room for: halfway to others of their kind, and as far as
     those that come first reach, contours before lines before beads in the middle. Links of zigzags lay what their lines,
     which end before the contour, do not. angle: of the lines, rad. least: share that no bead is laid below."""

@@ -16,8 +16,7 @@ from ..slicing.solids.unrolled import cut
 from ..types import Array
 from .along import field as along
 from .curved import field as curved
-from .curved.covered import with_covered
-from .overhang import with_overhangs
+from .over_and_under import with_covered, with_overhangs
 from .planes import field as planes
 from .planes.layer import PlaneLayer
 from .rotary import field as rotary

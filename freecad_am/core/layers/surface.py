@@ -66,7 +66,7 @@ class LayerSurface(Protocol):
 class Slice(NamedTuple):
     """One layer of a part: its number, the base in whose frame it is, its surface, its regions laid flat, and findings.
     azimuth: rad about the axis of the base, of the middle of the solid. covered: what of the plane is near to neither a top
-    nor a bottom (`covered.under_and_over`); None where nobody asks. heights: its least, mean and largest height, mm; None
+    nor a bottom (`over_and_under`); None where nobody asks. heights: its least, mean and largest height, mm; None
     where it has the layer height everywhere."""
 
     number: int

@@ -20,8 +20,7 @@ from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of
 from .solids.filling import Pictures, bead_width, naming, spaced
 from .solids.islands import island_by_island
-from .solids.lean_notes import lean_notes
-from .solids.notes import notes
+from .solids.notes import lean_notes, notes
 from .solids.volumes import of_layers, twice
 
 REPORTED_DISTORTION = 0.02  # distortion that is told

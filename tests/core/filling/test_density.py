@@ -14,7 +14,7 @@ from freecad_am.core.filling.lattice import gyroid_period
 from freecad_am.core.filling.sparse import Infill
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
-from freecad_am.core.layers.curved.covered import under_and_over, with_covered
+from freecad_am.core.layers.over_and_under import under_and_over, with_covered
 from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.filled import DevelopableParameters
 

@@ -222,11 +222,12 @@ def _bends(line: Array) -> list[Array]:
     return [line[a : b + 1] for a, b in zip(cuts, cuts[1:])]
 
 
-def simplified(points: Array, tolerance: float) -> Array:
-    """An open curve (n, 2) with no more points than `tolerance` mm asks for, ends kept."""
-    line = shapely().geometry.LineString(points).simplify(tolerance, preserve_topology=False)
+def simplified(points: Array, tolerance: float, closed: bool = False) -> Array:
+    """A curve (n, 2) with no more points than `tolerance` mm asks for; its first is kept, and the last of an open one."""
+    whole = np.vstack([points, points[:1]]) if closed else points
+    line = shapely().geometry.LineString(whole).simplify(tolerance, preserve_topology=False)
     found: Array = np.array(line.coords, dtype=float)
-    return found
+    return found[:-1] if closed else found
 
 
 def _buffered(shape: Any, distance: float, chord_error: float) -> Any:

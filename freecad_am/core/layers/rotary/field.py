@@ -18,8 +18,8 @@ from ...issues import InputError
 from ...parameters.filled import DevelopableParameters
 from ...slicing.solids.equidistant import Facets, Loop
 from ...slicing.solids.unrolled import count, cut, moved, opened
-from ..curved.covered import under_and_over
 from ..margins import ARCS, regions_of, within_margin
+from ..over_and_under import under_and_over
 from ..surface import Slice
 from .layer import RoundLayer
 

@@ -11,11 +11,10 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from ...filling.adaptive import fitted, shared
 from ...filling.cover import Cover, covered, total
 from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import fill, open_at_slits, open_places
-from ...filling.free_width import thinned
+from ...filling.free_width import fitted, narrowed, shared
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest, steps
 from ...geometry.regions.region import Region
@@ -157,7 +156,7 @@ class Pictures:
         if whole and flat and strategy.spacing_range == EVERY and strategy.narrowest < 1.0:
             twice = beads.spacing * math.fsum(_weighed(curve) for curve in curves) - cover.once
             if twice > MUCH * cover.whole:  # no wider than their room
-                curves = thinned(curves, beads, angle, strategy.narrowest)
+                curves = narrowed(curves, beads, angle, strategy.narrowest)
         return _Picture(curves, gaps, cover)
 
 

@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is said about the beads on a hub: speeds, widths, heights against the layer height, waits, what was mended."""
+"""What is said about the beads of solids: speeds, widths, heights against the layer height, waits, what was mended; and how
+the torch is turned along them: spread at corners, leaning less, fast normals."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
-from ...issues import NOTE, Issue, Text
+from ...issues import NOTE, WARNING, Issue, Text, Word
+from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
 from ...process.model.notes import of_model
 from ...toolpath import Layer
 from .beads import MadeBead
+from .course import LEAST_DEPARTURE
+from .lean import Turned
 
 
 def notes(
@@ -60,3 +65,54 @@ def _mended(issues: Sequence[Issue]) -> list[Issue]:
         text = Text("{} (more layers like it: {})", first.message, len(others)) if others else first.message
         found.append(Issue(first.level, code, text, first.layer))
     return found
+
+
+def lean_notes(made: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
+    """At most one issue of a kind, at the bead where it is worst."""
+    turned = {id(one.bead): one.turned for one in made if one.turned is not None}
+    places = [(bead, i, j) for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)]
+    beads = [(turned[id(bead)], i, j) for bead, i, j in places if id(bead) in turned]
+    asked = "" if build.max_turn == "auto" else Text(" ({:.3g} deg/mm)", math.degrees(build.turn()))
+    limit = Text("build_direction.max_turn{}", Word(asked))
+    return _spread(beads, limit) + _less(beads, limit) + _normals(beads, limit)
+
+
+def _spread(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
+    some = [entry for entry in beads if entry[0].departure > LEAST_DEPARTURE]
+    if not some:
+        return []
+    worst, layer, bead = max(some, key=lambda entry: entry[0].departure)
+    length = sum(entry[0].length for entry in some)
+    return [Issue(
+        NOTE, "TURN_LIMITED", Text("on {} of {} beads, {:.4g} mm in all, the torch begins to turn ahead of corners, by up "
+            "to {:.3g} deg from what is asked, to turn no faster than {}", len(some), len(beads), length,
+            math.degrees(worst.departure), limit), layer, bead,
+    )]
+
+
+def _less(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
+    some = [entry for entry in beads if entry[0].asked > 0.0 and entry[0].share < 1.0]
+    if not some:
+        return []
+    worst, layer, bead = min(some, key=lambda entry: entry[0].share)
+    layers = sorted({entry[1] for entry in some})
+    where = Text("layer {}",
+                 layers[0]) if len(layers) == 1 else Text("{} layers from {} to {}", len(layers), layers[0], layers[-1])
+    return [Issue(
+        WARNING, "LEAN_REDUCED", Text("on {} of {} beads in {} bends follow one another too closely to turn the torch round "
+            "them at {}: it leans by {:.3g} to {:.3g} deg there instead of {:.3g} deg; lean less, or allow a faster turn",
+            len(some), len(beads), Word(where), limit, math.degrees(worst.share * worst.asked),
+            math.degrees(max(entry[0].share * entry[0].asked for entry in some)), math.degrees(worst.asked)), layer, bead,
+    )]
+
+
+def _normals(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
+    some = [entry for entry in beads if entry[0].normals > 0.0]
+    if not some:
+        return []
+    worst, layer, bead = max(some, key=lambda entry: entry[0].normals)
+    return [Issue(
+        WARNING, "TURN_OF_NORMALS", Text("on {} of {} beads the hub's normals alone turn by up to {:.3g} deg/mm, faster "
+            "than {}; the torch follows them all the same", len(some), len(beads), math.degrees(worst.normals), limit),
+            layer, bead,
+    )]

@@ -25,8 +25,7 @@ from ..progress import Progress, silent
 from .beads import MadeBead, bead_of
 from .filling import Pictures, bead_width, naming, spaced
 from .islands import as_below, island_by_island
-from .lean_notes import lean_notes
-from .notes import notes
+from .notes import lean_notes, notes
 from .volumes import twice, volumes
 
 FEWER = 1_000_000  # beads that a layer of a solid has

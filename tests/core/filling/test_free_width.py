@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.filling.adaptive import fitted, shared
 from freecad_am.core.filling.cover import covered
 from freecad_am.core.filling.curve import OVER, Beads
 from freecad_am.core.filling.fill import fill
+from freecad_am.core.filling.free_width import fitted, shared
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.filled import DevelopableParameters
