@@ -208,9 +208,7 @@ def read_cell(file: str) -> CellParameters:
     """
     from .sections import cell as saved
 
-    found = saved.read(os.path.abspath(file), os.path.abspath(file))
-    assert found is not None  # a file was named
-    return found
+    return saved.of_file(os.path.abspath(file).strip())
 
 
 def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:

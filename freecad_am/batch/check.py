@@ -132,9 +132,7 @@ def _known(path: str) -> Known:
     """What a job file, or a file with a cell alone, tells."""
     values = tree.read(path).values
     if not {"part", "features", "cell"} & set(values):
-        cell = job_cell.read(os.path.abspath(path), path)
-        assert cell is not None
-        return Known(cell, None, JointParameters(), None)
+        return Known(job_cell.of_file(os.path.abspath(path)), None, JointParameters(), None)
     read = job.read_job(path)
     if read.cell is None:
         raise InputError("NO_CELL", f"{os.path.basename(path)}: cell", "the job has no cell to drive a program in; add one")

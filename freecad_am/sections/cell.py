@@ -22,22 +22,23 @@ from . import fields, paths, quantity, tree
 PAPERS = "paper"  # limits
 
 
-def read(section: Any, path: str) -> CellParameters | None:
-    """The cell of a job file `path`, of its section or of the cell file that this names; None where there is none.
+def read(section: Any, folder: str) -> CellParameters | None:
+    """The cell of a job file in `folder`, of its section or of the cell file that this names; None where there is none.
 
     Raises InputError about a key of the job or of the cell file.
     """
-    section = paths.of_cell(section, path)
+    section = paths.of_cell(section, folder)
     if isinstance(section, str) and section:
-        return _of_file(section)
+        return of_file(section)
     return None if section is None else _of_section(section)
 
 
-def _of_file(path: str) -> CellParameters:
+def of_file(path: str) -> CellParameters:
+    """The cell of a file of its own. Raises InputError about a key of it."""
     saved = tree.read(path, "machine: ...", "machine and setup")
     saved.lines = {f"cell.{key}": line for key, line in saved.lines.items()}
     try:
-        return _of_section(paths.of_cell(saved.values, path))
+        return _of_section(paths.of_cell(saved.values, paths.folder_of(path)))
     except InputError as error:
         raise saved.placed(error) from None
 

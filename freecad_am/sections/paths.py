@@ -24,17 +24,22 @@ OF_FEATURE = (
 )
 
 
-def absolute(file: str, path: str) -> str:
-    """`file` as an absolute path; relative ones start at the folder of the job file `path`."""
-    found = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(path)), expanded(file)))
+def folder_of(path: str) -> str:
+    """The folder of a job file or cell file, absolute; where relative paths in it start."""
+    return os.path.dirname(os.path.abspath(path))
+
+
+def absolute(file: str, folder: str) -> str:
+    """`file` as an absolute path; relative ones start at the absolute `folder`."""
+    found = os.path.normpath(os.path.join(folder, expanded(file)))
     located(found)  # who collects what a job is made of is told of it
     return found
 
 
-def of_job(values: dict[str, Any], path: str) -> dict[str, Any]:
-    """The values of a job file with absolute names of all files but those of the cell, which has files of its own; what is
-    no name of a file stays as it is."""
-    at = partial(absolute, path=path)
+def of_job(values: dict[str, Any], folder: str) -> dict[str, Any]:
+    """The values of a job file in `folder` with absolute names of all files but those of the cell, which has files of its
+    own; what is no name of a file stays as it is."""
+    at = partial(absolute, folder=folder)
     for feature in ((), (FEATURES, EACH)):
         for keys in OF_FEATURE:
             values = _changed(values, (*feature, *keys), at)
@@ -43,10 +48,10 @@ def of_job(values: dict[str, Any], path: str) -> dict[str, Any]:
     return values
 
 
-def of_cell(section: Any, path: str) -> Any:
-    """The section `cell` of the file `path` with absolute names of files; where it names a cell file, that name."""
+def of_cell(section: Any, folder: str) -> Any:
+    """The section `cell` of a file in `folder` with absolute names of files; where it names a cell file, that name."""
     def at(file: str) -> str:
-        return absolute(file.strip(), path)
+        return absolute(file.strip(), folder)
 
     machine = partial(_machine, at)
     section = _changed(section, (), at)

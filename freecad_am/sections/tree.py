@@ -89,18 +89,16 @@ def scalar(text: str, where: str) -> Any:
 def text_of(path: str, label: str) -> str:
     """The text of a file in UTF-8. Raises InputError NO_FILE or BAD_FILE, named `label`."""
     try:
-        data = content(path, _LARGEST, "BAD_FILE", label)
+        return content(path, _LARGEST, "BAD_FILE", label).decode("utf-8-sig")
     except FileNotFoundError:
         raise InputError("NO_FILE", path, "there is no such file; check the path") from None
     except OSError as error:
         raise InputError("NO_FILE", path, "the file cannot be read: {}; choose one that can", error.strerror) from None
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise InputError("BAD_FILE", label, "the text is not UTF-8 (line {}); save it as UTF-8", line) from None
     except ValueError as error:
         raise InputError("NO_FILE", path, "there can be no such file ({}); check the path", error) from None
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data[: error.start].count(b"\n") + 1
-        raise InputError("BAD_FILE", label, "the text is not UTF-8 (line {}); save it as UTF-8", line) from None
 
 
 def _one_line(error: Any) -> str:

@@ -7,7 +7,7 @@ import pytest
 
 from freecad_am.sections import paths
 
-AT = "/jobs/cup.yaml"
+FOLDER = "/jobs"
 
 
 def test_names_of_files_of_every_feature_are_absolute():
@@ -23,7 +23,7 @@ def test_names_of_files_of_every_feature_are_absolute():
     }
     values = {**feature, "features": [feature, {"name": "top"}], "name": "cup.step"}
     before = copy.deepcopy(values)
-    assert paths.of_job(values, AT) == {**wanted, "features": [wanted, {"name": "top"}], "name": "cup.step"}
+    assert paths.of_job(values, FOLDER) == {**wanted, "features": [wanted, {"name": "top"}], "name": "cup.step"}
     assert values == before
 
 
@@ -33,12 +33,12 @@ def test_names_of_files_of_every_feature_are_absolute():
     {"strategy": {"guide": "auto"}}, {"features": "all"}, {"features": [1]}, {"substrate": []},
 ])
 def test_what_names_no_file_stays(values):
-    assert paths.of_job(values, AT) == values
+    assert paths.of_job(values, FOLDER) == values
 
 
 def test_a_material_in_the_folder_of_the_job_comes_before_those_built_in(tmp_path):
     (tmp_path / "er70s-6").write_text("")
-    found = paths.of_job({"process": {"material": "er70s-6"}}, str(tmp_path / "cup.yaml"))
+    found = paths.of_job({"process": {"material": "er70s-6"}}, str(tmp_path))
     assert found == {"process": {"material": str(tmp_path / "er70s-6")}}
 
 
@@ -53,16 +53,16 @@ def test_a_material_in_the_folder_of_the_job_comes_before_those_built_in(tmp_pat
     ({"name": "mine.json", "calibration": "my.yaml"}, {"name": "/jobs/mine.json", "calibration": "/jobs/my.yaml"}),
 ])
 def test_machines_of_a_cell(machine, wanted):
-    assert paths.of_cell({"machine": machine, "external": [{"machine": machine}]}, AT) == {
+    assert paths.of_cell({"machine": machine, "external": [{"machine": machine}]}, FOLDER) == {
         "machine": wanted, "external": [{"machine": wanted}],
     }
 
 
 def test_other_files_of_a_cell():
-    assert paths.of_cell(" hall.yaml ", AT) == "/jobs/hall.yaml"
+    assert paths.of_cell(" hall.yaml ", FOLDER) == "/jobs/hall.yaml"
     section = {"obstacles": [{"file": "table.step"}, {"box": [1, 2, 3]}], "nozzle": {"shape": {"file": "torch.stl"}}}
-    assert paths.of_cell(section, AT) == {
+    assert paths.of_cell(section, FOLDER) == {
         "obstacles": [{"file": "/jobs/table.step"}, {"box": [1, 2, 3]}], "nozzle": {"shape": {"file": "/jobs/torch.stl"}},
     }
     for shape in ("none", 3, None):
-        assert paths.of_cell({"nozzle": {"shape": shape}}, AT) == {"nozzle": {"shape": shape}}
+        assert paths.of_cell({"nozzle": {"shape": shape}}, FOLDER) == {"nozzle": {"shape": shape}}

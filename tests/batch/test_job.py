@@ -288,9 +288,10 @@ def test_files_that_cannot_be_read(tmp_path):
         jobs.read_job(str(tmp_path))
     assert caught.value.code == "NO_FILE"
     binary = tmp_path / "binary.yaml"
-    binary.write_bytes(b"version: 1\n\xff\xfe\x00")
-    with pytest.raises(InputError, match="line 2"):
-        jobs.read_job(str(binary))
+    for start in (b"", b"\xef\xbb\xbf"):
+        binary.write_bytes(start + b"version: 1\n\xff\xfe\x00")
+        with pytest.raises(InputError, match="line 2"):
+            jobs.read_job(str(binary))
     large = tmp_path / "large.yaml"
     large.write_bytes(b"#" * 5_000_000)
     with pytest.raises(InputError, match="larger than 4 MB"):

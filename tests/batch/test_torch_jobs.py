@@ -96,6 +96,6 @@ def test_a_document_notices_and_a_saved_cell_keeps_it(shop, doc):
     path = api.export_cell(cell, str(shop.folder / "hall.yaml"))
     written = (shop.folder / "hall.yaml").read_text(encoding="utf-8")
     assert path == str(shop.folder / "hall.yaml") and 'shape: "torch.step"' in written
-    read = job_cell.read("hall.yaml", str(shop.folder / "any.yaml"))
+    read = job_cell.read("hall.yaml", str(shop.folder))
     assert read.nozzle.shape == str(shop.folder / "torch.step")
     assert cell_file.text(read, str(shop.folder)) == written

@@ -73,6 +73,6 @@ def test_what_says_nothing_is_refused(shop, told, says):
 def test_a_saved_cell_keeps_them(shop, tmp_path):
     made = shop([{"part": one, "robot": [x + 900.25, y, z]} for one in PART.tolist() for x, y, z in [one]], "0.5 mm")
     section = json.loads(made.job.read_text().split("cell: ")[1].split("\n")[0])
-    cell = job_cell.read(section, str(made.job))
+    cell = job_cell.read(section, str(made.job.parent))
     (tmp_path / "hall.yaml").write_text(cell_file.text(cell, str(tmp_path)), encoding="utf-8")
-    assert job_cell.read("hall.yaml", str(tmp_path / "any.yaml")) == cell and cell.touched.count(";") == 3
+    assert job_cell.read("hall.yaml", str(tmp_path)) == cell and cell.touched.count(";") == 3

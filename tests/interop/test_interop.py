@@ -262,7 +262,7 @@ def test_a_saved_cell_is_the_cell_again_where_jobs_name_it(tmp_path):
     path = api.export_cell(cell, str(tmp_path / "hall.yaml"))
     with open(path, encoding="utf-8") as stream:
         assert str(tmp_path) not in stream.read()
-    again = job_cell.read("hall.yaml", str(tmp_path / "cup.yaml"))
+    again = job_cell.read("hall.yaml", str(tmp_path))
     assert api.make_cell(doc, parameters=again).Status == cell.Status == "up to date"
     for field in ("platform", "nozzle"):
         one, other = getattr(again, field), getattr(given, field)

@@ -77,7 +77,7 @@ class Job:
     @property
     def folder(self) -> str:
         """The folder of the job file, absolute; where relative paths start."""
-        return os.path.dirname(os.path.abspath(self.path))
+        return paths.folder_of(self.path)
 
 
 def read_job(path: str) -> Job:
@@ -94,7 +94,8 @@ def from_tree(job: tree.Tree, path: str) -> Job:
 
 
 def _checked(job: tree.Tree, path: str) -> Job:
-    values = paths.of_job(job.values, path)
+    folder = paths.folder_of(path)
+    values = paths.of_job(job.values, folder)
     fields.known_keys(values, SECTIONS, "")
     version = values.get("version", 1)
     if version != 1 or isinstance(version, bool):
@@ -125,22 +126,22 @@ def _checked(job: tree.Tree, path: str) -> Job:
         sequence=sequence,
         joints=_joints(values.get("joints") or {}),
         process=process,
-        cell=job_cell.read(values.get("cell"), path),
+        cell=job_cell.read(values.get("cell"), folder),
         program=program,
         tree=job,
         place=fields.build(PlaceParameters, values.get("place") or {}, "place"),
     )
 
 
-def _name(value: Any, path: str) -> str:
-    if value is None:
-        value = os.path.splitext(os.path.basename(path))[0]
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        value = str(value)
-    name = fields.text(value, "name").strip()
+def _name(name: Any, path: str) -> str:
+    if name is None:
+        name = os.path.splitext(os.path.basename(path))[0]
+    if isinstance(name, (int, float)) and not isinstance(name, bool):
+        name = str(name)
+    name = fields.text(name, "name").strip()
     if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable():
-        shown = quantity.shown(name)
-        raise InputError("BAD_NAME", "name", "{} names files; use no slash, control sign or leading dot", shown)
+        raise InputError("BAD_NAME", "name", "{} names files; use no slash, control sign or leading dot",
+                         quantity.shown(name))
     if len(name.encode()) > _LONGEST_NAME:
         raise InputError("BAD_NAME", "name", "the name is too long for a file; use at most {} letters", _LONGEST_NAME)
     return name

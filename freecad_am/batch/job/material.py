@@ -16,7 +16,7 @@ from freecad_am.core.parameters import bead_classes
 from freecad_am.core.parameters import field as f
 from freecad_am.core.process.model import bead_table
 from freecad_am.sections import fields, quantity, tree
-from freecad_am.sections.paths import absolute
+from freecad_am.sections.paths import absolute, folder_of
 
 KEY = "process.material"
 FOLDER = Path(__file__).resolve().parents[2] / "materials"
@@ -131,7 +131,7 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
     """The bead table, which fits the wire feed and the speeds of the file."""
     name = fields.text(values["beads"], "beads").strip()
     if name not in bead_table.BUILT_IN:
-        name = absolute(name, str(file))
+        name = absolute(name, folder_of(str(file)))
     model = bead_table.load(name)
     low, high = model.speeds
     if slowest is not None and fastest is not None and (fastest < low or slowest > high):
