@@ -62,52 +62,52 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
     for (layer, index, bead), directions in zip(toolpath, seen, strict=True):
         most = allowed[layer]
         values = np.tile(before, (len(bead), 1)) if hold else _followed(external, cell, directions, most, before)
-        held = [dataclasses.replace(bead, external=values)]
-        if stroke.lacks(cell, values, whole_turns) or not stroke.runs_on(cell, held[0], most, toolpath.overlap):
-            held = stroke.found(cell, bead, most, before, toolpath.overlap) or held
-        for one in held:
-            assert one.external is not None
-            tilt = tilt_from(external.upright(on_face(cell, one.tool), one.external), external.up)
-            worst = int(tilt.argmax())
-            if tilt[worst] > most + ROUNDING:
-                issues.append(_not_level(bool(external.turning), float(tilt[worst]), most, layer, index, worst))
-            before = one.external[-1]
-        done += held
-        places += [(layer, index)] * len(held)
-        if is_otherwise(bead, held):
-            helped[len(held) > 1].append(layer)
+        pieces = [dataclasses.replace(bead, external=values)]
+        if stroke.lacks(cell, values, whole_turns) or not stroke.runs_on(cell, pieces[0], most, toolpath.overlap):
+            pieces = stroke.found(cell, bead, most, before, toolpath.overlap) or pieces
+        for piece in pieces:
+            assert piece.external is not None
+            tilt = tilt_from(external.upright(on_face(cell, piece.tool), piece.external), external.up)
+            issues += _not_level(bool(external.turning), tilt, most, (layer, index))
+            before = piece.external[-1]
+        done += pieces
+        places += [(layer, index)] * len(pieces)
+        if is_otherwise(bead, pieces):
+            helped[len(pieces) > 1].append(layer)
     return done, places, [*issues, *seam_notes(*helped)]
 
 
 def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
     """What leans more than allowed where no axis beside the robot turns the part: at most one issue of a bead."""
-    up, issues = cell.machine.base[:3, :3] @ cell.up, []
+    up, issues = cell.machine.base[:3, :3] @ cell.up, list[Issue]()
     allowed = allowed_by_layer(toolpath.parts)
     for layer, index, bead in toolpath:
         most = allowed[layer]
         if most >= math.pi:
             continue
-        axes = cell.station[None, :3, 2] if cell.arrangement.carries_part else on_face(cell, bead.tool)
-        tilt = tilt_from(axes, up)
-        worst = int(tilt.argmax())
-        if tilt[worst] > most + ROUNDING:
-            issues.append(_not_level(False, float(tilt[worst]), most, layer, index, worst))
+        directions = cell.station[None, :3, 2] if cell.arrangement.carries_part else on_face(cell, bead.tool)
+        issues += _not_level(False, tilt_from(directions, up), most, (layer, index))
     return issues
 
 
-def _not_level(turning: bool, tilt: float, most: float, *place: int) -> Issue:
-    leans, allowed = math.degrees(tilt), math.degrees(most)
+def _not_level(turning: bool, tilt: Array, most: float, place: Place) -> list[Issue]:
+    """That tool axes, tilt (n,) rad from the vertical, lean more than they may at a bead, where they lean most; none where
+    they do not. turning: whether an axis turns the part."""
+    worst = int(tilt.argmax())
+    if not tilt[worst] > most + ROUNDING:
+        return []
+    leans, allowed = math.degrees(tilt[worst]), math.degrees(most)
     if not turning:
-        return Issue(
+        return [Issue(
             ERROR, "NOT_LEVEL", Text("the tool axis would be {:.3g} deg from the vertical, "
                 "build_direction.max_from_vertical allows {:.3g} deg, and nothing turns the part; put it on a positioner, "
-                "or allow more", leans, allowed), *place
-        )
-    return Issue(
+                "or allow more", leans, allowed), *place, worst,
+        )]
+    return [Issue(
         ERROR, "NOT_LEVEL", Text("the tool axis would be {:.3g} deg from the vertical, build_direction.max_from_vertical "
             "allows {:.3g} deg; the positioner cannot turn the part so far: mount the part otherwise, or allow more", leans,
-            allowed), *place,
-    )
+            allowed), *place, worst,
+    )]
 
 
 def figures(cell: Cell, path: JointPath) -> dict[str, object]:
@@ -148,7 +148,7 @@ def axes_figures(cell: Cell, paths: Sequence[BeadPath]) -> dict[str, object]:
 
 def allowed_by_layer(parts: Parts) -> dict[int, float]:
     """The largest angle to the vertical, rad, of each layer."""
-    return {int(number): part.max_from_vertical for part, numbers in parts for number in numbers}
+    return {int(layer): part.max_from_vertical for part, layers in parts for layer in layers}
 
 
 def _standing_all(
@@ -175,8 +175,8 @@ def _followed(external: ExternalAxes, cell: Cell, directions: Array, most: float
     """Values (n, k) along a bead: one and the same where that is near enough, else each direction upright."""
     one = middle(directions)
     if one is not None and float(tilt_from(directions, one).max()) <= most:
-        stays = external.upright(directions, np.tile(before, (len(directions), 1)))
-        if float(tilt_from(stays, external.up).max()) <= most:
-            return np.tile(before, (len(directions), 1))
+        values = np.tile(before, (len(directions), 1))
+        if float(tilt_from(external.upright(directions, values), external.up).max()) <= most:
+            return values
         return np.tile(_standing(external, cell, one, before), (len(directions), 1))
     return courses.chosen(cell, courses.upright(external, directions), before)

@@ -41,9 +41,9 @@ def found(cell: Cell, bead: Bead, most: float, before: Array, overlap: float) ->
     """The bead with values of the external axes that have room, from another seam or in the fewest pieces; empty where
     neither helps. most: rad from the vertical; before: values (k,) where the axes are; overlap: mm that a closed bead runs
     on. It gets points where seams, or ends of pieces, have room between its own."""
-    begun = _begun_elsewhere(cell, bead, most, before, overlap) if bead.closed else None
-    if begun is not None:
-        return [begun]
+    moved = _begun_elsewhere(cell, bead, most, before, overlap) if bead.closed else None
+    if moved is not None:
+        return [moved]
     for _ in range(ROUNDS):
         ways = _Ways.along(cell, bead, most)
         if cuts := _cuts(ways.reach, 0, ways.last(0, overlap)):
@@ -104,22 +104,22 @@ def runs_on(cell: Cell, bead: Bead, most: float, overlap: float) -> bool:
     if overlap <= 0.0 or not bead.closed:
         return True
     assert external is not None and bead.external is not None
-    more = _run_on(bead, 0, overlap) + 1
-    on = bead.external[:more]
-    values = waiting(cell, bead.external, on)
-    leans = tilt_from(external.upright(on_face(cell, bead.tool[:more]), values), external.up)
-    return values is on or bool((leans <= most).all())
+    count = _run_on(bead, 0, overlap) + 1
+    beginning = bead.external[:count]
+    values = waiting(cell, bead.external, beginning)
+    tilt = tilt_from(external.upright(on_face(cell, bead.tool[:count]), values), external.up)
+    return values is beginning or bool((tilt <= most).all())
 
 
-def waiting(cell: Cell, values: Array, on: Array) -> Array:
-    """Values (m, k) with which a bead runs on over its beginning, on (m, k) there: the same, or where that leaves the limits
-    of an axis, whole turns aside, those of its end: there the axes wait. values: (n, k) of the bead."""
+def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
+    """Values (m, k) with which a bead runs on over its beginning (m, k): the same, or where that leaves the limits of an
+    axis, whole turns aside, those of its end: there the axes wait. values: (n, k) of the bead."""
     rows, lower, upper = limits_of(cell)
-    turned = on[:, rows] + TURN * np.round((values[-1, rows] - values[0, rows]) / TURN)
+    turned = beginning[:, rows] + TURN * np.round((values[-1, rows] - values[0, rows]) / TURN)
     every = np.concatenate([values[:, rows], turned])
     fewest = np.ceil((lower - every.min(axis=0)) / TURN - ROUNDING)
     greatest = np.floor((upper - every.max(axis=0)) / TURN + ROUNDING)
-    return on if (fewest <= greatest).all() else np.asarray(np.tile(values[-1], (len(on), 1)))
+    return beginning if (fewest <= greatest).all() else np.asarray(np.tile(values[-1], (len(beginning), 1)))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -142,17 +142,18 @@ class _Ways:
     def along(cls, cell: Cell, bead: Bead, most: float) -> _Ways:
         external, (rows, lower, upper) = cell.external, limits_of(cell)
         assert external is not None
-        once = on_face(cell, bead.tool)
-        directions = np.concatenate([once[:-1], once[:-1], once]) if bead.closed else once
+        directions = on_face(cell, bead.tool)
+        if bead.closed:
+            directions = np.concatenate([directions[:-1], directions[:-1], directions])
         values, held, fits = [], [], []
         for course in upright(external, directions):
-            for moved in _turned(course, lower - most, upper + most):
-                inside = ((moved >= lower) & (moved <= upper)).all(axis=1)
-                kept = np.where(inside[:, None], moved, np.clip(moved, lower + WAITS, upper - WAITS))
-                every = np.zeros((len(kept), external.axes))
-                every[:, rows] = kept
-                values.append(kept)
-                held.append(np.abs(kept - moved).sum(axis=1))
+            for turned in _turned(course, lower - most, upper + most):
+                inside = ((turned >= lower) & (turned <= upper)).all(axis=1)
+                clipped = np.where(inside[:, None], turned, np.clip(turned, lower + WAITS, upper - WAITS))
+                every = np.zeros((len(clipped), external.axes))
+                every[:, rows] = clipped
+                values.append(clipped)
+                held.append(np.abs(clipped - turned).sum(axis=1))
                 fits.append(inside | (tilt_from(external.upright(directions, every), external.up) <= most))
         count = len(directions)
         return cls(
