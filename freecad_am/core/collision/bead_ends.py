@@ -66,8 +66,9 @@ class Beads(NamedTuple):
         first[np.cumsum(counts) - counts] = True
         return cls(
             points, np.concatenate([bead.build for bead in beads]), np.concatenate([bead.tool for bead in beads]),
-            np.concatenate([np.full(len(one.points), width) if one.width is None else one.width for one in beads]),
-            np.concatenate([np.full(len(one.points), height) if one.height is None else one.height for one in beads]), first,
+            np.concatenate([np.full(len(bead.points), width) if bead.width is None else bead.width for bead in beads]),
+            np.concatenate([np.full(len(bead.points), height) if bead.height is None else bead.height for bead in beads]),
+            first,
         )
 
     def solid(self, grain: float = GRAIN) -> Obstacles:

@@ -264,9 +264,9 @@ def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[
 def _slowed(cell: Cell, paths: Sequence[BeadPath], parts: Parts) -> tuple[list[BeadPath], list[Issue]]:
     """The paths slowed where axes cannot follow and that is usual, and what is wrong with the rest."""
     done, notes = list(paths), []
-    for part, numbers in parts:
-        layers = set(numbers.tolist())
-        rows = [k for k, path in enumerate(paths) if path.layer in layers]
+    for part, layers in parts:
+        own = set(layers.tolist())
+        rows = [k for k, path in enumerate(paths) if path.layer in own]
         some = [paths[k] for k in rows]
         if not some:
             continue

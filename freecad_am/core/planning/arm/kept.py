@@ -57,7 +57,8 @@ def of_job(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) -> ArmKept | No
     if contact is None:
         return None
     counts = np.cumsum([0, *(len(bead) for bead in beads)])
-    return ArmKept(contact, {(layer, index): int(n) for (layer, index, _), n in zip(toolpath, counts, strict=False)})
+    before = {(layer, index): int(count) for (layer, index, _), count in zip(toolpath, counts, strict=False)}
+    return ArmKept(contact, before)
 
 
 def contact_of(

@@ -54,11 +54,11 @@ def in_turns(course: Array, before: Array, lower: Array, upper: Array) -> Array:
     """A course (n, a) moved by the whole turns that bring its start nearest to the axes before (a,) and leave it between
     lower and upper (a,); an axis without room is brought to the middle between them."""
     low, high = course.min(axis=0), course.max(axis=0)
-    fewest, most = np.ceil((lower - low) / TURN - 1e-12), np.floor((upper - high) / TURN + 1e-12)
+    fewest, greatest = np.ceil((lower - low) / TURN - 1e-12), np.floor((upper - high) / TURN + 1e-12)
     wanted = np.round((before - course[0]) / TURN)
     with np.errstate(invalid="ignore"):
         centred = np.round(np.nan_to_num(0.5 * (lower + upper) - 0.5 * (low + high)) / TURN)
-    return np.asarray(course + TURN * np.where(fewest <= most, np.clip(wanted, fewest, most), centred))
+    return np.asarray(course + TURN * np.where(fewest <= greatest, np.clip(wanted, fewest, greatest), centred))
 
 
 def chosen(

@@ -62,10 +62,10 @@ def _turns(task: Task, path: BeadPath, before: Array) -> Array:
     half = np.where(task.continuous, 0.0, 0.5 * (limits.upper - limits.lower))
     kept = 0.0 if path.margin < 0.0 else (path.margin - 1e-9) * half
     by_axis = np.ascontiguousarray(path.joints.T)
-    lowest = np.ceil((limits.lower + kept - by_axis.min(axis=1)) / TURN - 1e-12)
-    highest = np.floor((limits.upper - kept - by_axis.max(axis=1)) / TURN + 1e-12)
+    fewest = np.ceil((limits.lower + kept - by_axis.min(axis=1)) / TURN - 1e-12)
+    greatest = np.floor((limits.upper - kept - by_axis.max(axis=1)) / TURN + 1e-12)
     wanted = np.round((before - path.joints[0]) / TURN)
-    return np.where((lowest <= highest) & ~task.cell.machine.chain.sliding, np.clip(wanted, lowest, highest), 0.0)
+    return np.where((fewest <= greatest) & ~task.cell.machine.chain.sliding, np.clip(wanted, fewest, greatest), 0.0)
 
 
 def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
