@@ -89,7 +89,7 @@ def test_sections_are_those_of_the_kernel(doc, name):
     for one in found:
         area = sum(region.area for region in one.regions)
         border = sum(region.shape.length for region in one.regions)
-        assert area == pytest.approx(section(shape, low + 5.0 * one.layer + 2.5), abs=0.05 * border)
+        assert area == pytest.approx(section(shape, low + 5.0 * one.number + 2.5), abs=0.05 * border)
 
 
 @pytest.mark.parametrize("name", SHAPES)
