@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.curves.plane_curve import nearest
+from ..geometry.curves.plane_curve import nearest_among
 from ..geometry.regions.region import Region, along
 from ..types import Array
 from .contours import levels, middles, rounds
@@ -99,7 +99,7 @@ def _half(curve: PlaneCurve, contours: list[PlaneCurve], beads: Beads) -> float:
     the gap between contours; 0 where it is closed as it is."""
     if curve.closed:
         return 0.0
-    away = np.min([nearest(one.points, curve.points, True).distance for one in contours], axis=0)
+    away = nearest_among([(contour.points, True) for contour in contours], curve.points)[1]
     half = 0.5 * (float(away.mean()) / beads.spacing - 0.5)
     return beads.spacing * min(max(half, LOOP[0]), LOOP[1])
 

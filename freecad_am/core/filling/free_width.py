@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.curves.plane_curve import arcs, dense, nearest, steps
+from ..geometry.curves.plane_curve import arcs, dense, nearest_among, steps
 from ..geometry.regions.region import WIDTH, Region
 from ..geometry.regions.telling import telling
 from ..types import Array, Index, Mask
@@ -84,9 +84,8 @@ def _within_width(
     else:  # there and back is a ring, of which the way there is the first half
         points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)
         points = points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
-    free = region.nearest(points)[1] / beads.inset
-    for other in others:
-        free = np.minimum(free, 2.0 * nearest(other.points, points, other.closed).distance / beads.spacing - 1.0)
+    away = nearest_among([(other.points, other.closed) for other in others], points)[1]
+    free = np.minimum(region.nearest(points)[1] / beads.inset, 2.0 * away / beads.spacing - 1.0)
     return replace(curve, points=points, share=np.clip(share * free, least, most))
 
 

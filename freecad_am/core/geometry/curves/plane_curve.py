@@ -90,6 +90,17 @@ def nearest(curve: Array, points: Array, closed: bool) -> Nearest:
     return Nearest(place, edge, part, np.hypot(*(points - place).T))
 
 
+def nearest_among(lines: Sequence[tuple[Array, bool]], points: Array) -> tuple[Array, Array]:
+    """The places (n, 2) on polylines (points (m, 2), whether closed) nearest to points (n, 2), and how far (n,) mm they are;
+    the points themselves, infinitely far, where there are no lines."""
+    places, distance = points, np.full(len(points), np.inf)
+    for line, closed in lines:
+        found = nearest(line, points, closed)
+        nearer = found.distance < distance
+        places, distance = np.where(nearer[:, None], found.points, places), np.where(nearer, found.distance, distance)
+    return places, distance
+
+
 def nearest_of(rings: Sequence[Array], boxes: tuple[Array, Array], points: Array) -> tuple[Array, Array]:
     """The places (n, 2) on rings nearest to points (n, 2), and how far they are (n,), mm. boxes: lowest and highest
     coordinates (r, 2) of each ring."""

@@ -43,24 +43,24 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
             ahead.append(cut(facets, (number + len(ahead)) * height, CUT * error))
         loops = ahead.pop(0)
         where = f"{body.name} layer {number}"
-        there = surface.offset(number * height)
-        _refuse_apex(loops, there, base, where)
+        offset = surface.offset(number * height)
+        _refuse_apex(loops, offset, base, where)
         below.append(loops)
-        lots = within_margin(below, height, strategy.margin, lambda some, up: [moved(surface, loop, up) for loop in some])
-        if any(loop.turns for _, some in lots for loop in some):
+        lots = within_margin(below, height, strategy.margin, lambda loops, up: [moved(surface, loop, up) for loop in loops])
+        if any(loop.turns for _, loops in lots for loop in loops):
             covered = () if thick > min(number, layers - 1 - number) else None
-            layer = Slice(number, base, RoundLayer(there), _all_round(lots, there, strategy), (), azimuth, covered)
+            layer = Slice(number, base, RoundLayer(offset), _all_round(lots, offset, strategy), (), azimuth, covered)
         else:
             neighbours = _neighbours(surface, below, ahead, height, thick)
-            loops = [loop for some in (*(some for _, some in lots), *neighbours) for loop in some]
-            flat = opened(there, loops, azimuth, where)
+            flat = opened(offset, [loop for loops in (*(loops for _, loops in lots), *neighbours) for loop in loops],
+                          azimuth, where)
             next_loop = iter(flat.loops)
-            lots_flat = [(distance, [next(next_loop) for _ in some]) for distance, some in lots]
+            lots_flat = [(distance, [next(next_loop) for _ in loops]) for distance, loops in lots]
             found, issues = regions_of(lots_flat, strategy.margin, error, number)
-            layer = Slice(number, base, RoundLayer(there, flat.middle), found, issues, azimuth)
+            layer = Slice(number, base, RoundLayer(offset, flat.middle), found, issues, azimuth)
             if thick:
                 layer = layer._replace(covered=under_and_over([
-                    grown(regions([next(next_loop) for _ in some]), strategy.margin, ARCS * error) for some in neighbours
+                    grown(regions([next(next_loop) for _ in loops]), strategy.margin, ARCS * error) for loops in neighbours
                 ]))
         if layer.regions:
             yield layer

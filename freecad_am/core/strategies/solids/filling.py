@@ -16,7 +16,7 @@ from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import fill, open_at_slits, open_places
 from ...filling.free_width import fitted, narrowed, shared
 from ...filling.sparse import Infill
-from ...geometry.curves.plane_curve import nearest, steps
+from ...geometry.curves.plane_curve import nearest_among, steps
 from ...geometry.regions.region import Region
 from ...geometry.regions.strip import Strip
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text
@@ -213,7 +213,7 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
     borders += [border for region in layer.regions if isinstance(region, Strip) for border, _ in region.borders()]
     points = np.vstack([curve.points for curve in single])
     share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in single])
-    out = share * beads.inset - np.min([nearest(border, points, closed=True).distance for border in borders], axis=0)
+    out = share * beads.inset - nearest_among([(border, True) for border in borders], points)[1]
     worst = int(np.argmax(out))
     if (share < 1.0).any() and out[worst] < 0.02 * beads.inset:
         return []

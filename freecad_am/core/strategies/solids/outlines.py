@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from ...filling.curve import PlaneCurve
-from ...geometry.curves.plane_curve import nearest, steps
+from ...geometry.curves.plane_curve import nearest_among, steps
 from ...geometry.regions.region import Region
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
@@ -31,7 +31,7 @@ def leaning(
     borders = _borders(layer)
     count, until = len(curve.points), math.inf
     if not curve.closed:
-        adjacent = _nearest_border(borders, curve.points)[1] < OUTLINE * strategy.bead_spacing
+        adjacent = nearest_among(borders, curve.points)[1] < OUTLINE * strategy.bead_spacing
         count = len(adjacent) if adjacent.all() else int(np.argmin(adjacent))
         if count < 2:
             return plain
@@ -41,7 +41,7 @@ def leaning(
     size = np.hypot(*edge.T)
     longest = np.argsort(-size, kind="stable")[:PROBES]
     middle = curve.points[longest] + 0.5 * edge[longest]
-    out = _nearest_border(borders, middle)[0] - middle
+    out = nearest_among(borders, middle)[0] - middle
     left = edge[longest, 0] * out[:, 1] - edge[longest, 1] * out[:, 0]
     away = size[longest] * np.hypot(*out.T)
     side = -1.0 if float((left / np.maximum(away, 1e-300)).sum()) > 0.0 else 1.0
@@ -59,13 +59,3 @@ def _borders(layer: Slice) -> list[tuple[Array, bool]]:
             moved = [region.period.moved(border, k) for k in (-1, 0, 1)]
             found += [(border, True) for border in moved] if not turns else [(np.vstack(moved[::turns]), False)]
     return found
-
-
-def _nearest_border(borders: list[tuple[Array, bool]], points: Array) -> tuple[Array, Array]:
-    """The places (n, 2) of the outlines nearest to points (n, 2) and how far (n,) mm they are."""
-    best, away = points, np.full(len(points), np.inf)
-    for border, closed in borders:
-        found = nearest(border, points, closed)
-        nearer = found.distance < away
-        best, away = np.where(nearer[:, None], found.points, best), np.where(nearer, found.distance, away)
-    return best, away
