@@ -38,7 +38,7 @@ def centre_beads(
         left = wider(left, beads.gap, beads.chord_error)
         rest: list[Region] = []
         for region in left:
-            points, closed = _middle(region, beads, 0.5 * ENDS * beads.gap)
+            points, closed = _spine(region, beads, 0.5 * ENDS * beads.gap)
             points = moved(points if len(points) > 1 else _dab(region, beads), inner)
             if not closed:
                 points = _lengthened(points, beads, inner)
@@ -85,7 +85,7 @@ def _network(region: Region, beads: Beads) -> list[PlaneCurve]:
         for part in left:
             width = part.width
             sliver = width < SLIVER * beads.chord_error
-            points, closed = _along_border(part) if sliver else _middle(part, beads, 0.15 * width)
+            points, closed = _along_border(part) if sliver else _spine(part, beads, 0.15 * width)
             if len(points) > 1 and (not found or length(points, closed) >= beads.shortest):
                 found.append(PlaneCurve(points, closed, "centre", 0))
                 rest += part.without(along([(points, closed)], beads.inset, beads.chord_error), beads.gap)
@@ -136,7 +136,7 @@ def _along_border(region: Region) -> tuple[Array, bool]:
     return min(ways, key=lambda way: length(way, False)), False
 
 
-def _middle(region: Region, beads: Beads, least: float) -> tuple[Array, bool]:
+def _spine(region: Region, beads: Beads, least: float) -> tuple[Array, bool]:
     step = min(FINE * beads.spacing, 0.4 * least)
     points, closed = spine(region, least, step)
     if len(points) > 1:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..geometry.curves.plane_curve import nearest_among
 from ..geometry.regions.region import Region, along
 from ..types import Array
-from .contours import levels, middles, rounds
+from .contours import centres, levels, rounds
 from .curve import Beads, PlaneCurve, begun, long_enough
 from .rings import AdjacentRings, Ring, crossed, side_by_side
 
@@ -73,7 +73,7 @@ def connected(region: Region, beads: Beads) -> list[PlaneCurve]:
     """One closed bead through all contours of a region; what has no place for links stays a bead of its own, as does the one
     bead of a region too narrow for contours. InfeasibleError THIN_REGION, see `Beads`."""
     found = levels(region, beads)
-    loose = middles(found, beads)
+    loose = centres(found, beads)
     curves = long_enough(rounds(found, beads), beads.shortest)
     if not curves:
         return long_enough(loose, beads.shortest)

@@ -40,7 +40,7 @@ def levels(region: Region, beads: Beads) -> Levels:
 def contours(region: Region, beads: Beads) -> list[PlaneCurve]:
     """Closed contours from outside in, then the beads in their middle. InfeasibleError THIN_REGION, see `Beads`."""
     found = levels(region, beads)
-    return long_enough(rounds(found, beads) + middles(found, beads), beads.shortest)
+    return long_enough(rounds(found, beads) + centres(found, beads), beads.shortest)
 
 
 def rounds(found: Levels, beads: Beads) -> list[PlaneCurve]:
@@ -48,7 +48,7 @@ def rounds(found: Levels, beads: Beads) -> list[PlaneCurve]:
     return [curve for k, regions in enumerate(found.regions) for curve in contours_of(regions, beads, k)]
 
 
-def middles(found: Levels, beads: Beads) -> list[PlaneCurve]:
+def centres(found: Levels, beads: Beads) -> list[PlaneCurve]:
     """The beads in what contours leave open, and in thin places."""
     curves = single_beads(found.thin, beads)
     for k, left in enumerate(found.left):

@@ -19,7 +19,7 @@ from .curve import Beads, PlaneCurve
 
 MORE = 1.002  # of the thickness, beside what the measure of it may be short of: a contour in the middle is not a thin loop
 PLACES = 0.25  # of the spacing, mm between places at which widths are looked at
-MIDDLE = ("centre", "closing")  # kinds of beads that lie in what others leave
+CENTRES = ("centre", "closing")  # kinds of beads that lie in what others leave
 STEP = 0.2  # of the spacing, mm between places at which rooms are looked at
 ROUND = 1.6  # arc over chord; a bead comes beside itself where it returns farther round than half a circle
 SHARE_TOLERANCE = 0.04  # of the usual width; shares that a straight line tells as well need no point of their own
@@ -63,10 +63,10 @@ def shared(
     middle what room their neighbours leave them. Between least and most."""
     if least == most:
         return tuple(curves)
-    others = [curve for curve in curves if curve.kind not in MIDDLE]
+    others = [curve for curve in curves if curve.kind not in CENTRES]
     found = []
     for curve in curves:
-        if curve.kind in MIDDLE:
+        if curve.kind in CENTRES:
             curve = _within_width(curve, others, region, beads, share, least, most)
         elif share != 1.0:
             curve = replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))

@@ -12,7 +12,7 @@ from ..geometry.curves.plane_curve import begun_at, doubled_area, length, neares
 from ..geometry.regions.region import Region
 from ..types import Array
 from .centre import closing
-from .contours import levels, middles
+from .contours import centres, levels
 from .curve import Beads, PlaneCurve, long_enough
 
 PROBES = 64  # places of a ring that tell which ring it follows
@@ -39,7 +39,7 @@ def spiral(region: Region, beads: Beads) -> list[PlaneCurve]:
             pieces = _linked([rings[j][n] for j, n in chain], found.regions[k:], beads)
             led.update(chain[: len(pieces)])
             curves.append(_curve(pieces, beads, k))
-    curves = long_enough(curves + middles(found, beads), beads.shortest)
+    curves = long_enough(curves + centres(found, beads), beads.shortest)
     return curves + long_enough(closing(region, curves, beads, 0), beads.shortest)
 
 

@@ -39,12 +39,12 @@ def strip_contours(strip: Strip, beads: Beads) -> list[PlaneCurve]:
         before, inner = inner, grown(start, -(half if first else beads.inset) - 2 * (k - first) * half, error)
     for part in grown(before, -half, error):
         if isinstance(part, Strip) and part.grown(-0.5 * beads.gap, error):
-            curves += _middle(part, beads, k)
+            curves += _centre(part, beads, k)
     curves = long_enough(curves, beads.shortest)
     return curves + [begun(curve, beads) for curve in strip_closing(strip, curves, beads, k, "centre")]
 
 
-def _middle(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
+def _centre(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     """A bead round the hub in the middle of a thin strip."""
     turn = strip.period.around
     width = strip.levels[1] - strip.levels[0]
@@ -75,7 +75,7 @@ def single(strip: Strip, beads: Beads) -> list[PlaneCurve]:
             "THIN_REGION", "filling", "a region round the hub is nowhere as wide as a bead ({:.3g} mm); choose thin = "
             "single, a narrower bead or a margin", 2.0 * beads.inset,
         )
-    return _middle(strip, beads, 0)
+    return _centre(strip, beads, 0)
 
 
 def round_count(strip: Strip, level: float, beads: Beads) -> int:

@@ -23,8 +23,12 @@ def notes(
     made: Sequence[MadeBead], layers: Sequence[Layer], mended: Sequence[Issue], strategy: FilledParameters,
     process: ProcessParameters, model: BeadModel | None,
 ) -> list[Issue]:
-    """All of them."""
-    found = _mended(mended)
+    """All of them; of what was mended one of each kind, with how many layers of solids there are like it."""
+    found = []
+    for code in sorted({issue.code for issue in mended}):
+        first, *others = [issue for issue in mended if issue.code == code]
+        text = Text("{} (more layers like it: {})", first.message, len(others)) if others else first.message
+        found.append(Issue(first.level, code, text, first.layer))
     if model is not None:
         found += of_model(made, strategy.layer_height, process, model)
     found += _single_layers(layers, strategy)
@@ -55,16 +59,6 @@ def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[
         Text("{} of {} solids or groups of solids get one layer alone, on the hub: they are no higher than "
             "strategy.layer_height, {:g} mm", len(single), len(starts) - 1, strategy.layer_height), single[0],
     )]
-
-
-def _mended(issues: Sequence[Issue]) -> list[Issue]:
-    """One of each kind, with how many layers of solids there are like it."""
-    found = []
-    for code in sorted({issue.code for issue in issues}):
-        first, *others = [issue for issue in issues if issue.code == code]
-        text = Text("{} (more layers like it: {})", first.message, len(others)) if others else first.message
-        found.append(Issue(first.level, code, text, first.layer))
-    return found
 
 
 def lean_notes(made: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:
