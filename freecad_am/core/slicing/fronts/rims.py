@@ -159,10 +159,9 @@ class Rims:
         if front.closed or not any(self.end):
             return False
         ends = front.points[[0, -1]]
-        off = np.stack([curve.nearest(ends)[0] for curve in self.curves])
-        final = np.array(self.end)
-        elsewhere = off[~final].min(axis=0, initial=np.inf) < ON_RIM
-        return bool(((off[final].min(axis=0) < ON_RIM) & ~elsewhere).any())
+        distance, end = np.stack([curve.nearest(ends)[0] for curve in self.curves]), np.array(self.end)
+        elsewhere = distance[~end].min(axis=0, initial=np.inf) < ON_RIM
+        return bool(((distance[end].min(axis=0) < ON_RIM) & ~elsewhere).any())
 
 
 class Line(NamedTuple):

@@ -92,14 +92,14 @@ class BeadSettings(NamedTuple):
     def bead(self, trace: Traced, vectors: Along, layer: int, closing: bool = False) -> tuple[Bead, Directions]:
         """The bead of a layer and its directions; its polynomial's variable is the arc length, one turn (2 pi) from end to
         end."""
-        name = classes.of_wall(layer, closing)
-        build = classes.leaning(self.build, self.process, name)
+        bead_class = classes.of_wall(layer, closing)
+        build = classes.leaning(self.build, self.process, bead_class)
         found = directions(trace.points, trace.closed, vectors, build, self.plane, self.label)
-        speed = np.full(len(trace.points), self.process.for_class(name).travel_speed)
+        speed = np.full(len(trace.points), self.process.for_class(bead_class).travel_speed)
         length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(trace.points, axis=0), axis=1))]
         return Bead(
             trace.points, found.build, found.tool, TURN * length / length[-1], speed, trace.closed, None, trace.tangents,
-            closing, bead_class=name,
+            closing, bead_class=bead_class,
         ), found
 
 

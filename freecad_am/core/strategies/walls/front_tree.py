@@ -29,12 +29,12 @@ class Piece:
     closing: bool = False
 
 
-def tree(curves: list[list[SpaceCurve]], rims: Rims) -> list[list[Piece]]:
+def tree(fronts: list[list[SpaceCurve]], rims: Rims) -> list[list[Piece]]:
     """The pieces of each layer."""
     layers: list[list[Piece]] = []
-    for layer in curves:
+    for layer in fronts:
         below = layers[-1] if layers else []
-        pieces = [Piece(curve, _parents(curve, below), rims.ends_of(curve)) for curve in layer]
+        pieces = [Piece(front, _parents(front, below), rims.ends_of(front)) for front in layer]
         for piece in pieces:
             for parent in piece.parents:
                 parent.children.append(piece)
@@ -42,10 +42,10 @@ def tree(curves: list[list[SpaceCurve]], rims: Rims) -> list[list[Piece]]:
     return layers
 
 
-def _parents(curve: SpaceCurve, below: list[Piece]) -> list[Piece]:
+def _parents(front: SpaceCurve, below: list[Piece]) -> list[Piece]:
     if len(below) < 2:
         return list(below)
-    points = curve.at(np.linspace(curve.w[0], curve.w[-1], SAMPLES + 1)[:-1] + 0.5 * curve.period / SAMPLES)[0]
+    points = front.at(np.linspace(front.w[0], front.w[-1], SAMPLES + 1)[:-1] + 0.5 * front.period / SAMPLES)[0]
     count = np.bincount(feet([piece.curve for piece in below], points).front, minlength=len(below))
     order = np.argsort(-count, kind="stable")
     return [below[k] for k in order if count[k] >= LEAST_COMMON]

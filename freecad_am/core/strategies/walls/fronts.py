@@ -85,8 +85,10 @@ def _turns(wall: PatchWall, fronts: list[list[SpaceCurve]], strategy: SurfacePar
     issues = corner_notes([np.concatenate([front.turns[front.corners] for front in layer]) for layer in fronts])
     if issues and strategy.spacing != "smooth":
         return issues
-    corners = [any(len(front.corners) for front in layer) for layer in fronts]
-    rates = [np.inf if corner else max(turn(wall, front) for front in layer) for corner, layer in zip(corners, fronts)]
+    rates = [
+        np.inf if any(len(front.corners) for front in layer) else max(turn(wall, front) for front in layer)
+        for layer in fronts
+    ]
     return issues + turn_notes(rates, strategy)
 
 
@@ -110,16 +112,16 @@ def _kept(
 def _close(pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: list[int]) -> list[Issue]:
     """Put the closing beads behind the pieces of their layers, where all of the layer below is there; and say so."""
     count, first = 0, 0
-    for index, gaps in enumerate(closing):
-        if not gaps or index > len(pieces) or len(pieces[index - 1]) < full[index - 1]:
+    for index, curves in enumerate(closing):
+        if not curves or index > len(pieces) or len(pieces[index - 1]) < full[index - 1]:
             continue
         if index == len(pieces):
             if index < len(full):
                 break
             pieces.append([])
-        pieces[index] += [Piece(curve, [], False, closing=True) for curve in gaps]
+        pieces[index] += [Piece(curve, [], False, closing=True) for curve in curves]
         first = first or index
-        count += len(gaps)
+        count += len(curves)
     if not count:
         return []
     return [Issue(
