@@ -76,7 +76,7 @@ def _searched(
         task, full, threshold, starts, wanted, lambda share: progress(0.4 + 0.3 * share, "refining layers")
     )
     progress(0.7, "settling")
-    paths = _settled(task, beads, places, (coarse, coarse_threshold), (full, threshold), refined)
+    paths = _resolved(task, beads, places, (coarse, coarse_threshold), (full, threshold), refined)
     lost = [k for k in elsewhere.lost(task, beads, places, paths) if found.margin[best[k], k] >= 0.0]
     others = dict(zip(lost, elsewhere.of_beads(task, [beads[k] for k in lost], [places[k] for k in lost])))
     paths = [others.get(k) or path for k, path in enumerate(paths)]
@@ -98,18 +98,18 @@ def _searched(
     return paths, helped
 
 
-def _settled(
+def _resolved(
     task: Task, beads: Sequence[Bead], places: Sequence[Place], coarse: tuple[Points, Array], full: tuple[Points, Array],
     refined: refine.Refined,
 ) -> list[BeadPath]:
-    """The paths of all beads in the valleys of their optima. coarse, full: few and all of their points, with the conditions
+    """The paths of all beads with the ties of their optima resolved. coarse, full: few and all of their points, with the conditions
     asked for there."""
     resolved = ties.resolve(task, *coarse, refined.coefficients)
     paths = judged(task, beads, places, *full, resolved, refined)
     equal = ties.as_good(task, [path.objective for path in paths], refined.objective)
     if equal.all() and all(path.margin >= FITS for path in paths):
         return paths
-    # settling looks at few points of a bead: where all of them say otherwise, the optimum stays as it was found
+    # ties are resolved at few points of a bead: where all of them say otherwise, the optimum stays as it was found
     as_found = judged(task, beads, places, *full, refined.coefficients, refined)
     return [
         path if good and path.margin >= min(FITS, other.margin) else other
