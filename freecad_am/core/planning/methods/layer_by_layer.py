@@ -102,8 +102,8 @@ def _resolved(
     task: Task, beads: Sequence[Bead], places: Sequence[Place], coarse: tuple[Points, Array], full: tuple[Points, Array],
     refined: refine.Refined,
 ) -> list[BeadPath]:
-    """The paths of all beads with the ties of their optima resolved. coarse, full: few and all of their points, with the conditions
-    asked for there."""
+    """The paths of all beads with the ties of their optima resolved. coarse, full: few and all of their points, with the
+    conditions asked for there."""
     resolved = ties.resolve(task, *coarse, refined.coefficients)
     paths = judged(task, beads, places, *full, resolved, refined)
     equal = ties.as_good(task, [path.objective for path in paths], refined.objective)
