@@ -18,7 +18,7 @@ from ..types import Array
 from .curve import Beads, PlaneCurve, contours_of, long_enough
 from .lines import levels_between
 from .strip_closing import strip_closing
-from .strips import round_count, single
+from .strips import single
 
 PROBE, HALVES = 0.1, 10  # of the spacing, between places that tell where lines are inside; and how often that is halved
 
@@ -53,7 +53,7 @@ def lines_round(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0
     turn, within = strip.period.around, _Inside(strip, framed.ends)
     curves = list(framed.curves)
     for row, level in enumerate(_levels(low + framed.inset, high - framed.inset, beads, density)):
-        count = round_count(strip, level, beads)
+        count = strip.period.points_round(level, beads.chord_error, beads.spacing)
         u = -0.5 * turn + turn / count * np.arange(count + 1)
         inside = within.contains(np.stack([u, np.full(len(u), level)], axis=1))
         for a, b in _runs(inside[:-1]):

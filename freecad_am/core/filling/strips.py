@@ -60,7 +60,7 @@ def _centre(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     v = np.interp(-0.5 * turn, points[:, 0], points[:, 1])
     within = points[(points[:, 0] > -0.5 * turn) & (points[:, 0] < 0.5 * turn)]
     if not math.isinf(strip.period.apex):  # what is straight in (u, v) is an arc on the plane
-        count = round_count(strip, 0.5 * sum(strip.levels), beads)
+        count = strip.period.points_round(0.5 * sum(strip.levels), beads.chord_error, beads.spacing)
         u = np.union1d(within[:, 0], -0.5 * turn + turn / count * np.arange(1, count))
         within = np.stack([u, np.interp(u, points[:, 0], points[:, 1])], axis=1)
     flat = strip.period.unroll(np.vstack([[[-0.5 * turn, v]], within]))
@@ -76,9 +76,3 @@ def single(strip: Strip, beads: Beads) -> list[PlaneCurve]:
             "single, a narrower bead or a margin", 2.0 * beads.inset,
         )
     return _centre(strip, beads, 0)
-
-
-def round_count(strip: Strip, level: float, beads: Beads) -> int:
-    """Points of a line once round the hub, within the chord error on the plane."""
-    radius = 1e6 if math.isinf(strip.period.apex) else abs(strip.period.apex - level)
-    return max(24, math.ceil(strip.period.around / math.sqrt(8.0 * beads.chord_error * max(radius, beads.spacing))))

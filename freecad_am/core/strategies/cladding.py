@@ -13,13 +13,12 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.model.bead_model import BeadModel
-from ..process.order import RankedBead, ordered, waited
+from ..process.order import RankedBead, island_by_island, ordered, waited
 from ..toolpath import Toolpath
 from ..types import Array
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of
 from .solids.filling import Pictures, bead_width, naming, spaced
-from .solids.islands import island_by_island
 from .solids.notes import lean_notes, notes
 from .solids.volumes import of_layers, twice
 

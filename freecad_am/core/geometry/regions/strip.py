@@ -77,6 +77,11 @@ class Period:
         turned = np.stack([away[:, 0] * cos - away[:, 1] * sin, away[:, 0] * sin + away[:, 1] * cos], axis=1)
         return np.asarray(turned + apex)
 
+    def points_round(self, v: float, chord_error: float, least_radius: float) -> int:
+        """So many points of a line once round the hub at a v keep within the chord error (mm) on the plane."""
+        radius = 1e6 if math.isinf(self.apex) else max(abs(self.apex - v), least_radius)
+        return max(24, math.ceil(self.around / math.sqrt(8.0 * chord_error * radius)))
+
     def distance_past(self, flat: Array, u: float) -> Array:
         """How far (n,) mm points of the plane lie past the generatrix at u, |u| below a quarter turn."""
         if math.isinf(self.apex):

@@ -112,6 +112,7 @@ class Pictures:
         return Filled(curves, tuple(issues), islands, total(covers))
 
     def _asked(self, layer: Slice) -> _Asked:
+        """What a layer is filled with: the same picture wherever round the hub its solid is, turned from layer to layer."""
         strategy, process = self._strategy, self._process
         turned = layer.surface.turned(layer.azimuth)  # the picture, by the cutting line
         seam = process.seam.angle + layer.number * process.seam.step

@@ -17,14 +17,13 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
-from ...process.order import RankedBead, ordered, waited
+from ...process.order import RankedBead, as_below, island_by_island, ordered, waited
 from ...toolpath import Toolpath
 from ...types import Array
 from .. import size
 from ..progress import Progress, silent
 from .beads import MadeBead, bead_of
 from .filling import Pictures, bead_width, naming, spaced
-from .islands import as_below, island_by_island
 from .notes import lean_notes, notes
 from .volumes import twice, volumes
 
