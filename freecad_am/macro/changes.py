@@ -11,6 +11,7 @@ from ..core.issues import AmError
 from ..objects import stage as stages
 from ..objects.fields.settings import given
 from ..objects.program import Program
+from ..objects.shapes.chosen_faces import FaceStage
 from ..objects.staleness import UP_TO_DATE
 from .steps import checked_stage, in_order, one_step, renew, with_faces
 
@@ -42,6 +43,8 @@ def change(obj: Any, **values: Any) -> Any:
         given(obj, proxy, [], values)
         for property_name, value in chosen.items():
             setattr(obj, property_name, value)
+        if "Source" in chosen and isinstance(proxy, FaceStage):
+            proxy.confirm(obj)
         renew(obj)
         for follower in in_order(obj.InListRecursive):
             with contextlib.suppress(AmError):

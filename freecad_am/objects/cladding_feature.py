@@ -14,14 +14,13 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters
 from ..core.strategies import size
-from .feature import source_of
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
-from .stage import Stage
+from .shapes.chosen_faces import FaceStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
 
-class CladdingFeature(Stage):
+class CladdingFeature(FaceStage):
     """Result: core.geometry.walls.clad_faces.CladFaces, in the coordinates of the document."""
 
     kind = "feature"

@@ -19,14 +19,13 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import DevelopableParameters
 from ..core.slicing.solids.standing import hub_among, on_hub
 from ..core.strategies import size
-from .feature import source_of
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, Taken, bodies, fixtures_of, taken
-from .stage import Stage
+from .shapes.chosen_faces import FaceStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
 
-class DevelopableFeature(Stage):
+class DevelopableFeature(FaceStage):
     """Result: core.geometry.on_hub.SolidsOnHub, in the coordinates of the document."""
 
     kind = "feature"

@@ -16,11 +16,11 @@ from ..core.parameters.strategy import RevolutionParameters
 from ..core.strategies import size
 from .results.fingerprints import digits, fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape
-from .stage import Stage
+from .shapes.chosen_faces import FaceStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
 
-class RevolutionFeature(Stage):
+class RevolutionFeature(FaceStage):
     """Result: core.geometry.curves.profile.RevolvedWall, in the coordinates of the document."""
 
     kind = "feature"
@@ -99,16 +99,3 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
         "BAD_AXIS", f"{obj.Label}.Axis", "{} {} is not a straight line; choose a straight edge or an axis", target.Label,
         name
     )
-
-
-def source_of(obj: Any) -> tuple[Any, tuple[str, ...]]:
-    """The object of a feature's Source and the names of the faces chosen. InputError 'NO_INPUT', 'BAD_FACES'."""
-    if not obj.Source:
-        raise InputError("NO_INPUT", obj.Label, "Source is missing; choose the shape to deposit, or some of its faces")
-    source, names = obj.Source
-    faces = tuple(name for name in names if name)
-    wrong = [name for name in faces if not name.rsplit(".", maxsplit=1)[-1].startswith("Face")]
-    if wrong:
-        named = ", ".join(wrong)
-        raise InputError("BAD_FACES", f"{obj.Label}.Source", "{} is not a face; choose faces or the whole shape", named)
-    return source, tuple(name.rsplit(".", maxsplit=1)[-1] for name in faces)

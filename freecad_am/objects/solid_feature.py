@@ -16,9 +16,9 @@ from ..core.layers.planes.stacking import stacked
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import SolidParameters
 from ..core.strategies import size
-from .feature import source_of
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
+from .shapes.chosen_faces import source_of
 from .stage import Stage
 from .stage_parts import Link, Outcome, Section, Work
 

@@ -13,14 +13,13 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import FRONTS, SurfaceParameters
 from ..core.strategies import size
-from .feature import source_of
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
-from .stage import Stage
+from .shapes.chosen_faces import FaceStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
 
-class SurfaceFeature(Stage):
+class SurfaceFeature(FaceStage):
     """Result: SurfaceWall or PatchWall of core.geometry, in the coordinates of the document."""
 
     kind = "feature"

@@ -5187,7 +5187,7 @@
         <translation>Source manque ; choisissez des arêtes, un fil, une esquisse ou un tableau de points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/feature.py"/>
+        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
         <source>Source is missing; choose the shape to deposit, or some of its faces</source>
         <translation>Source manque ; choisissez la forme à déposer, ou certaines de ses faces</translation>
     </message>
@@ -6805,6 +6805,11 @@
         <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>a curved layer cannot be laid flat without distortion: beads are up to {0} % nearer together or farther apart than the bead spacing</source>
         <translation>une couche courbe ne se met pas à plat sans distorsion : des cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que le pas des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <source>a free-form surface</source>
+        <translation>une surface de forme libre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/front_tree.py"/>
@@ -10497,22 +10502,22 @@
         <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm. Les cordons droits du tableau ont {8} à {9} mm de large : demandez une process.bead_width parmi celles-ci, ou mesurez des cordons à d&apos;autres vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>on {0} of {1} beads in layer {2} bends follow one another too closely to turn the torch round them at {3}: it leans by {4} to {5} deg there instead of {6} deg; lean less, or allow a faster turn</source>
         <translation>sur {0} de {1} cordons de la couche {2} des courbes se suivent de trop près pour que la torche tourne à {3} : elle y penche de {4} à {5} deg au lieu de {6} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>on {0} of {1} beads in {2} layers from {3} to {4} bends follow one another too closely to turn the torch round them at {5}: it leans by {6} to {7} deg there instead of {8} deg; lean less, or allow a faster turn</source>
         <translation>sur {0} de {1} cordons dans {2} couches de {3} à {4} des courbes se suivent de trop près pour que la torche tourne à {5} : elle y penche de {6} à {7} deg au lieu de {8} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>on {0} of {1} beads the hub&apos;s normals alone turn by up to {2} deg/mm, faster than {3}; the torch follows them all the same</source>
         <translation>sur {0} de {1} cordons les normales du moyeu seules tournent jusqu&apos;à {2} deg/mm, plus vite que {3} ; la torche les suit malgré tout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>on {0} of {1} beads, {2} mm in all, the torch begins to turn ahead of corners, by up to {3} deg from what is asked, to turn no faster than {4}</source>
         <translation>sur {0} de {1} cordons, {2} mm en tout, la torche commence à tourner avant les angles, jusqu&apos;à {3} deg de ce qui est demandé, pour ne pas tourner plus vite que {4}</translation>
     </message>
@@ -13987,7 +13992,7 @@
         <translation>{0} n&apos;est pas une face de {1} ; choisissez des faces du moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/feature.py"/>
+        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
         <source>{0} is not a face; choose faces or the whole shape</source>
         <translation>{0} n&apos;est pas une face ; choisissez des faces ou toute la forme</translation>
     </message>
@@ -14667,7 +14672,7 @@
         <translation>{0} mm : {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/overhang.py"/>
+        <location filename="../../freecad_am/core/layers/over_and_under.py"/>
         <source>{0} mm^2 lean out over the layer below by more than {1} deg, the largest piece at {2}; deposit what carries it first, choose another strategy.direction, or raise strategy.max_overhang</source>
         <translation>{0} mm^2 surplombent la couche du dessous de plus de {1} deg, le plus grand morceau en {2} ; déposez d&apos;abord ce qui le porte, choisissez une autre strategy.direction, ou augmentez strategy.max_overhang</translation>
     </message>
@@ -14742,6 +14747,11 @@
         <translation>{0} de {1} est choisie, sur laquelle se dresse le reste</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <source>{0} of {1} is not the face that was chosen, which is {2} now: FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them by OK in the panel</source>
+        <translation>{0} de {1} n’est pas la face choisie, qui est maintenant {2} : FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les par OK dans le panneau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} of {1} layers are more than 20 % off the layer height of {2} mm, first layer {3}; layer {4} is {5} mm from the one below; layers along the wall (spacing: arc-length) are even</source>
         <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, d&apos;abord la couche {3} ; la couche {4} est à {5} mm de celle du dessous ; des couches le long de la paroi (spacing: arc-length) sont égales</translation>
@@ -14770,6 +14780,11 @@
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>{0} of {1} solids or groups of solids get one layer alone, on the hub: they are no higher than strategy.layer_height, {2} mm</source>
         <translation>{0} de {1} solides ou groupes de solides ne reçoivent qu&apos;une couche, sur le moyeu : ils ne sont pas plus hauts que strategy.layer_height, {2} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <source>{0} of {1} was {2} when it was chosen and is {3} now, maybe another face, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them by OK in the panel</source>
+        <translation>{0} de {1} était {2} quand elle a été choisie et est maintenant {3}, peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les par OK dans le panneau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>

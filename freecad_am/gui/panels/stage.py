@@ -17,6 +17,7 @@ from ...core.issues import AmError, InputError
 from ...objects.fields import expressions, preferences
 from ...objects.fields.link_targets import is_there
 from ...objects.fields.rows import group_of, rows
+from ...objects.shapes.chosen_faces import is_warned
 from ...objects.stage import Stage
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
@@ -216,8 +217,10 @@ class StagePanel(Noted):
             if self.obj is None:
                 function = self.function or f"make_{self.proxy.kind.replace(' ', '_')}"
                 recorded.make(self.document, function, {**chosen, **changed})
-            elif changed or chosen != self.first_inputs:
-                recorded.change(self.obj, {**(chosen if chosen != self.first_inputs else {}), **changed})
+            elif changed or chosen != self.first_inputs or is_warned(self.obj):
+                # faces that are no longer those that were chosen are confirmed by OK, where nothing else was entered
+                inputs = chosen if chosen != self.first_inputs or not changed else {}
+                recorded.change(self.obj, {**inputs, **changed})
         except AmError as error:
             self.tell_error(error)
         except Cancelled:
