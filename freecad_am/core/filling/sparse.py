@@ -23,14 +23,14 @@ class Infill:
     """How much of the area inside of the walls is filled.
 
     density: share of it, length of beads times spacing. height: mm of the layer above the origin of a gyroid. angle: rad, of
-    patterns that stand on those of the layer below: grid, triangles, honeycomb, gyroid. covered: what neither a top nor a
+    patterns that stand on those of the layer below: grid, triangles, honeycomb, gyroid. buried: what neither a top nor a
     bottom is near to; outside of it the whole is filled. None: there is neither.
     """
 
     density: float = 1.0
     height: float = 0.0
     angle: float = 0.0
-    covered: Sequence[Region] | None = None
+    buried: Sequence[Region] | None = None
 
 
 def sparse(
@@ -47,7 +47,7 @@ def sparse(
     if framed.curves:
         left = wider(without(left_open(curves, inner, beads), framed.ends), beads.gap, beads.chord_error)
         curves += centre_beads(left, beads, walls, inner, "closing")
-    loose, whole = _divided(framed.ends, infill.covered, beads)
+    loose, whole = _divided(framed.ends, infill.buried, beads)
     for part in whole:
         curves += _whole(part, beads, angle, walls, longest_link)
     for part in loose:
@@ -56,16 +56,16 @@ def sparse(
 
 
 def _divided(
-    ends: Sequence[Region], covered: Sequence[Region] | None, beads: Beads
+    ends: Sequence[Region], buried: Sequence[Region] | None, beads: Beads
 ) -> tuple[Sequence[Region], Sequence[Region]]:
     """What of the inside of walls is filled in part, and what as a whole: that a spacing farther than it has to be, so that
     it ends on beads of the layer below."""
-    if covered is None:
+    if buried is None:
         return ends, ()
-    if not covered:
+    if not buried:
         return (), ends
-    uncovered = grown(without(ends, covered), beads.spacing, beads.chord_error)
-    loose = wider(without(ends, uncovered), LEAST_HEIGHT * beads.spacing, beads.chord_error)
+    skin = grown(without(ends, buried), beads.spacing, beads.chord_error)
+    loose = wider(without(ends, skin), LEAST_HEIGHT * beads.spacing, beads.chord_error)
     return loose, without(ends, loose)
 
 

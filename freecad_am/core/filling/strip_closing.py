@@ -23,8 +23,8 @@ def strip_closing(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring
     found = []
     for window, left, inner in _open(strip, curves, beads):
         for curve in centre_beads(left, beads, ring, inner, kind):
-            cover = strip.period.unrolled(curve.points) + np.array([window.about, 0.0])
-            found.append(replace(curve, points=strip.period.unroll(cover), sheet=float(cover[:, 0].mean())))
+            uv = strip.period.unrolled(curve.points) + np.array([window.about, 0.0])
+            found.append(replace(curve, points=strip.period.unroll(uv), sheet=float(uv[:, 0].mean())))
     return long_enough(found, beads.shortest)
 
 
@@ -51,9 +51,9 @@ def _open(
 
 def near_windows(strip: Strip, curves: Sequence[PlaneCurve], reach: float) -> Iterator[tuple[Window, list[PlaneCurve]]]:
     """Windows of a strip with what of curves lies in each or up to `reach` mm beside it, laid flat about its middle."""
-    covers = [strip.period.followed(curve.points, curve.sheet, curve.turns) for curve in curves]
+    uvs = [strip.period.followed(curve.points, curve.sheet, curve.turns) for curve in curves]
     for window in strip.windows(reach):
         yield window, [
-            PlaneCurve(points, closed, curve.kind, curve.ring) for curve, cover in zip(curves, covers)
-            for points, closed in strip.near(window, cover, curve.closed and not curve.turns)
+            PlaneCurve(points, closed, curve.kind, curve.ring) for curve, uv in zip(curves, uvs)
+            for points, closed in strip.near(window, uv, curve.closed and not curve.turns)
         ]

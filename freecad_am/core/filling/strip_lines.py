@@ -57,11 +57,11 @@ def lines_round(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0
         u = -0.5 * turn + turn / count * np.arange(count + 1)
         inside = within.contains(np.stack([u, np.full(len(u), level)], axis=1))
         for a, b in _runs(inside[:-1]):
-            cover = np.stack([u[0] + turn / count * np.arange(a, b), np.full(b - a, level)], axis=1)
-            points, whole = strip.period.unroll(cover), b - a == count
+            uv = np.stack([u[0] + turn / count * np.arange(a, b), np.full(b - a, level)], axis=1)
+            points, whole = strip.period.unroll(uv), b - a == count
             back = (row % 2 == 1) if not whole else beads.clockwise
             sense = 0 if not whole else (-1 if back else 1)
-            sheet = float(cover[:, 0].mean())
+            sheet = float(uv[:, 0].mean())
             curves.append(PlaneCurve(points[::-1] if back else points, whole, "line", walls, sense, sheet))
     curves = long_enough(curves, beads.shortest)
     return curves + (strip_closing(strip, curves, beads, walls, "closing") if density == 1.0 else [])
@@ -110,18 +110,18 @@ class _Inside:
         reach = 0.75 * turn
         self.unrolled = [piece for part in parts if isinstance(part, Strip) for piece in part.between(-reach, reach)]
         for part in (part for part in parts if isinstance(part, Region)):
-            covers = [strip.period.followed(dense(border, 0.001 * turn), part.sheet) for border in part.borders()]
-            for hole in covers[1:] if math.isfinite(strip.period.whole) else ():
-                away = 0.5 * (covers[0][:, 0].min() + covers[0][:, 0].max()) - hole[0, 0]
+            borders = [strip.period.followed(dense(border, 0.001 * turn), part.sheet) for border in part.borders()]
+            for hole in borders[1:] if math.isfinite(strip.period.whole) else ():
+                away = 0.5 * (borders[0][:, 0].min() + borders[0][:, 0].max()) - hole[0, 0]
                 hole[:, 0] += strip.period.whole * np.round(away / strip.period.whole)
             for k in (-1, 0, 1):
-                self.unrolled += regions([cover + np.array([k * turn, 0.0]) for cover in covers])
+                self.unrolled += regions([uv + np.array([k * turn, 0.0]) for uv in borders])
 
-    def contains(self, cover: Array) -> NDArray[np.bool_]:
+    def contains(self, uv: Array) -> NDArray[np.bool_]:
         """Which of (u, v) (n, 2) within one turn lie in one of them."""
-        inside = np.zeros(len(cover), dtype=bool)
+        inside = np.zeros(len(uv), dtype=bool)
         for piece in self.unrolled:
-            inside |= piece.contains(cover)
+            inside |= piece.contains(uv)
         return inside
 
     def border(self, u: Array, within: Array, beyond: Array) -> Array:

@@ -16,7 +16,7 @@ from ..slicing.solids.unrolled import cut
 from ..types import Array
 from .along import field as along
 from .curved import field as curved
-from .over_and_under import with_covered, with_overhangs
+from .over_and_under import with_buried, with_overhangs
 from .planes import field as planes
 from .planes.layer import PlaneLayer
 from .rotary import field as rotary
@@ -49,7 +49,7 @@ def stacks(group: Group, substrate: Sequence[Body], strategy: FilledParameters) 
             layers = planes.slices(group.base, lot, strategy)
         layers = with_overhangs(layers, strategy)
         name = lot[0].name if len(lot) == 1 else f"{len(lot)} solids"
-        found.append(Stack(name, with_covered(layers, strategy.thick)))
+        found.append(Stack(name, with_buried(layers, strategy.thick)))
     return found
 
 

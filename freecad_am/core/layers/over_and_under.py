@@ -63,7 +63,7 @@ def under_and_over(neighbours: Sequence[Sequence[Region]]) -> tuple[Region, ...]
     return found
 
 
-def with_covered(slices: Iterator[Slice], thick: int) -> Iterator[Slice]:
+def with_buried(slices: Iterator[Slice], thick: int) -> Iterator[Slice]:
     """Layers of one plane, each with what so many layers under it and over it all have."""
     if not thick:
         yield from slices
@@ -72,15 +72,15 @@ def with_covered(slices: Iterator[Slice], thick: int) -> Iterator[Slice]:
     waiting: deque[Slice] = deque()
     for layer in slices:
         while waiting and waiting[0].number + thick < layer.number:
-            yield _covered(waiting.popleft(), near, thick)
+            yield _buried(waiting.popleft(), near, thick)
         near.append(layer)
         waiting.append(layer)
     for layer in waiting:
-        yield _covered(layer, near, thick)
+        yield _buried(layer, near, thick)
 
 
-def _covered(layer: Slice, near: Sequence[Slice], thick: int) -> Slice:
+def _buried(layer: Slice, near: Sequence[Slice], thick: int) -> Slice:
     there = {other.number: [region for region in other.regions if isinstance(region, Region)] for other in near}
-    return layer._replace(covered=under_and_over(
+    return layer._replace(buried=under_and_over(
         [there.get(layer.number + k, []) for step in range(1, thick + 1) for k in (-step, step)]
     ))

@@ -65,7 +65,7 @@ class LayerSurface(Protocol):
 
 class Slice(NamedTuple):
     """One layer of a part: its number, the base in whose frame it is, its surface, its regions laid flat, and findings.
-    azimuth: rad about the axis of the base, of the middle of the solid. covered: what of the plane is near to neither a top
+    azimuth: rad about the axis of the base, of the middle of the solid. buried: what of the plane is near to neither a top
     nor a bottom (`over_and_under`); None where nobody asks. heights: its least, mean and largest height, mm; None
     where it has the layer height everywhere."""
 
@@ -75,7 +75,7 @@ class Slice(NamedTuple):
     regions: tuple[Region | Strip, ...]
     issues: tuple[Issue, ...] = ()
     azimuth: float = 0.0
-    covered: tuple[Region, ...] | None = None
+    buried: tuple[Region, ...] | None = None
     heights: tuple[float, float, float] | None = None
 
     def where(self, point: Array) -> str:

@@ -54,17 +54,17 @@ class Period:
     def followed(self, flat: Array, sheet: float = 0.0, turns: int = 0) -> Array:
         """(u, v) (n, 2) along a curve (n, 2) on the plane, u counted on where it comes round behind the apex, in the mean
         within half a turn of the plane about `sheet`, mm; one that goes round the hub to where it begins again."""
-        cover = self.unrolled(flat)
+        uv = self.unrolled(flat)
         if not math.isinf(self.apex):
-            cover[:, 0] = np.unwrap(cover[:, 0], period=self.whole)
-            cover[:, 0] -= self.whole * np.round((cover[:, 0].mean() - sheet) / self.whole)
-        return np.vstack([cover, cover[:1] + np.array([turns * self.around, 0.0])]) if turns else cover
+            uv[:, 0] = np.unwrap(uv[:, 0], period=self.whole)
+            uv[:, 0] -= self.whole * np.round((uv[:, 0].mean() - sheet) / self.whole)
+        return np.vstack([uv, uv[:1] + np.array([turns * self.around, 0.0])]) if turns else uv
 
-    def unroll(self, cover: Array, about: float = 0.0) -> Array:
+    def unroll(self, uv: Array, about: float = 0.0) -> Array:
         """Points (n, 2) of the plane of (u, v), turned back by `about` mm of u."""
         if math.isinf(self.apex):
-            return np.asarray(cover - np.array([about, 0.0]))
-        phi, way = (cover[:, 0] - about) / abs(self.apex), self.apex - cover[:, 1]
+            return np.asarray(uv - np.array([about, 0.0]))
+        phi, way = (uv[:, 0] - about) / abs(self.apex), self.apex - uv[:, 1]
         return np.stack([way * np.sin(phi), self.apex - way * np.cos(phi)], axis=1)
 
     def moved(self, flat: Array, turns: int) -> Array:
@@ -133,8 +133,8 @@ class Strip:
         for about, low, high, margin in windows:
             found: list[Array] = []
             for part in (part for region in self.flat(low - margin, high + margin, about) for part in operation(region)):
-                cover = [self._cut(ring, about, (low - about, high - about)) for ring in part.borders()]
-                found += [ring for inner in regions(cover) for ring in _boxed(inner, low, high)]
+                uv = [self._cut(ring, about, (low - about, high - about)) for ring in part.borders()]
+                found += [ring for inner in regions(uv) for ring in _boxed(inner, low, high)]
             pieces.append(found)
         return parts(*chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])), self.period)
 
@@ -166,23 +166,23 @@ class Strip:
         exact = np.vstack(copies)
         return self._with_cuts(exact, (low, high), closed=False)
 
-    def _with_cuts(self, cover: Array, at: Sequence[float], closed: bool) -> Array:
+    def _with_cuts(self, uv: Array, at: Sequence[float], closed: bool) -> Array:
         """A line in (u, v) with points where the edges, straight when laid flat, cross generatrices."""
         for u in at:
-            following = np.roll(cover, -1, axis=0)
-            k = np.flatnonzero((cover[:, 0] < u) != (following[:, 0] < u))
-            k = k if closed else k[k < len(cover) - 1]
-            a, b = self.period.unroll(cover[k], u), self.period.unroll(following[k], u)
+            following = np.roll(uv, -1, axis=0)
+            k = np.flatnonzero((uv[:, 0] < u) != (following[:, 0] < u))
+            k = k if closed else k[k < len(uv) - 1]
+            a, b = self.period.unroll(uv[k], u), self.period.unroll(following[k], u)
             fa, fb = self.period.distance_past(a, 0.0), self.period.distance_past(b, 0.0)
             place = self.period.unrolled(a + (fa / (fa - fb))[:, None] * (b - a))
             place[:, 0] = u
-            cover = np.insert(cover, k + 1, place, axis=0)
-        return cover
+            uv = np.insert(uv, k + 1, place, axis=0)
+        return uv
 
     def _cut(self, flat: Array, about: float, at: tuple[float, float]) -> Array:
         """A ring of a window in (u, v), with points where generatrices cross it."""
-        cover = self._with_cuts(self.period.unrolled(flat), at, closed=True)
-        return np.asarray(cover + np.array([about, 0.0]))
+        uv = self._with_cuts(self.period.unrolled(flat), at, closed=True)
+        return np.asarray(uv + np.array([about, 0.0]))
 
     def windows(self, reach: float) -> tuple[Window, ...]:
         """The strip once round, for what looks `reach` mm around."""
@@ -199,15 +199,15 @@ class Strip:
         below, above = np.stack([u, np.full(17, bottom - margin)], axis=1), np.stack([u, np.full(17, top + margin)], axis=1)
         return regions([self.period.unroll(np.vstack([below, above[::-1]]), window.about)])
 
-    def near(self, window: Window, cover: Array, closed: bool) -> list[tuple[Array, bool]]:
+    def near(self, window: Window, uv: Array, closed: bool) -> list[tuple[Array, bool]]:
         """What of a curve in (u, v), in all turns, lies in a window or beside it, laid flat about its middle: points (n, 2)
         and whether they close. closed: the curve is, on the plane."""
         turn = self.period.around
         low, high = window.low - window.margin, window.high + window.margin
         found: list[tuple[Array, bool]] = []
-        first, last = np.ceil((low - cover[:, 0].max()) / turn), np.floor((high - cover[:, 0].min()) / turn)
+        first, last = np.ceil((low - uv[:, 0].max()) / turn), np.floor((high - uv[:, 0].min()) / turn)
         for k in range(int(first), int(last) + 1):
-            line = cover + np.array([k * turn, 0.0])
+            line = uv + np.array([k * turn, 0.0])
             if closed:
                 found.append((line, True))
                 continue
@@ -260,13 +260,13 @@ def strips(loops: Sequence[tuple[Array, int]], period: Period) -> tuple[Strip | 
     rounds, closed = [], []
     turn = period.around
     for flat, turns in loops:
-        cover = period.unrolled(flat)
-        step = np.diff(cover[:, 0], prepend=cover[:1, 0])
-        cover[:, 0] -= turn * np.cumsum(np.round(step / turn))
+        uv = period.unrolled(flat)
+        step = np.diff(uv[:, 0], prepend=uv[:1, 0])
+        uv[:, 0] -= turn * np.cumsum(np.round(step / turn))
         if turns:
-            rounds.append((cover, turns))
+            rounds.append((uv, turns))
         else:
-            closed.append(cover)
+            closed.append(uv)
     return parts(rounds, closed, period)
 
 

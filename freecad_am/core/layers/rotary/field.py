@@ -48,8 +48,8 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
         below.append(loops)
         lots = within_margin(below, height, strategy.margin, lambda loops, up: [moved(surface, loop, up) for loop in loops])
         if any(loop.turns for _, loops in lots for loop in loops):
-            covered = () if thick > min(number, layers - 1 - number) else None
-            layer = Slice(number, base, RoundLayer(offset), _all_round(lots, offset, strategy), (), azimuth, covered)
+            buried = () if thick > min(number, layers - 1 - number) else None
+            layer = Slice(number, base, RoundLayer(offset), _all_round(lots, offset, strategy), (), azimuth, buried)
         else:
             neighbours = _neighbours(surface, below, ahead, height, thick)
             flat = opened(offset, [loop for loops in (*(loops for _, loops in lots), *neighbours) for loop in loops],
@@ -59,7 +59,7 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
             found, issues = regions_of(lots_flat, strategy.margin, error, number)
             layer = Slice(number, base, RoundLayer(offset, flat.middle), found, issues, azimuth)
             if thick:
-                layer = layer._replace(covered=under_and_over([
+                layer = layer._replace(buried=under_and_over([
                     grown(regions([next(next_loop) for _ in loops]), strategy.margin, ARCS * error) for loops in neighbours
                 ]))
         if layer.regions:

@@ -125,13 +125,13 @@ class Pictures:
         if strategy.fill_density == 1.0:
             return _Asked(beads, angle, Infill())
         height = layer.number * strategy.layer_height if strategy.fill == "gyroid" else 0.0
-        return _Asked(beads, angle, Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.covered))
+        return _Asked(beads, angle, Infill(strategy.fill_density, height, strategy.fill_angle - turned, layer.buried))
 
     def _picture(self, layer: Slice, region: Region | Strip, asked: _Asked) -> _Picture:
         """A region filled, as one before it where that was alike."""
         flat = layer.surface.period is None
         if isinstance(region, Strip):
-            return self._made(region, asked._replace(infill=Infill()) if layer.covered == () else asked, flat)
+            return self._made(region, asked._replace(infill=Infill()) if layer.buried == () else asked, flat)
         known = self._known.setdefault(layer.surface.alike, [])
         for other, before, picture in known:
             if _alike(before, asked) and _equal(other.borders(), region.borders()):
@@ -232,10 +232,10 @@ def _alike(one: _Asked, other: _Asked) -> bool:
     a, b = one.infill, other.infill
     if a.density == b.density == 1.0:
         return True
-    if a.height != b.height or abs(a.angle - b.angle) > 1e-9 or (a.covered is None) != (b.covered is None):
+    if a.height != b.height or abs(a.angle - b.angle) > 1e-9 or (a.buried is None) != (b.buried is None):
         return False
     borders, others = (
-        tuple(border for region in infill.covered or () for border in region.borders()) for infill in (a, b)
+        tuple(border for region in infill.buried or () for border in region.borders()) for infill in (a, b)
     )
     return _equal(borders, others)
 
