@@ -77,8 +77,7 @@ def _searched(
     )
     progress(0.7, "settling")
     paths = _resolved(task, beads, places, (coarse, coarse_threshold), (full, threshold), refined)
-    lost = [k for k in elsewhere.lost(task, beads, places, paths) if found.margin[best[k], k] >= 0.0]
-    others = dict(zip(lost, elsewhere.of_beads(task, [beads[k] for k in lost], [places[k] for k in lost])))
+    others = elsewhere.where_lost(task, beads, places, paths, found)
     paths = [others.get(k) or path for k, path in enumerate(paths)]
     if task.kept is not None:
         progress(0.8, "keeping the arm clear")

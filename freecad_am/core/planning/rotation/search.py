@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...geometry.ties import first_least, first_most
 from ...kinematics import jacobian as jac
-from ...types import Array, Mask
+from ...types import Array, Index, Mask
 from .. import criteria
 from ..limit_rows import UNREACHABLE
 from ..points import Points, in_pieces, steps
@@ -53,6 +53,10 @@ class Found:
         """The candidates of one slope alone."""
         chosen = np.abs(self.coefficients[:, 0, 1] - slope) < 1e-9
         return Found(self.coefficients[chosen], self.objective[chosen], self.margin[chosen])
+
+    def of_beads(self, beads: Index) -> Found:
+        """The candidates of some beads (k,) alone."""
+        return Found(self.coefficients[:, beads], self.objective[:, beads], self.margin[:, beads])
 
     def best(self) -> NDArray[np.int64]:
         """(B,) index of the candidate with the least objective among the feasible, else of the largest margin."""
