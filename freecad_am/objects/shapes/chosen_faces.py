@@ -6,7 +6,10 @@ from __future__ import annotations
 import dataclasses
 from typing import Any, NamedTuple
 
+import FreeCAD as App
 import numpy as np
+import Part
+from scipy.spatial import cKDTree
 
 from ...core.issues import WARNING, AmError, InputError, Issue, Text
 from ..fields.properties import HIDDEN, OUTPUT
@@ -16,30 +19,41 @@ from ..staleness import UP_TO_DATE
 from .bodies import shape_of
 
 CODE = "FACES_CHANGED"
+PLANE, TURNED = "Part::GeomPlane", ("Part::GeomCylinder", "Part::GeomCone", "Part::GeomToroid")
+LEANS = np.radians(1.0)  # by which a face may turn and be the same
+WHOLE = "Shape"  # the name of what is stored of the whole part
 TOLERANCE = 1e-6  # of the part's size, squared of its area: by how much a face may have moved, or grown, and be the same
 SURFACES = {
-    "Part::GeomPlane": Text("a plane"), "Part::GeomCylinder": Text("a cylinder"), "Part::GeomCone": Text("a cone"),
+    PLANE: Text("a plane"), "Part::GeomCylinder": Text("a cylinder"), "Part::GeomCone": Text("a cone"),
     "Part::GeomSphere": Text("a sphere"), "Part::GeomToroid": Text("a torus"),
 }
 FREE_FORM = Text("a free-form surface")
 
 
 class Mark(NamedTuple):
-    """What a face is known by: its surface, and area (mm2) and middle (mm) where its part places itself."""
+    """What a face, or with no surface a whole part, is known by where the part places itself: its surface, the way that a
+    plane faces or the line that another one turns about (0 for others), area (mm2) and middle (mm)."""
 
     name: str
     surface: str
+    way: tuple[float, float, float]
     area: float
     middle: tuple[float, float, float]
 
     def text(self) -> str:
         """As it is stored."""
-        return " ".join((self.name, self.surface, *(repr(value) for value in (self.area, *self.middle))))
+        return " ".join((self.name, self.surface, *(repr(value) for value in (*self.way, self.area, *self.middle))))
 
     def is_same(self, other: Mark, size: float) -> bool:
-        """Whether two are of one face of a part of a size (mm)."""
+        """Whether nothing changed, of a part of a size (mm)."""
         near = float(np.abs(np.subtract(self.middle, other.middle)).max()) <= TOLERANCE * size
-        return self.surface == other.surface and near and abs(self.area - other.area) <= TOLERANCE * size**2
+        return self.is_alike(other) and near and abs(self.area - other.area) <= TOLERANCE * size**2
+
+    def is_alike(self, other: Mark) -> bool:
+        """Whether a face is of the same kind of surface and lies the same way, as a part that grows leaves it."""
+        along = float(np.dot(self.way, other.way))
+        lies = not any(self.way) or (along if self.surface == PLANE else abs(along)) > np.cos(LEANS)
+        return self.surface == other.surface and lies
 
 
 class FaceStage(Stage):
@@ -52,7 +66,7 @@ class FaceStage(Stage):
             help = "The faces as they were chosen."
             obj.addProperty("App::PropertyStringList", "ChosenFaces", "Result", help, HIDDEN | OUTPUT)
             if obj.Status == UP_TO_DATE:  # a document from before this was kept
-                obj.ChosenFaces = [mark.text() for mark in _marks(obj)]
+                obj.ChosenFaces = _texts(obj)
 
     def onChanged(self, obj: Any, name: str) -> None:
         """Other faces are what they are when they are chosen. FreeCAD 1.0 and later tell of a change also where the part was
@@ -60,7 +74,7 @@ class FaceStage(Stage):
         document = obj.Document
         by_hand = not (document is None or document.Restoring or document.Transacting or document.Recomputing)
         asked = name == "Source" and by_hand and "ChosenFaces" in obj.PropertiesList
-        if asked and {_read(text).name for text in obj.ChosenFaces} != {mark.name for mark in _marks(obj)}:
+        if asked and _named(obj) not in (None, {mark.name for mark in _stored(obj)}):
             self.confirm(obj)
         super().onChanged(obj, name)
 
@@ -75,13 +89,31 @@ class FaceStage(Stage):
     def _store(self, obj: Any, outcome: Outcome, *packed: Any) -> None:
         issues = _compared(obj)
         if not issues:
-            obj.ChosenFaces = [mark.text() for mark in _marks(obj)]
+            obj.ChosenFaces = _texts(obj)
         super()._store(obj, dataclasses.replace(outcome, issues=(*issues, *outcome.issues)), *packed)
 
 
 def is_warned(obj: Any) -> bool:
     """Whether an object is a feature whose faces are no longer those that were chosen."""
     return isinstance(getattr(obj, "Proxy", None), FaceStage) and f'"{CODE}"' in obj.Issues
+
+
+def _named(obj: Any) -> set[str] | None:
+    """The names of the faces of a feature, whether these are there or not; None where its source is missing."""
+    try:
+        return set(source_of(obj)[1])
+    except AmError:
+        return None
+
+
+def _stored(obj: Any) -> list[Mark]:
+    return [mark for mark in map(_read, obj.ChosenFaces) if mark.name != WHOLE]
+
+
+def _texts(obj: Any) -> list[str]:
+    """What is stored of the faces that a feature names, as they are, and of the whole; nothing where it names none."""
+    marks = _marks(obj)
+    return [mark.text() for mark in (*marks, _whole(shape_of(obj.Source[0])))] if marks else []
 
 
 def _marks(obj: Any) -> list[Mark]:
@@ -91,41 +123,81 @@ def _marks(obj: Any) -> list[Mark]:
         shape = shape_of(source) if names else None
     except AmError:
         return []
-    return [] if shape is None else [mark for mark in _marks_of(shape) if mark.name in names]
+    return [] if shape is None else _marks_of(shape, set(names))
 
 
-def _marks_of(shape: Any) -> list[Mark]:
-    back = shape.Placement.inverse()
-    return [
-        Mark(f"Face{number}", face.Surface.TypeId, face.Area, tuple(back.multVec(face.CenterOfMass)))
-        for number, face in enumerate(shape.Faces, start=1)
-    ]
+def _marks_of(shape: Any, names: set[str]) -> list[Mark]:
+    """Of the faces of these names; of all others with none."""
+    place, named = shape.Placement.inverse(), enumerate(shape.Faces, start=1)
+    return [_mark(f"Face{k}", face, place) for k, face in named if not names or f"Face{k}" in names]
+
+
+def _mark(name: str, face: Any, place: Any) -> Mark:
+    try:
+        surface = face.Surface
+        kind, way = surface.TypeId, App.Vector()
+        if kind == PLANE:
+            way = place.Rotation.multVec(face.normalAt(0.0, 0.0))
+        elif kind in TURNED:
+            way = place.Rotation.multVec(surface.Axis)
+    except (TypeError, RuntimeError, Part.OCCError):  # a surface that FreeCAD has no name for
+        kind, way = "other", App.Vector()
+    return Mark(name, kind, tuple(way), face.Area, tuple(place.multVec(face.CenterOfMass)))
+
+
+def _whole(shape: Any) -> Mark:
+    faces = shape.Faces
+    middle = shape.Placement.inverse().multVec(shape.BoundBox.Center)
+    return Mark(WHOLE, str(len(faces)), (0.0, 0.0, 0.0), shape.Area, tuple(middle))
 
 
 def _compared(obj: Any) -> tuple[Issue, ...]:
-    """What is wrong with the faces that a feature names, by what they were when they were chosen."""
-    before, now = [_read(text) for text in obj.ChosenFaces], {mark.name: mark for mark in _marks(obj)}
+    """What is wrong with the faces that a feature names, by what they were when they were chosen.
+
+    Parts grow and move: a face that is of the same kind, and lies the same way, is the same one, unless the one that was
+    chosen is there unchanged under another number, and others came or went, or nothing but numbers changed.
+    """
+    before, now = _stored(obj), {mark.name: mark for mark in _marks(obj)}
     if not now or {mark.name for mark in before} != now.keys():
         return ()
-    shape, label = shape_of(obj.Source[0]), obj.Source[0].Label
+    source = obj.Source[0]
+    shape = shape_of(source)
     size = shape.BoundBox.DiagonalLength
-    others = [mark for mark in before if not mark.is_same(now[mark.name], size)]
-    every = [mark for mark in _marks_of(shape) if mark.name not in now] if others else []
-    for mark in others:
-        found = next((one.name for one in every if mark.is_same(one, size)), None)
-        if found is not None:
+    moved = [mark for mark in before if not mark.is_same(now[mark.name], size)]
+    if not moved:
+        return ()
+    every = _marks_of(shape, set())
+    at = cKDTree([mark.middle for mark in every])
+    whole, was = _whole(shape), next(mark for mark in map(_read, obj.ChosenFaces) if mark.name == WHOLE)
+    renumbered = whole.surface != was.surface or was.is_same(whole, size)
+    for mark in moved:
+        near = at.query_ball_point(mark.middle, 2.0 * TOLERANCE * size)
+        same = [one.name for one in (every[k] for k in near) if mark.is_same(one, size)]
+        if any(name in now for name in same):
+            continue  # in another order
+        if same and (renumbered or not mark.is_alike(now[mark.name])):
             return (_issue(Text(
-                "{} of {} is not the face that was chosen, which is {} now: FreeCAD numbers faces anew when a part changes; "
-                "choose the faces again, or confirm them by OK in the panel", mark.name, label, found,
+                "{} of {} is not the face that was chosen: that face is {} now, as FreeCAD numbers faces anew when a part "
+                "changes; choose the faces again, or confirm them: OK in the panel with nothing else entered", mark.name,
+                source.Label, same[0],
             )),)
-    for mark in others:
-        if mark.surface != now[mark.name].surface:
-            return (_issue(Text(
-                "{} of {} was {} when it was chosen and is {} now, maybe another face, as FreeCAD numbers faces anew when a "
-                "part changes; choose the faces again, or confirm them by OK in the panel", mark.name, label,
-                SURFACES.get(mark.surface, FREE_FORM), SURFACES.get(now[mark.name].surface, FREE_FORM),
-            )),)
+        if not mark.is_alike(now[mark.name]):
+            return (_changed(mark, now[mark.name], source.Label),)
     return ()
+
+
+def _changed(mark: Mark, now: Mark, label: str) -> Issue:
+    if mark.surface == now.surface:
+        return _issue(Text(
+            "{} of {} lies another way than when it was chosen, so it may be another face, as FreeCAD numbers faces anew "
+            "when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered",
+            mark.name, label,
+        ))
+    return _issue(Text(
+        "{} of {} was {} when it was chosen and is {} now, so it may be another face, as FreeCAD numbers faces anew when a "
+        "part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered", mark.name, label,
+        SURFACES.get(mark.surface, FREE_FORM), SURFACES.get(now.surface, FREE_FORM),
+    ))
 
 
 def _issue(message: str) -> Issue:
@@ -134,8 +206,8 @@ def _issue(message: str) -> Issue:
 
 def _read(text: str) -> Mark:
     name, surface, *values = text.split(" ")
-    area, x, y, z = map(float, values)
-    return Mark(name, surface, area, (x, y, z))
+    i, j, k, area, x, y, z = map(float, values)
+    return Mark(name, surface, (i, j, k), area, (x, y, z))
 
 
 def source_of(obj: Any) -> tuple[Any, tuple[str, ...]]:

@@ -90,6 +90,6 @@ def test_what_falls_short_between_points_alone_is_seen(sliced, cell_of):
             refined = refine.Refined(found.coefficients[k], np.zeros(1), ("",), (0,))
             path = judged(task, [bead], [place], points, task.thresholds(points), refined.coefficients, refined)
             assert path[0].margin >= 0.0
-            assert elsewhere.lost(task, [bead], [place], path) == ([0] if between[k] < 0.0 else [])
+            assert elsewhere.lost(task, [bead], path) == ([0] if between[k] < 0.0 else [])
             wrong += between[k] < 0.0
     assert wrong > 0

@@ -14,7 +14,7 @@ from ...types import Array
 from ..joint_path import BeadPath
 from ..limit_rows import UNREACHABLE
 from ..points import Points, gather
-from ..task import FITS, Task
+from ..task import FITS, Task, condition_margin
 from . import refine, search
 from .evaluation import judged
 
@@ -25,21 +25,22 @@ HALVINGS = 2  # of each segment, where it is looked at between
 CANDIDATES = 12  # rotations of a bead that are looked at there
 
 
-def lost(task: Task, beads: Sequence[Bead], places: Sequence[Place], paths: Sequence[BeadPath]) -> list[int]:
+def lost(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[int]:
     """Which of the beads do not keep all limits with their rotation, at their points or between them."""
     found = [k for k, path in enumerate(paths) if path.margin < FITS]
     low = [k for k, path in enumerate(paths) if path.margin >= FITS and (path.condition < LOW * path.threshold).any()]
     if low:
-        finer, asked = [_finer(beads[k]) for k in low], [paths[k] for k in low]
+        finer = [_finer(beads[k]) for k in low]
         points = gather(finer, task.cell)
-        as_they_are = refine.Refined(
-            np.array([path.coefficients for path in asked]), np.array([path.objective for path in asked]),
-            tuple(path.reason for path in asked), tuple(path.iterations for path in asked),
-        )
-        between = judged(
-            task, finer, [places[k] for k in low], points, task.thresholds(points), as_they_are.coefficients, as_they_are
-        )
-        found += [k for k, path in zip(low, between) if path.margin < FITS]
+        share = 0.5**HALVINGS
+        phi = np.concatenate([
+            np.interp(np.arange(len(bead)) * share, np.arange(len(paths[k].phi)), paths[k].phi)
+            for k, bead in zip(low, finer)
+        ])
+        joints = task.joints(points, phi)
+        condition = condition_margin(task.condition(points, phi, joints), task.thresholds(points))
+        margin = points.worst(np.minimum(task.rows.margin(joints), condition))
+        found += [k for k, least in zip(low, margin) if least < FITS]
     return sorted(found)
 
 
@@ -48,7 +49,7 @@ def where_lost(
 ) -> dict[int, BeadPath | None]:
     """What `of_beads` finds for the beads that do not keep all limits though a candidate did at few of their points."""
     promising = found.margin.max(axis=0) >= 0.0
-    rows = [k for k in lost(task, beads, places, paths) if promising[k]]
+    rows = [k for k in lost(task, beads, paths) if promising[k]]
     some = found.of_beads(np.array(rows, dtype=np.intp))
     return dict(zip(rows, of_beads(task, [beads[k] for k in rows], [places[k] for k in rows], some)))
 

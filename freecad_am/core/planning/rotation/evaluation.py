@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...geometry.angles import TURN, shortest
 from ...toolpath import Bead
 from ...types import Array
 from .. import criteria
@@ -36,10 +37,26 @@ def judged(
     )
     margin = points.worst(np.minimum(task.rows.margin(joints), condition_margin(condition, threshold)))
     ends = np.append(points.first, len(points))
+    turned = _the_short_way(phi, points)
     return [
         BeadPath(
-            layer, index, bead, phi[a:b], joints[a:b], condition[a:b], threshold[a:b], float(objective[k]),
+            layer, index, bead, turned[a:b], joints[a:b], condition[a:b], threshold[a:b], float(objective[k]),
             float(margin[k]), coefficients[k], refined.reason[k], refined.iterations[k],
         )
         for k, (bead, (layer, index), a, b) in enumerate(zip(beads, places, ends[:-1], ends[1:]))
     ]
+
+
+def _the_short_way(phi: Array, points: Points) -> Array:
+    """Rotations (T,) counted on from point to point the short way, as joints are: of a bead of few points a steep polynomial
+    makes whole turns between two of them, which is the same at both."""
+    step = np.diff(phi, prepend=phi[:1])
+    step[points.first] = 0.0
+    long = np.abs(step) > 0.5 * TURN
+    if not long.any():
+        return phi
+    off = np.zeros_like(phi)
+    off[long] = shortest(step[long]) - step[long]
+    off = np.cumsum(off)
+    found: Array = phi + off - off[points.first][points.bead]
+    return found
