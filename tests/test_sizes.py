@@ -21,7 +21,7 @@ LONG_FUNCTIONS = {
     "core/kinematics/inverse/parallel_axes.py _solve_piece": 52,
     "core/kinematics/machines/machine.py _parse": 48,
     "core/kinematics/inverse/opw_recognition.py _arm": 50,
-    "core/planning/methods/layer_by_layer.py _searched": 47,
+    "core/planning/methods/layer_by_layer.py _searched": 49,
     "core/process/model/bead_table.py measured": 44,
     "core/process/deposit/support.py _alone": 49,
     "core/simulation/rapid_look.py looked_at": 45,

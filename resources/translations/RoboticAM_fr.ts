@@ -14367,6 +14367,11 @@
         <translation>{0} n&apos;est pas le nom du fichier, {1} ; renommez-le</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <source>{0} is not there any more since the part changed; choose the faces again</source>
+        <translation>{0} n’existe plus depuis que la pièce a changé ; choisissez les faces à nouveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>{0} is not there, has no routine {1}, is run already, or loaded while depositing</source>
         <translation>{0} manque, n&apos;a pas de routine {1}, a déjà été exécuté, ou est chargé pendant le dépôt</translation>
@@ -14748,8 +14753,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
-        <source>{0} of {1} is not the face that was chosen, which is {2} now: FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them by OK in the panel</source>
-        <translation>{0} de {1} n’est pas la face choisie, qui est maintenant {2} : FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les par OK dans le panneau</translation>
+        <source>{0} of {1} is not the face that was chosen: that face is {2} now, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
+        <translation>{0} de {1} n’est pas la face choisie : celle-ci est maintenant {2}, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
@@ -14760,6 +14765,11 @@
         <location filename="../../freecad_am/core/layers/along/field.py"/>
         <source>{0} of {1} layers are not as high everywhere as asked for: layer {2} is {3} to {4} mm high, farthest off the {5} mm at {6}; strategy.band allows {7} %, and {8} % would be needed: raise it, or choose a guide in the middle of the part or one that bends less</source>
         <translation>{0} couches sur {1} ne sont pas partout de la hauteur demandée : la couche {2} a {3} à {4} mm, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, et il faudrait {8} % : augmentez-le, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <source>{0} of {1} lies another way than when it was chosen, so it may be another face, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
+        <translation>{0} de {1} est orientée autrement que lorsqu’elle a été choisie, c’est donc peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/on_part.py"/>
@@ -14783,8 +14793,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
-        <source>{0} of {1} was {2} when it was chosen and is {3} now, maybe another face, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them by OK in the panel</source>
-        <translation>{0} de {1} était {2} quand elle a été choisie et est maintenant {3}, peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les par OK dans le panneau</translation>
+        <source>{0} of {1} was {2} when it was chosen and is {3} now, so it may be another face, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
+        <translation>{0} de {1} était {2} quand elle a été choisie et est maintenant {3}, c’est donc peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>

@@ -119,7 +119,13 @@ def test_a_fillet_that_numbers_faces_anew(doc, face):
     feature = api.make_cladding_feature(doc, part, [f"Face{face}"], **COARSE)
     others = 0
     for edge in box.Shape.Edges[face % 2::2]:
-        put(part, box.Shape.makeFillet(3.0, [edge]))
+        put_quietly(part, box.Shape.makeFillet(3.0, [edge]))
+        if feature.Source[1][0].startswith("?"):  # FreeCAD 1.0 and later say themselves that it is lost
+            others += 1
+            assert feature.Status == "failed" and f"Face{face} is not there any more" in feature.Message
+            put_quietly(part, box.Shape)
+            api.change(feature, source=part, faces=[f"Face{face}"])
+            continue
         now = part.Shape.getElement(feature.Source[1][0])
         lies = part.Placement.inverse().Rotation.multVec(now.normalAt(0, 0))
         right = now.Surface.TypeId == "Part::GeomPlane" and (lies - chosen).Length < 1e-6

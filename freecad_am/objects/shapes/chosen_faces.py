@@ -216,6 +216,12 @@ def source_of(obj: Any) -> tuple[Any, tuple[str, ...]]:
         raise InputError("NO_INPUT", obj.Label, "Source is missing; choose the shape to deposit, or some of its faces")
     source, names = obj.Source
     faces = tuple(name for name in names if name)
+    lost = ", ".join(name.lstrip("?") for name in faces if name.startswith("?"))
+    if lost:  # by FreeCAD 1.0 and later
+        raise InputError(
+            "BAD_FACES", f"{obj.Label}.Source", "{} is not there any more since the part changed; choose the faces again",
+            lost,
+        )
     wrong = [name for name in faces if not name.rsplit(".", maxsplit=1)[-1].startswith("Face")]
     if wrong:
         named = ", ".join(wrong)

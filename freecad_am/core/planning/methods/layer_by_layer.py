@@ -77,7 +77,9 @@ def _searched(
     )
     progress(0.7, "settling")
     paths = _resolved(task, beads, places, (coarse, coarse_threshold), (full, threshold), refined)
-    others = elsewhere.where_lost(task, beads, places, paths, found)
+    others = elsewhere.where_lost(
+        task, beads, places, paths, found, lambda share: progress(0.7 + 0.1 * share, "settling")
+    )
     paths = [others.get(k) or path for k, path in enumerate(paths)]
     if task.kept is not None:
         progress(0.8, "keeping the arm clear")
@@ -89,7 +91,7 @@ def _searched(
     # a joined bead that a higher degree serves in one piece need not be split
     helped = {k: some for k, some in helped.items() if len(some) == 1 or not joined[k] or paths[k].margin < FITS}
     late = [k for k in range(len(beads)) if k not in helped and k not in hopeless
-            and (others.get(k, paths[k]) is None or paths[k].margin < FITS)]
+            and (paths[k].margin < FITS or (task.kept is None and others.get(k, paths[k]) is None))]
     helped.update({
         k: found for k, found in zip(late, fit.for_beads(task, [beads[k] for k in late], [places[k] for k in late]))
         if found is not None

@@ -5,7 +5,7 @@ between the points of the bead, it may come out of its limits or too near to a s
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -23,6 +23,7 @@ Place = tuple[int, int]
 LOW = 3.0  # times the condition asked for; from there it may fall short between two points
 HALVINGS = 2  # of each segment, where it is looked at between
 CANDIDATES = 12  # rotations of a bead that are looked at there
+TOGETHER = 64  # beads; bounds the memory
 
 
 def lost(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[int]:
@@ -45,36 +46,44 @@ def lost(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[i
 
 
 def where_lost(
-    task: Task, beads: Sequence[Bead], places: Sequence[Place], paths: Sequence[BeadPath], found: search.Found
+    task: Task, beads: Sequence[Bead], places: Sequence[Place], paths: Sequence[BeadPath], found: search.Found,
+    report: Callable[[float], None],
 ) -> dict[int, BeadPath | None]:
-    """What `of_beads` finds for the beads that do not keep all limits though a candidate did at few of their points."""
+    """What `of_beads` finds for the beads that do not keep all limits though a candidate did at few of their points. report:
+    takes the share that is done; it may raise to cancel."""
     promising = found.margin.max(axis=0) >= 0.0
     rows = [k for k in lost(task, beads, paths) if promising[k]]
-    some = found.of_beads(np.array(rows, dtype=np.intp))
-    return dict(zip(rows, of_beads(task, [beads[k] for k in rows], [places[k] for k in rows], some)))
+    others: dict[int, BeadPath | None] = {}
+    for start in range(0, len(rows), TOGETHER):
+        report(start / len(rows))
+        some = rows[start:start + TOGETHER]
+        candidates = found.of_beads(np.array(some, dtype=np.intp))
+        others |= zip(some, of_beads(task, [beads[k] for k in some], [places[k] for k in some], candidates))
+    return others
 
 
 def of_beads(
     task: Task, beads: Sequence[Bead], places: Sequence[Place], found: search.Found
 ) -> list[BeadPath | None]:
-    """For each bead the path of the rotation that suits all its points, and those between them, best, refined from there;
-    None where none keeps all limits. found: the candidates of these beads, judged at few of their points."""
-    if not beads:
-        return []
-    own, finer = gather(beads, task.cell), [_finer(bead) for bead in beads]
-    between = gather(finer, task.cell)
-    thresholds = task.thresholds(between)
-    here = _judged_at(task, own, task.thresholds(own), found, len(found.margin))
-    here = _judged_at(task, between, thresholds, here, CANDIDATES)
+    """For each bead the path of the rotation that suits all its points, and those between them, best, refined from there
+    where that keeps all limits too; None where none does. found: the candidates of these beads, judged at few points."""
+    own, between = gather(beads, task.cell), gather([_finer(bead) for bead in beads], task.cell)
+    thresholds = task.thresholds(own)
+    here = _judged_at(task, own, thresholds, found, len(found.margin))
+    here = _judged_at(task, between, task.thresholds(between), here, CANDIDATES)
     best, each = here.best(), np.arange(len(beads))
-    start, wanted = here.coefficients[best, each], here.margin[best, each] >= 0.0
-    refined = refine.refine(task, between, thresholds, start[None], wanted)
-    at_all = judged(task, finer, places, between, thresholds, refined.coefficients, refined)
-    paths = judged(task, beads, places, own, task.thresholds(own), refined.coefficients, refined)
-    return [
-        path if serves and min(path.margin, other.margin) >= FITS else None
-        for path, other, serves in zip(paths, at_all, wanted)
-    ]
+    start, serves = here.coefficients[best, each], here.margin[best, each] >= 0.0
+    refined = refine.refine(task, own, thresholds, start[None], serves)
+    as_found = dataclasses.replace(refined, coefficients=start)
+    paths: list[BeadPath | None] = [None] * len(beads)
+    for one in (refined, as_found):
+        tried = judged(task, beads, places, own, thresholds, one.coefficients, one)
+        short = lost(task, beads, tried)
+        paths = [
+            path or (other if good and k not in short else None)
+            for k, (path, other, good) in enumerate(zip(paths, tried, serves))
+        ]
+    return paths
 
 
 def _judged_at(task: Task, points: Points, thresholds: Array, found: search.Found, most: int) -> search.Found:
