@@ -77,13 +77,14 @@ class Session:
             text = f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2:]}"
         _write(self._saved[1], text + "\n")
 
-    def issues(self, found: Iterable[Issue]) -> None:
-        """Tell findings, first what would make the job feasible, then errors, on stderr; of many only some."""
+    def issues(self, found: Iterable[Issue], others: str = "stand in report.json") -> None:
+        """Tell findings, first what would make the job feasible, then errors, on stderr; of many only some, and where the
+        others are."""
         ordered = sorted(found, key=lambda issue: (issue.code not in FIRST, issue.level != ERROR))
         for issue in ordered[:_MOST_ISSUES]:
             self.say(f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}")
         if len(ordered) > _MOST_ISSUES:
-            self.say(f"note[MORE] job: {len(ordered) - _MOST_ISSUES} more findings stand in report.json")
+            self.say(f"note[MORE] job: {len(ordered) - _MOST_ISSUES} more findings {others}")
 
     def progress(self, text: str) -> None:
         """Show what is being done, on a terminal only; ends the command where Ctrl-C was pressed since."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from freecad_am.core.issues import InputError, Text, Word
+from freecad_am.core.issues import AmError, InputError, Issue, Text, Word
 
 from . import paths
 from .outputs import folder as outputs
@@ -86,12 +86,28 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
     from freecad_am import api
 
     files: dict[str, bytes] = {}
+    known: dict[Issue, None] = {}
     for program in dict.fromkeys(programs):
         session.progress(f"computing {program.Label} ...")
-        api.recompute(program, force=True)
+        try:
+            api.recompute(program, force=True)
+        except AmError:  # what one ends with may be the fault of what another warns about
+            _tell_findings(program, known, session)
+            raise
         session.check()
-        session.issues(api.issues(program))
+        _tell_findings(program, known, session)
         for name, content in api.result(program).files.items():
             if files.setdefault(name, content) != content:
                 raise InputError("SAME_NAME", program.Label, "two programs write {}; give one another name", name)
     return files
+
+
+def _tell_findings(program: Any, known: dict[Issue, None], session: Any) -> None:
+    """Those of a program and of all that it is made of, but for those that are known by now."""
+    from freecad_am import api
+    from freecad_am.macro.steps import in_order
+
+    inputs = in_order([*program.OutListRecursive, program])
+    found = dict.fromkeys(issue for one in inputs for issue in api.issues(one) if issue not in known)
+    known |= found
+    session.issues(found, "are in the document")

@@ -71,6 +71,19 @@ def test_writes_all_programs(workshop, saved):
     assert again.status == 0 and workshop.files("again") == files
 
 
+def test_findings_of_all_stages_are_told_once(workshop, saved):
+    document = FreeCAD.openDocument(str(saved))
+    try:
+        found = {issue for obj in api.stages_of(document) for issue in api.issues(obj)}
+    finally:
+        FreeCAD.closeDocument(document.Name)
+    assert any(issue.level == "warning" for issue in found)
+    said = workshop.run("export", saved).err.splitlines()
+    for issue in found:
+        line = f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}"
+        assert said.count(line) == 1
+
+
 @pytest.mark.parametrize("names", [["First one"], ["Program"]], ids=["Label", "Name"])
 def test_writes_the_programs_named(workshop, saved, names):
     assert workshop.run("export", saved, "-o", "some", "--object", *names).status == 0
@@ -157,7 +170,8 @@ def test_what_cannot_be_carried_out_is_status_3(workshop, saved):
     FreeCAD.closeDocument(document.Name)
     done = workshop.run("export", saved)
     assert done.status == 3, done.err
-    assert done.err.startswith("error[")
+    assert done.err.splitlines()[-1].startswith("error[")
+    assert any(line.startswith("note[REMEDY]") for line in done.err.splitlines())  # what would help is told first
     assert not (workshop.folder / "out").exists()
 
 

@@ -74,7 +74,7 @@ class FaceStage(Stage):
         document = obj.Document
         by_hand = not (document is None or document.Restoring or document.Transacting or document.Recomputing)
         asked = name == "Source" and by_hand and "ChosenFaces" in obj.PropertiesList
-        if asked and _named(obj) not in (None, {mark.name for mark in _stored(obj)}):
+        if asked and _named(obj) not in (None, _stored(obj).keys() - {WHOLE}):
             self.confirm(obj)
         super().onChanged(obj, name)
 
@@ -106,8 +106,9 @@ def _named(obj: Any) -> set[str] | None:
         return None
 
 
-def _stored(obj: Any) -> list[Mark]:
-    return [mark for mark in map(_read, obj.ChosenFaces) if mark.name != WHOLE]
+def _stored(obj: Any) -> dict[str, Mark]:
+    """What is stored of the faces, and of the whole, by name."""
+    return {mark.name: mark for mark in map(_read, obj.ChosenFaces) if mark is not None}
 
 
 def _texts(obj: Any) -> list[str]:
@@ -158,17 +159,18 @@ def _compared(obj: Any) -> tuple[Issue, ...]:
     chosen is there unchanged under another number, and others came or went, or nothing but numbers changed.
     """
     before, now = _stored(obj), {mark.name: mark for mark in _marks(obj)}
-    if not now or {mark.name for mark in before} != now.keys():
+    was = before.pop(WHOLE, None)
+    if was is None or before.keys() != now.keys():
         return ()
     source = obj.Source[0]
     shape = shape_of(source)
     size = shape.BoundBox.DiagonalLength
-    moved = [mark for mark in before if not mark.is_same(now[mark.name], size)]
+    moved = [mark for mark in before.values() if not mark.is_same(now[mark.name], size)]
     if not moved:
         return ()
     every = _marks_of(shape, set())
     at = cKDTree([mark.middle for mark in every])
-    whole, was = _whole(shape), next(mark for mark in map(_read, obj.ChosenFaces) if mark.name == WHOLE)
+    whole = _whole(shape)
     renumbered = whole.surface != was.surface or was.is_same(whole, size)
     for mark in moved:
         near = at.query_ball_point(mark.middle, 2.0 * TOLERANCE * size)
@@ -204,9 +206,13 @@ def _issue(message: str) -> Issue:
     return Issue(WARNING, CODE, message)
 
 
-def _read(text: str) -> Mark:
-    name, surface, *values = text.split(" ")
-    i, j, k, area, x, y, z = map(float, values)
+def _read(text: str) -> Mark | None:
+    """What was stored; None of what is damaged."""
+    try:
+        name, surface, *values = text.split(" ")
+        i, j, k, area, x, y, z = map(float, values)
+    except ValueError:
+        return None
     return Mark(name, surface, (i, j, k), area, (x, y, z))
 
 
