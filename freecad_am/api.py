@@ -157,9 +157,9 @@ def make_all(
 
     kind: revolution, surface (a wall of the source's faces on the substrate), developable (source and further solids on
     the substrate, on its base_faces), solid (source and further solids, in plane layers unless `layers` says others) or
-    curves (edges of the source, named in faces). mend: mm across of the largest hole of a mesh that is closed; 0 for the
-    usual one. The program is for the machine's controller, in the words of `post` where it reads them; there is none when no
-    post is known that writes this set-up for it, or the joint path is infeasible. process: parameters of the
+    curves (edges of the source, named in faces). mend: mm across of the largest hole of a mesh that is closed, 0: the usual
+    one. The program is in the words of `post` where the machine's controller reads them; there is none without a post that
+    writes this set-up, or with an infeasible joint path, and neither with an infeasible toolpath. process: parameters of the
     toolpath by key. A robot other than the default one gets a deposition point and a branch that suit it, another where the
     job cannot be done so, and with `setup="tool-on-robot"` a positioner where the torch would lean more than
     max_from_vertical. `cell`, the path of a saved cell, stands in place of the machine. `am.make_all(doc, doc.Pot)`
@@ -177,15 +177,17 @@ def make_all(
         }
         features = [_feature_of_job(doc, one) for one in (first, *then)]
         toolpath = _toolpath_on_platform(doc, features, made[0], process or {})
-        if setup:
-            suit(made[0], toolpath)
-        path = make_joint_path(doc, toolpath, made[0])
-        if path.Status == "infeasible" and not (setup or cell):
-            suit(made[0], toolpath, path)
-        made += [*features, toolpath, path]
-        post, motion = post_of(chosen, post, user_machines.folders())
-        if path.Status == "up to date" and post:
-            made.append(make_program(doc, path, name=name or proposed_name(source.Label), post=post, motion=motion))
+        made += [*features, toolpath]
+        if toolpath.Status != "infeasible":
+            if setup:
+                suit(made[0], toolpath)
+            path = make_joint_path(doc, toolpath, made[0])
+            if path.Status == "infeasible" and not (setup or cell):
+                suit(made[0], toolpath, path)
+            made.append(path)
+            post, motion = post_of(chosen, post, user_machines.folders())
+            if path.Status == "up to date" and post:
+                made.append(make_program(doc, path, name=name or proposed_name(source.Label), post=post, motion=motion))
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
 

@@ -105,9 +105,8 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
 def _tell_findings(program: Any, known: dict[Issue, None], session: Any) -> None:
     """Those of a program and of all that it is made of, but for those that are known by now."""
     from freecad_am import api
-    from freecad_am.macro.steps import in_order
 
-    inputs = in_order([*program.OutListRecursive, program])
+    inputs = [obj for obj in api.stages_of(program.Document) if obj is program or obj in program.OutListRecursive]
     found = dict.fromkeys(issue for one in inputs for issue in api.issues(one) if issue not in known)
     known |= found
     session.issues(found, "are in the document")

@@ -379,3 +379,19 @@ def test_a_new_job_of_a_kuka_robot_with_the_torch_ends_with_a_program(doc, part,
     *_, program = api.make_all(doc, part, machine="kuka-kr16-2", setup="tool-on-robot")
     assert (program.Status, program.Post, program.Motion) == ("up to date", "kuka", "cartesian")
     assert any(b"LIN " in content for content in files_of(program).values())
+
+
+def test_a_job_whose_toolpath_cannot_be_carried_out_is_there_as_far_as_it_goes(doc):
+    """A low block that is deposited within a frame around it, where the nozzle has no room."""
+    frame, block = (doc.addObject("Part::Feature", name) for name in ("Frame", "Block"))
+    frame.Shape = Part.makeBox(40, 40, 40).cut(Part.makeBox(24, 24, 40, App.Vector(8, 8, 0)))
+    block.Shape = Part.makeBox(18, 18, 2, App.Vector(11, 11, 0))
+    doc.recompute()
+    doc.UndoMode = 1
+    made = api.make_all(doc, frame, kind="solid", then=[{"source": block, "kind": "solid"}])
+    assert [obj.Proxy.kind for obj in made] == ["cell", "feature", "feature", "toolpath"]
+    assert made[3].Status == "infeasible" and "CLEARANCE" in made[3].Issues and made[3].Message
+    (group,) = [obj for obj in doc.Objects if obj.Label.startswith("Job ")]
+    assert set(group.Group) == set(made)
+    doc.undo()
+    assert doc.Objects == [frame, block]

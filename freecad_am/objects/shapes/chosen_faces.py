@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import FreeCAD as App
 import numpy as np
 import Part
-from scipy.spatial import cKDTree
 
 from ...core.issues import WARNING, AmError, InputError, Issue, Text
 from ..fields.properties import HIDDEN, OUTPUT
@@ -169,11 +168,11 @@ def _compared(obj: Any) -> tuple[Issue, ...]:
     if not moved:
         return ()
     every = _marks_of(shape, set())
-    at = cKDTree([mark.middle for mark in every])
+    middles = np.array([mark.middle for mark in every])
     whole = _whole(shape)
     renumbered = whole.surface != was.surface or was.is_same(whole, size)
     for mark in moved:
-        near = at.query_ball_point(mark.middle, 2.0 * TOLERANCE * size)
+        near = np.flatnonzero(np.abs(middles - mark.middle).max(axis=1) <= TOLERANCE * size).tolist()
         same = [one.name for one in (every[k] for k in near) if mark.is_same(one, size)]
         if any(name in now for name in same):
             continue  # in another order
