@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from freecad_am.core.issues import AmError, InputError, Issue, Text, Word
+from freecad_am.core.issues import InfeasibleError, InputError, Issue, Text, Word
 
 from . import paths
 from .outputs import folder as outputs
@@ -91,7 +91,7 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
         session.progress(f"computing {program.Label} ...")
         try:
             api.recompute(program, force=True)
-        except AmError:  # what one ends with may be the fault of what another warns about
+        except InfeasibleError:  # what one ends with may be the fault of what another warns about
             _tell_findings(program, known, session)
             raise
         session.check()

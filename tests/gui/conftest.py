@@ -164,7 +164,8 @@ class Person:
         boxes = self.window.findChildren(self.widgets.QDialogButtonBox)
         try:
             for box in boxes:
-                if box.isVisible() and box.button(wanted) is not None:
+                # one found earlier may be gone, and another one be at its place
+                if self.qt.isValid(box) and box.isVisible() and box.button(wanted) is not None:
                     box.button(wanted).click()
                     self.idle()
                     return

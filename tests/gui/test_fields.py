@@ -153,6 +153,7 @@ def test_what_is_wrong_is_told_while_typing_and_only_as_long_as_it_is_there(pers
     person.press("Ok")  # refused
     assert note.isVisible() and not any(obj.TypeId.startswith("App::FeatureP") for obj in hemisphere.Document.Objects)
     below = person.field(panel, "Mount")
+    person.idle(0.5)  # the panel makes room for what is told at its top
     height = below.mapTo(panel, person.core.QPoint(0, 0)).y()
     person.type(panel, "PlatformDiameter", "100 mm")
     person.until(lambda: not note.isVisible(), "the error to go with what was wrong", 5)
