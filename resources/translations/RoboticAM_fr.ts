@@ -11897,6 +11897,11 @@
         <translation>la buse comme un cône en {0} points, face au plateau, à la pièce et à ce qui est déposé à ce moment ; cordons de la largeur et de la hauteur qui comptent</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/into_platform.py"/>
+        <source>the nozzle deposits at {0} points below the platform, here {1} mm; correct their heights, or the cell&apos;s platform</source>
+        <translation>la buse dépose à {0} points sous le plateau, ici de {1} mm ; corrigez leurs hauteurs, ou le plateau de la cellule</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/planned/upright.py"/>
         <source>the nozzle is not clear with {0} either, which was tried</source>
         <translation>la buse n&apos;est pas dégagée avec {0} non plus, ce qui a été essayé</translation>

@@ -2,6 +2,7 @@
 """Programs that were edited, or come from elsewhere, driven in a cell."""
 
 import csv
+import dataclasses
 import io
 import json
 import re
@@ -105,6 +106,22 @@ def test_a_deposit_that_is_switched_as_no_program_does_is_told(workshop, sound, 
     done = run(workshop)
     assert done.status == 3 and f"error[{code}] layer " in done.err and words in done.err, done.err
     assert done.err.count(f"error[{code}]") == 1
+
+
+@pytest.mark.parametrize(("depth", "told"), [(0.05, 0), (3.0, 1)])
+def test_a_nozzle_that_deposits_below_the_platform_is_told(workshop, sound, depth, told):
+    """The platform is told to be as much thicker as the lowest point is above it, and some more."""
+    _, motion = sound
+    cell = SETUPS[WAY[3]].cell
+    rows = motion.deposit & (np.hypot(*motion.position[:, :2].T) < 0.5 * cell.platform_diameter)
+    thicker = float(motion.position[rows, 2].min()) + depth
+    other = dataclasses.replace(cell, platform=cell.platform + thicker)
+    (workshop.folder / "cell.yaml").write_text(cell_file.text(other, str(workshop.folder)), encoding="utf-8")
+    done = run(workshop)
+    assert done.err.count("error[INTO_PLATFORM]") == told, done.err
+    if told:
+        depth_said = float(re.search(r"here ([\d.]+) mm", done.err)[1])
+        assert done.status == 3 and depth_said == pytest.approx(depth, abs=0.02)
 
 
 @pytest.mark.parametrize("controller", ["abb", "kuka", "linuxcnc", "siemens", "ur", "val3", "yaskawa"])

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether a text has the nozzle deposit below the platform that its machine deposits on: nothing of a plan is asked."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..core.geometry import frames
+from ..core.issues import ERROR, Issue, Text
+from ..core.kinematics.cell import Cell
+from ..core.motion import Motion
+
+ROUNDED = 0.1  # mm that digits of a program, and joints between its points, may take
+
+
+def into_platform(motion: Motion, cell: Cell) -> list[Issue]:
+    """INTO_PLATFORM with the lowest place, where the nozzle's tip is below the platform, within its edge, while it deposits.
+    motion: what the text drives; what is not reached is not looked at."""
+    rows = np.flatnonzero(motion.deposit & motion.reachable)
+    place = frames.inverse(cell.mount)
+    points = motion.position[rows] @ place[:3, :3].T + place[:3, 3]
+    below = (points[:, 2] < -ROUNDED) & (np.hypot(points[:, 0], points[:, 1]) < 0.5 * cell.platform_diameter)
+    if not below.any():
+        return []
+    low = int(np.where(below, points[:, 2], np.inf).argmin())
+    row = rows[low]
+    return [Issue(
+        ERROR, "INTO_PLATFORM", Text("the nozzle deposits at {} points below the platform, here {:.3g} mm; correct their "
+            "heights, or the cell's platform", int(below.sum()), -points[low, 2]),
+        int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]),
+    )]
