@@ -175,10 +175,7 @@ def _promises(motion: Motion, cell: Cell, known: Known) -> list[Promise]:
         least[:] = CONDITION_FLOOR if isinstance(asked, str) else asked
         condition[reached] = _condition(cell, motion.joints[rows[reached]], known.joints.characteristic_length)
     found = joints.promises(
-        motion, cell, on_deposit(motion.deposit, condition), on_deposit(motion.deposit, least))
-    speed = found[2]
-    if speed.ok is False and speed.worst is not None and speed.worst <= 100.0 + DIGITS:
-        found[2] = replace(speed, ok=True, bound=100.0 + DIGITS)
+        motion, cell, on_deposit(motion.deposit, condition), on_deposit(motion.deposit, least), DIGITS)
     found[1] = replace(found[1], how="inverse kinematics of what the text tells in positions, and joints driven")
     if known.bead is None:
         how = "not checked: a cell alone does not tell how wide and high beads are; give a job"

@@ -30,11 +30,6 @@ class Body:
         corners: Array = self.vertices[self.triangles]
         return corners
 
-    def volume(self) -> float:
-        """mm3 that it encloses, if it is closed."""
-        a, b, c = (self.vertices[self.triangles[:, k]] - self.vertices[0] for k in range(3))
-        return abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6.0
-
     def moved(self, pose: Array) -> Body:
         """The body moved by a pose (4, 4), mm."""
         return Body(self.name, self.vertices @ pose[:3, :3].T + pose[:3, 3], self.triangles)

@@ -202,10 +202,17 @@ def unwrapped_by_turns(joints: Array, points: Points) -> Array:
         far &= ~points.sliding
     result = joints.copy(order="K")
     for axis in np.flatnonzero(far).tolist():
-        turns = np.zeros(joints.shape[:-1], dtype=np.int32)
-        turns[..., 1:] = np.rint(step[..., axis] / TURN)
-        turns[..., points.first] = 0
-        np.cumsum(turns, axis=-1, out=turns)
-        turns -= turns[..., points.first][..., points.bead]
-        result[..., axis] -= TURN * turns
+        result[..., axis] -= whole_turns(step[..., axis], points)
     return result
+
+
+def whole_turns(step: Array, points: Points) -> Array:
+    """(..., T) rad, the whole turns by which an angle that changes by `step` (..., T - 1) is off the one that goes the short
+    way from point to point, from the first point of each bead on."""
+    turns = np.zeros((*step.shape[:-1], len(points)), dtype=np.int32)
+    turns[..., 1:] = np.rint(step / TURN)
+    turns[..., points.first] = 0
+    np.cumsum(turns, axis=-1, out=turns)
+    turns -= turns[..., points.first][..., points.bead]
+    found: Array = TURN * turns
+    return found

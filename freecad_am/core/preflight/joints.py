@@ -16,10 +16,12 @@ ROUNDING = 1e-7  # deg or mm beyond a limit, and share of a speed, that are roun
 COMPUTED_MM = 1e-6  # mm by which two computations of one pose may differ
 
 
-def promises(motion: Motion, cell: Cell, condition: Array, threshold: Array) -> list[Promise]:
-    """The promises about the joints of a motion. condition, threshold: (n,) of its rows, NaN where not known."""
+def promises(motion: Motion, cell: Cell, condition: Array, threshold: Array, digits: float = 0.0) -> list[Promise]:
+    """The promises about the joints of a motion. condition, threshold: (n,) of its rows, NaN where not known. digits: % of
+    the largest speed of an axis that digits of a text take."""
     return [
-        _limits(motion, cell), _reach(motion, cell), _speeds(motion, cell), _singularities(motion, condition, threshold),
+        _limits(motion, cell), _reach(motion, cell), _speeds(motion, cell, PERCENT + digits),
+        _singularities(motion, condition, threshold),
     ]
 
 
@@ -51,7 +53,7 @@ def _reach(motion: Motion, cell: Cell) -> Promise:
     return Promise(what, how, worst <= COMPUTED_MM, worst, "mm", COMPUTED_MM, row_place(motion, row))
 
 
-def _speeds(motion: Motion, cell: Cell) -> Promise:
+def _speeds(motion: Motion, cell: Cell, most: float) -> Promise:
     what = "No axis is asked for more than its largest speed"
     if not np.isfinite(cell.machine.max_speed).any():
         return Promise(what, "the machine file tells no largest speeds", None)
@@ -61,7 +63,7 @@ def _speeds(motion: Motion, cell: Cell) -> Promise:
     row = int(np.nanargmax(ratios))
     worst = PERCENT * float(ratios[row])
     how = "mean speed of each axis on each move, rapids included, against the machine file"
-    return Promise(what, how, bool(worst <= PERCENT * (1.0 + ROUNDING)), worst, "%", PERCENT, row_place(motion, row))
+    return Promise(what, how, bool(worst <= most * (1.0 + ROUNDING)), worst, "%", most, row_place(motion, row))
 
 
 def _singularities(motion: Motion, condition: Array, threshold: Array) -> Promise:

@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from ..geometry.curves.profile import RevolvedWall
 from ..geometry.formatting import at_least, count
 from ..geometry.mesh.facets import doubled_areas
+from ..geometry.mesh.solid import SolidMesh
 from ..geometry.on_hub import SolidsOnHub
 from ..issues import NOTE, InputError, Issue, Text, Word
 from ..parameters.filled import CladdingParameters, FilledParameters
@@ -118,7 +119,8 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
             away, within = max(0.0, float(distance.max())), max(0.0, -float(distance.min()))
             deep.append((away + strategy.margin) / strategy.layer_height)
             grown = float(np.prod(1.0 + 2.0 * strategy.margin / np.ptp(body.vertices, axis=0)))
-            length = body.volume() * grown * away / max(away + within, 1e-9) / strategy.layer_height / spacing
+            volume = abs(SolidMesh(body.vertices, body.triangles).volume)
+            length = volume * grown * away / max(away + within, 1e-9) / strategy.layer_height / spacing
             # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
             extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
             around = 0.5 / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(away, extent))

@@ -65,7 +65,7 @@ class FaceStage(Stage):
             help = "The faces as they were chosen."
             obj.addProperty("App::PropertyStringList", "ChosenFaces", "Result", help, HIDDEN | OUTPUT)
             if obj.Status == UP_TO_DATE:  # a document from before this was kept
-                obj.ChosenFaces = _texts(obj)
+                obj.ChosenFaces = _texts(obj, _marks(obj))
 
     def onChanged(self, obj: Any, name: str) -> None:
         """Other faces are what they are when they are chosen. FreeCAD 1.0 and later tell of a change also where the part was
@@ -86,9 +86,10 @@ class FaceStage(Stage):
         return super().renew(obj, force or (not obj.ChosenFaces and is_warned(obj)))
 
     def _store(self, obj: Any, outcome: Outcome, *packed: Any) -> None:
-        issues = _compared(obj)
+        marks = _marks(obj)
+        issues = _compared(obj, marks)
         if not issues:
-            obj.ChosenFaces = _texts(obj)
+            obj.ChosenFaces = _texts(obj, marks)
         super()._store(obj, dataclasses.replace(outcome, issues=(*issues, *outcome.issues)), *packed)
 
 
@@ -110,9 +111,8 @@ def _stored(obj: Any) -> dict[str, Mark]:
     return {mark.name: mark for mark in map(_read, obj.ChosenFaces) if mark is not None}
 
 
-def _texts(obj: Any) -> list[str]:
+def _texts(obj: Any, marks: list[Mark]) -> list[str]:
     """What is stored of the faces that a feature names, as they are, and of the whole; nothing where it names none."""
-    marks = _marks(obj)
     return [mark.text() for mark in (*marks, _whole(shape_of(obj.Source[0])))] if marks else []
 
 
@@ -151,13 +151,13 @@ def _whole(shape: Any) -> Mark:
     return Mark(WHOLE, str(len(faces)), (0.0, 0.0, 0.0), shape.Area, tuple(middle))
 
 
-def _compared(obj: Any) -> tuple[Issue, ...]:
-    """What is wrong with the faces that a feature names, by what they were when they were chosen.
+def _compared(obj: Any, marks: list[Mark]) -> tuple[Issue, ...]:
+    """What is wrong with the faces that a feature names, as they are, by what they were when they were chosen.
 
     Parts grow and move: a face that is of the same kind, and lies the same way, is the same one, unless the one that was
     chosen is there unchanged under another number, and others came or went, or nothing but numbers changed.
     """
-    before, now = _stored(obj), {mark.name: mark for mark in _marks(obj)}
+    before, now = _stored(obj), {mark.name: mark for mark in marks}
     was = before.pop(WHOLE, None)
     if was is None or before.keys() != now.keys():
         return ()

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...geometry.angles import TURN, shortest
 from ...toolpath import Bead
 from ...types import Array
 from .. import criteria
 from ..joint_path import BeadPath
-from ..points import Points
+from ..points import Points, whole_turns
 from ..task import Task, condition_margin
 from . import refine
 
@@ -37,7 +36,8 @@ def judged(
     )
     margin = points.worst(np.minimum(task.rows.margin(joints), condition_margin(condition, threshold)))
     ends = np.append(points.first, len(points))
-    turned = _the_short_way(phi, points)
+    # as joints go: of a bead of few points a steep polynomial makes whole turns between two of them, the same at both
+    turned = phi - whole_turns(np.diff(phi), points)
     return [
         BeadPath(
             layer, index, bead, turned[a:b], joints[a:b], condition[a:b], threshold[a:b], float(objective[k]),
@@ -45,18 +45,3 @@ def judged(
         )
         for k, (bead, (layer, index), a, b) in enumerate(zip(beads, places, ends[:-1], ends[1:]))
     ]
-
-
-def _the_short_way(phi: Array, points: Points) -> Array:
-    """Rotations (T,) counted on from point to point the short way, as joints are: of a bead of few points a steep polynomial
-    makes whole turns between two of them, which is the same at both."""
-    step = np.diff(phi, prepend=phi[:1])
-    step[points.first] = 0.0
-    long = np.abs(step) > 0.5 * TURN
-    if not long.any():
-        return phi
-    off = np.zeros_like(phi)
-    off[long] = shortest(step[long]) - step[long]
-    off = np.cumsum(off)
-    found: Array = phi + off - off[points.first][points.bead]
-    return found
