@@ -84,6 +84,7 @@ def test_the_best_pose_is_entered_and_planned(person, hand, no_remedies, path):
 def test_cancelled_refused_and_stale(person, hand, no_remedies, path):
     panel, one = opened(person, path)
     told = person.field(panel, "told")
+    entered(person, panel, Step="16 mm")  # 15,625 poses: far more than a click takes
     hand.click(person.field(panel, "compute"))
     person.until(lambda: one.work.runs and one.work.background.worker.fraction is not None, "the work", LONG)
     assert person.field(panel, "compute").text() == "Cancel"
