@@ -8837,6 +8837,11 @@
         <translation>il n&apos;a ni faces ni arêtes ; choisissez un autre objet</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>it has no DEF</source>
+        <translation>il n’a pas de DEF</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
         <source>it has no arc instructions</source>
         <translation>elle n&apos;a pas d&apos;instructions d&apos;arc</translation>
@@ -8935,6 +8940,11 @@
         <location filename="../../freecad_am/posts/ur/read.py"/>
         <source>it has other characters than ASCII</source>
         <translation>il contient d&apos;autres caractères que l&apos;ASCII</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>it has {0}</source>
+        <translation>il a {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -9168,8 +9178,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it is not a module with one routine of the file&apos;s name</source>
-        <translation>ce n&apos;est pas un module avec une seule routine du nom du fichier</translation>
+        <source>it is not a module with one routine of the file&apos;s name, that begins with &amp;ACCESS RVP, &amp;REL 1 and DEF and ends with END: {0}</source>
+        <translation>ce n’est pas un module avec une seule routine du nom du fichier, qui commence par &amp;ACCESS RVP, &amp;REL 1 et DEF et finit par END : {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -9505,6 +9515,11 @@
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>its positions are not pulses of one tool</source>
         <translation>ses positions ne sont pas des impulsions d&apos;un seul outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>its routine is {0}, which is not the file&apos;s name; rename one of them</source>
+        <translation>sa routine est {0}, ce qui n’est pas le nom du fichier ; renommez l’un des deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>

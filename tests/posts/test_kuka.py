@@ -411,7 +411,11 @@ def test_a_module_by_hand():
 
 
 @pytest.mark.parametrize(("old", "new", "why"), [
-    ("DEF hand()", "DEF other()", "file's name"), ("\nEND\n", "\n", "one routine"), ("BAS(#BASE,3)\n", "", "counts on"),
+    ("DEF hand()", "DEF other()", "its routine is DEF other(), which is not the file's name"),
+    ("DEF hand()", "GLOBAL DEF hand( )  ; by hand", "one routine of the file's name, that begins with &ACCESS RVP, &REL 1 "
+     "and DEF and ends with END: it has GLOBAL DEF hand( );"), ("DEF hand()", "", "END: it has no DEF;"),
+    ("\nEND\n", "\nEND\nDEF more()\nEND\n", "END: it has DEF hand(), DEF more();"),
+    ("\nEND\n", "\n", "one routine"), ("BAS(#BASE,3)\n", "", "counts on"),
     ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", "not understood"), ("BAS(#VEL_PTP,25)\n", "", "counts on"),
     ("VEL_PTP,25", "VEL_PTP,125", "1 to 100"), ("$APO.CDIS=0.5\n", "", "counts on"), ("$VEL.CP=0.0305\n", "", "counts on"),
     ("WAIT FOR $IN[4]==TRUE\n", "", "ahead of the motion"), ("WAIT SEC 0.5\n", "", "ahead of the motion"),

@@ -30,6 +30,7 @@ _SWITCHED, _PAUSE = re.compile(r"\$OUT\[(\d+)\]=(TRUE|FALSE)$"), re.compile(r"WA
 _DECLARED, _NUMBERED = re.compile(r"SIGNAL (\w+) \$OUT\[(\d+)\] TO \$OUT\[(\d+)\]$"), re.compile(r"(\w+)=(\d+)$")
 _AWAITED, _LAYERED = re.compile(r"WAIT FOR \$IN\[(\d+)\]==TRUE$"), re.compile(r"; layer (\d+)$")
 _CALLED, _HEADED = re.compile(r"([A-Za-z]\w*)\(\)$"), re.compile(r"DEF ([A-Za-z]\w*)\(\)$")
+_ANY_HEAD = re.compile(r"\s*((?:GLOBAL\s+)?DEF(?:FCT)?\s[^;]*[^;\s])", re.IGNORECASE)  # as others write it, too
 # counted in whole milliseconds from the end of the next move
 _TRIGGER = re.compile(r"TRIGGER WHEN DISTANCE=1 DELAY=(0|-[1-9]\d*) DO \$OUT\[(\d+)\]=(TRUE|FALSE)$")
 _TRACK = re.compile(r"; E([1-6]) is the track in mm\b")
@@ -44,10 +45,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     found = {}
     for file in sorted(files):
         lines = files[file].decode("latin-1").replace("\r\n", "\n").rstrip("\n").split("\n")
-        title = _HEADED.match(lines[2]) if len(lines) > 3 and lines[:2] == ["&ACCESS RVP", "&REL 1"] else None
-        if title is None or lines[-1] != "END" or f"{title[1]}.src".lower() != file.lower():
-            raise not_read(file, "it is not a module with one routine of the file's name")
-        found[title[1].lower()] = (file, lines)
+        found[_routine(file, lines).lower()] = (file, lines)
     called = {call[1].lower() for _, lines in found.values() for line in lines if (call := _CALLED.match(line))}
     main = [name for name in found if name not in called]
     if len(main) != 1:
@@ -59,6 +57,21 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     if len(run.followed) != len(found):
         raise not_read("program", "there are modules that are never run, or run twice")
     return read_moves(run)
+
+
+def _routine(file: str, lines: list[str]) -> str:
+    """The name of the one routine of a module, which is the file's."""
+    title = _HEADED.match(lines[2]) if len(lines) > 3 and lines[:2] == ["&ACCESS RVP", "&REL 1"] else None
+    heads = [head[1] for line in lines if (head := _ANY_HEAD.match(line))]
+    if title is None or lines[-1] != "END" or len(heads) != 1:
+        had = Text("it has {}", ", ".join(heads)) if heads else "it has no DEF"
+        raise not_read(file, Text(
+            "it is not a module with one routine of the file's name, that begins with &ACCESS RVP, &REL 1 and DEF and ends "
+            "with END: {}", had,
+        ))
+    if f"{title[1]}.src".lower() != file.lower():
+        raise not_read(file, Text("its routine is {}, which is not the file's name; rename one of them", heads[0]))
+    return title[1]
 
 
 def _go(name: str, run: Run) -> None:
