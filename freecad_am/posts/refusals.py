@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from freecad_am.core.types import Array
 
 from ..core.issues import InputError, Text
 from ..core.program import LINEAR_MOVE, Call, DepositOff, DepositOn, Moves, Program, Schedule, WaitBelow, Weave
-from .parts import place
+from .parts import place, switching
 
 CALL = "process.between_layers.call"
 
@@ -118,44 +119,58 @@ def trigger_refused(why: str) -> InputError:
     return InputError("TRIGGER", "program.trigger.lead", "{}; leave it out, or use another controller", why)
 
 
+@dataclass(frozen=True)
+class Ahead:
+    """A deposit that is switched `lead` s before the end of the last of moves, which takes `seconds`, or of which the corner
+    that is rounded before it leaves them; a lead may be longer by `slack` s, which the controller's numbers cannot tell."""
+
+    moves: Moves
+    lead: float
+    seconds: float
+    corner: bool = False
+    slack: float = 0.0
+
+
 def refuse_triggers(program: Program, no_trigger: str) -> None:
     """Raises InputError TRIGGER, for the reason `no_trigger` where there is one, where the deposit is switched ahead of a
     place; TRIGGER_LEAD where that is earlier than the move that leads there begins."""
-    before: Moves | None = None
-    ahead: list[tuple[Moves, DepositOn | DepositOff]] = []
-    for block in () if program.dry_run else program.blocks:
-        if isinstance(block, Moves):
-            before = block if len(block) else before
-        elif isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
-            if no_trigger:
-                raise trigger_refused(no_trigger)
-            if before is not None:
-                ahead.append((before, block))
-    if ahead:
-        moves, switch = min(ahead, key=lambda pair: pair[0].duration[-1])  # the shortest: one correction is enough
-        if switch.ahead is not None and switch.ahead > moves.duration[-1]:
-            raise lead_refused(moves, moves.duration[-1], switch.ahead)
+    switches = [block for block in program.blocks if isinstance(block, (DepositOn, DepositOff))]
+    if no_trigger and not program.dry_run and any(block.ahead is not None for block in switches):
+        raise trigger_refused(no_trigger)
+    refuse_leads(switched_ahead(program))
 
 
-def lead_refused(before: Moves, seconds: float, lead: float) -> InputError:
-    """The error for a deposit that is switched `lead` s before the end of the last of moves, which takes only `seconds`."""
-    return InputError(
-        "TRIGGER_LEAD", place(before),
-        "the move at the end of which the deposit is switched takes {:.3g} s, less than the {:.3g} s that it "
-        "would be switched ahead; use a program.trigger.lead no longer than that, a larger retract distance where it "
-        "is switched on, or a larger strategy.chord_error where it is switched off", seconds, lead,
+def switched_ahead(program: Program) -> list[Ahead]:
+    """All that is switched ahead of the end of a move."""
+    pairs = [] if program.dry_run else switching(program)
+    return [Ahead(moves, block.ahead, float(moves.duration[-1])) for moves, block in pairs if block.ahead is not None]
+
+
+def refuse_leads(ahead: Sequence[Ahead]) -> None:
+    """Raises InputError TRIGGER_LEAD where the least of them, so that one correction is enough, has too long a lead."""
+    least = min(ahead, key=lambda one: one.seconds + one.slack, default=None)
+    if least is None or least.lead <= least.seconds + least.slack:
+        return
+    most = _whole_milliseconds(least.seconds + least.slack)
+    if least.corner:
+        raise InputError(
+            "TRIGGER_LEAD", place(least.moves),
+            "the corner before the move at the end of which the deposit is switched is rounded, and leaves {:.4g} s of it, "
+            "less than the {:.4g} s that it would be switched ahead; use a program.trigger.lead of {:g} s at most, a "
+            "smaller program.blend, or a larger strategy.chord_error", least.seconds, least.lead, most,
+        )
+    raise InputError(
+        "TRIGGER_LEAD", place(least.moves),
+        "the move at the end of which the deposit is switched takes {:.4g} s, less than the {:.4g} s that it would be "
+        "switched ahead; use a program.trigger.lead of {:g} s at most, a larger retract distance where it is switched on, "
+        "or a larger strategy.chord_error where it is switched off", least.seconds, least.lead, most,
     )
 
 
-def corner_refused(before: Moves, seconds: float, lead: float) -> InputError:
-    """The error for a deposit that is switched `lead` s before the end of the last of moves, of which the corner that is
-    rounded before it leaves only `seconds`."""
-    return InputError(
-        "TRIGGER_LEAD", place(before),
-        "the corner before the move at the end of which the deposit is switched is rounded, and leaves {:.3g} s of it, less "
-        "than the {:.3g} s that it would be switched ahead; use a program.trigger.lead no longer than that, a smaller "
-        "program.blend, or a larger strategy.chord_error", seconds, lead,
-    )
+def _whole_milliseconds(seconds: float) -> float:
+    """The largest number of s with three decimals that is no larger."""
+    count = math.floor(1000.0 * seconds)
+    return (count if count / 1000.0 <= seconds else count - 1) / 1000.0
 
 
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:

@@ -11448,8 +11448,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the corner before the move at the end of which the deposit is switched is rounded, and leaves {0} s of it, less than the {1} s that it would be switched ahead; use a program.trigger.lead no longer than that, a smaller program.blend, or a larger strategy.chord_error</source>
-        <translation>le coin avant le mouvement à la fin duquel le dépôt est commuté est arrondi, et n&apos;en laisse que {0} s, moins que les {1} s d&apos;avance de la commutation ; utilisez un program.trigger.lead qui ne dépasse pas cette durée, un plus petit program.blend, ou une plus grande strategy.chord_error</translation>
+        <source>the corner before the move at the end of which the deposit is switched is rounded, and leaves {0} s of it, less than the {1} s that it would be switched ahead; use a program.trigger.lead of {2} s at most, a smaller program.blend, or a larger strategy.chord_error</source>
+        <translation>le coin avant le mouvement à la fin duquel le dépôt est commuté est arrondi, et n’en laisse que {0} s, moins que les {1} s d’avance de la commutation ; utilisez un program.trigger.lead d’au plus {2} s, un plus petit program.blend, ou une plus grande strategy.chord_error</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>
@@ -11872,9 +11872,14 @@
         <translation>le module ne règle pas tout ce sur quoi compte le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
+        <location filename="../../freecad_am/read_back/switched.py"/>
         <source>the move at the end of which the deposit is switched takes {0} s, less than the {1} s that it would be switched ahead; use a program.trigger.lead no longer than that, a larger retract distance where it is switched on, or a larger strategy.chord_error where it is switched off</source>
         <translation>le mouvement à la fin duquel le dépôt est commuté dure {0} s, moins que les {1} s d&apos;avance de la commutation ; utilisez un program.trigger.lead qui ne dépasse pas cette durée, une plus grande distance de retrait là où il est enclenché, ou une plus grande strategy.chord_error là où il est coupé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the move at the end of which the deposit is switched takes {0} s, less than the {1} s that it would be switched ahead; use a program.trigger.lead of {2} s at most, a larger retract distance where it is switched on, or a larger strategy.chord_error where it is switched off</source>
+        <translation>le mouvement à la fin duquel le dépôt est commuté dure {0} s, moins que les {1} s d’avance de la commutation ; utilisez un program.trigger.lead d’au plus {2} s, une plus grande distance de retrait là où il est enclenché, ou une plus grande strategy.chord_error là où il est coupé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>

@@ -3,11 +3,12 @@
 it; another time, place or output, or none, is refused; so is what a controller cannot do."""
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
 
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.motion import UNKNOWN
 from freecad_am.core.parameters.bead_classes import CLASSES
 from freecad_am.core.parameters.process import CoolingParameters
@@ -19,7 +20,8 @@ from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
 from freecad_am.posts.refusals import refuse_triggers
 from freecad_am.read_back.events import _alike
-from tests.posts.planned_jobs import PROCESS, planned
+from freecad_am.verify import verify
+from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
 from tests.programs import build
 
 CELL = {
@@ -93,10 +95,47 @@ def test_a_lead_longer_than_the_move_it_stands_on_is_refused_with_its_bead():
             assert error.value.code == "TRIGGER_LEAD" and error.value.where.startswith("layer ")
             ends = [run.duration[-1] for run, after in zip(program.blocks, program.blocks[1:], strict=False)
                     if isinstance(run, Moves) and isinstance(after, (DepositOn, DepositOff))]
-            assert f"takes {min(ends):.3g} s" in error.value.message  # so that one correction is enough
+            assert f"takes {min(ends):.4g} s" in error.value.message  # so that one correction is enough
             refuse_triggers(dataclasses.replace(program, dry_run=True), "")
         else:
             refuse_triggers(program, "")
+
+
+def largest(error):
+    """s, of the lead that a refusal says is the largest."""
+    return float(re.search(r"program\.trigger\.lead of ([\d.]+) s at most", error.value.message)[1])
+
+
+@pytest.mark.parametrize(("post", "motion", "blend"), [
+    ("fanuc", "joint", 100), ("fanuc", "cartesian", 100), ("abb", "cartesian", 100), ("kuka", "cartesian", 100),
+    ("kuka", "cartesian", 30), ("kuka", "cartesian", 0),
+])
+@pytest.mark.parametrize("only", [None, DepositOn, DepositOff])
+def test_the_largest_lead_is_told_and_read_back_and_a_millisecond_more_is_refused(post, motion, blend, only):
+    """Of all that is switched, of starts of beads alone, and of ends."""
+    cell, _, motion_ = planned(CELL[post])
+    process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
+    if post == "abb":
+        motion_ = linear_approach.with_short_approaches(motion_, cell)
+
+    def made(lead):
+        asked = ProgramParameters(post=post, motion=motion, blend=blend, trigger=TriggerParameters(lead=lead))
+        program = build(motion_, cell, process, asked, "job")
+        kept = [dataclasses.replace(block, ahead=None) if isinstance(block, (DepositOn, DepositOff))
+                and only not in (None, type(block)) else block for block in program.blocks]
+        return dataclasses.replace(program, blocks=tuple(kept))
+
+    with pytest.raises(InputError) as error:
+        catalogue.load(post).write(made(0.5))
+    assert error.value.code == "TRIGGER_LEAD"
+    most = largest(error)
+    assert 0.0 < most < 0.499
+    program = made(most)
+    read = verify(cell, motion_, program, catalogue.load(post).write(program), catalogue.load(post), CHORD_ERROR)
+    assert not [issue for issue in read.issues if issue.level == ERROR]
+    with pytest.raises(InputError) as error:
+        catalogue.load(post).write(made(most + 0.001))
+    assert largest(error) == most
 
 
 def test_a_controller_of_linear_triggers_goes_straight_onto_beads_and_waits_for_cooling_before():

@@ -25,14 +25,15 @@ from ..refusals import (
     refuse_cooling,
     refuse_external,
     refuse_incomplete,
+    refuse_leads,
     refuse_named_track,
     refuse_names_of_data,
     refuse_no_process,
     refuse_schedules,
-    refuse_triggers,
     refuse_wire,
     refuse_without_positions,
     refuse_without_speeds,
+    switched_ahead,
 )
 from . import arc, text
 from .read import read
@@ -86,7 +87,9 @@ def write(program: Program) -> dict[str, bytes]:
     name = program_name(program.name, "name")
     _refuse(program)
     remarks = [line for words in ("Robotic AM", *program.remarks, *_own_remarks(program)) for line in text.remark(words)]
-    groups = list(grouped(program, text.Lines(program), lambda block: _instructions(program, block)))
+    moved = text.Lines(program)
+    groups = list(grouped(program, moved, lambda block: _instructions(program, block)))
+    refuse_leads([*switched_ahead(program), *moved.ahead])
     parts = packed(groups, program.max_points, _NO_END, whole)
     used = [*([text.SCHEDULE] if _scheduled(program) else []), *arc.names(program)]
     refuse_names_of_data(program, {name}, used)
@@ -136,7 +139,6 @@ def _refuse(program: Program) -> None:
     refuse_external(program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16")
     refuse_named_track(program, "what the robot's own base is on, which is not told by a MACHINE_DEF")
     refuse_wire(program, NO_WIRE)
-    refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, 0, NO_ANALOGUE)
     _refuse_schedules(program)
     for what, number, last in (("tool_frame", program.tool_frame, LAST_TOOL), ("user_frame", program.user_frame, LAST_BASE)):

@@ -16,7 +16,7 @@ from ...core.orientation import MOVING_ZYX
 from ...core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 from ..names import plain
 from ..parts import place
-from ..refusals import corner_refused, lead_refused, speeds_within
+from ..refusals import Ahead, speeds_within
 from . import arc, switching
 
 END_OF_LINE = "\r\n"
@@ -71,13 +71,17 @@ def frames(position: Array, rotation: Array) -> Array:
 
 class Lines:
     """The lines of the moves of a program, asked for block by block in the order of motion: each move with the settings it
-    counts on before it, parted by |."""
+    counts on before it, parted by |.
+
+    ahead: what of the last moves asked for so far is left for switching the deposit ahead of their ends.
+    """
 
     def __init__(self, program: Program) -> None:
         self._blend = program.blend
         self._slides = program.slides
         self._nominal = np.where(self._slides, program.max_speed, np.degrees(np.array(program.max_speed)))
         self._before: Array | None = None
+        self.ahead: list[Ahead] = []
         self._own = program.own_axes
         self._switching, self._leads = switching.ahead_of_moves(program), switching.leads(program)
         numbers = [program.first_external + k for k in range(len(program.external_kinds))]
@@ -96,7 +100,8 @@ class Lines:
             size = self._rounding(moves)
             corners = [_STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()]
             if _ROUNDED in corners[-2:-1]:
-                self._refuse_in_corner(moves, size)
+                # a delay does not reach farther than where the corner ends
+                self._switched(moves, float(moves.duration[-1] - size / moves.speed[-1]), corner=True)
             speeds = [f"$VEL.CP={0.001 * speed:.6f}" for speed in speeds_within(moves, *SPEEDS).tolist()]
             rows = np.hstack((frames(moves.position, moves.rotation), values[:, self._own :])).tolist()
             lines = [f"{self._unhindered}{speed}|{self._lin % tuple(row)}{corner}"
@@ -135,18 +140,15 @@ class Lines:
                 "another rapid speed", percent[wrong][0], LEAST_PERCENT,
             )
         whole = np.clip(np.rint(percent), LEAST_PERCENT, 100)
-        lead, seconds = self._leads.get(id(moves), 0.0), float(100.0 * share[-1] / whole[-1])
-        # whole percents may be more than were planned, and the move shorter
-        if lead > seconds + MILLISECOND and (self._before is not None or len(moves) > 1):
-            raise lead_refused(moves, seconds, lead)
+        if self._before is not None or len(moves) > 1:
+            # whole percents may be more than were planned, and the move shorter
+            self._switched(moves, float(100.0 * share[-1] / whole[-1]))
         return [int(value) for value in whole]
 
-    def _refuse_in_corner(self, moves: Moves, size: float) -> None:
-        """Raises InputError TRIGGER_LEAD where a delay would reach back into the corner, of so many mm, before the last
-        move: it would not reach farther than where that ends."""
-        lead, seconds = self._leads.get(id(moves), 0.0), float(moves.duration[-1] - size / moves.speed[-1])
-        if lead > seconds + MILLISECOND:
-            raise corner_refused(moves, seconds, lead)
+    def _switched(self, moves: Moves, seconds: float, corner: bool = False) -> None:
+        """Keep how much of the last move is left, where it switches the deposit."""
+        if id(moves) in self._leads:
+            self.ahead.append(Ahead(moves, self._leads[id(moves)], seconds, corner, MILLISECOND))
 
     def _rounding(self, moves: Moves) -> float:
         """mm: corners are rounded within half the shortest move of the bead at most."""
