@@ -11358,6 +11358,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
+        <source>the base of {0} has a diameter of {1} mm and reaches over the platform; use cell.mount: feature, move the part, or check cell.platform_diameter (0 for none)</source>
+        <translation>la base de {0} a un diamètre de {1} mm et dépasse du plateau ; utilisez cell.mount: feature, déplacez la pièce, ou vérifiez cell.platform_diameter (0 pour aucun)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>the base of {0} is {1} mm below the platform</source>
         <translation>la base de {0} est à {1} mm au-dessous du plateau</translation>
     </message>
@@ -14644,7 +14649,12 @@
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
         <source>{0} mm of the first layer lie over the edge of the platform, up to {1} mm beyond it; move the part, or set cell.platform_diameter to what there is (0 for none)</source>
-        <translation>{0} mm de la première couche dépassent du bord du plateau, jusqu&apos;à {1} mm au-delà ; déplacez la pièce, ou donnez à cell.platform_diameter sa vraie valeur (0 pour aucun)</translation>
+        <translation>{0} mm de la première couche dépassent du bord du plateau, jusqu’à {1} mm au-delà ; déplacez la pièce, ou donnez à cell.platform_diameter sa vraie valeur (0 pour aucun)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/support.py"/>
+        <source>{0} mm of the first layer lie over the edge of the platform, up to {1} mm beyond it; put the part on its middle by cell.mount: feature, move it, or set cell.platform_diameter to what there is (0 for none)</source>
+        <translation>{0} mm de la première couche dépassent du bord du plateau, jusqu’à {1} mm au-delà ; posez la pièce sur son milieu par cell.mount: feature, déplacez-la, ou donnez à cell.platform_diameter sa vraie valeur (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>

@@ -103,6 +103,19 @@ def test_how_much_of_a_first_layer_lies_beside_the_platform(workshop):
     beside = (((off > 3.0).mean(axis=1) * length)[same]).sum()
     assert beside > 50.0 and float(told[1]) == pytest.approx(beside, rel=0.02)
     assert off[same].max() - 1.0 < float(told[2]) <= off[same].max() + 0.01  # in the middle of a piece of the bead
-    assert "OVER_PLATFORM" in done.err
+    assert "OVER_PLATFORM" in done.err and "cell.mount" not in issue["message"]  # it would be over the edge there, too
     (promise,) = [one for one in report["preflight"] if one["promise"].startswith("Every bead is carried")]
     assert promise["ok"] is False and promise["place"]["layer"] == 0
+
+
+def test_a_part_beside_the_middle_of_the_platform_is_put_there_by_the_remedy_that_is_told(workshop):
+    Part.makeBox(30, 30, 8, FreeCAD.Vector(20, 10, 0)).exportStep(str(workshop.folder / "cup.step"))
+    text = workshop.text.replace("strategy:\n", "strategy:\n  kind: solid\n  bead_spacing: 6 mm\n")
+    text = text.replace("diameter: 100 mm", "diameter: 60 mm").replace("process:\n", "process:\n  bead_width: 6 mm\n")
+    for asked, mended in ((text, False), (text.replace("cell:\n", "cell:\n  mount: feature\n"), True)):
+        workshop.write_job(asked)
+        done = workshop.run("plan", "cup.yaml", "-o", "out", "--no-page")
+        report = json.loads((workshop.folder / "out" / "report.json").read_text())
+        found = [one["message"] for one in report["issues"] if one["code"] == "OVER_PLATFORM"]
+        assert bool(found) != mended and all("put the part on its middle by cell.mount: feature" in one for one in found)
+        assert done.status == 0, done.err

@@ -13,9 +13,9 @@ from ..geometry.mesh.facets import doubled_areas
 from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base
-from ..issues import WARNING, Issue, Text
+from ..issues import WARNING, Issue, Text, Word
 from ..process.deposit import support
-from ..process.deposit.pieces import cut
+from ..process.deposit.pieces import Pieces, cut
 from ..toolpath import Toolpath
 from ..types import Array, Mask
 
@@ -49,24 +49,45 @@ def of_feature(
     return support.carried(whole, ground, part.family in BY_ITSELF, numbers)
 
 
-def over_edge(toolpath: Toolpath, frame: Array, diameter: float, bodies: Sequence[Body]) -> list[Issue]:
+def over_edge(
+    toolpath: Toolpath, frame: Array, diameter: float, bodies: Sequence[Body], feature: Array | None = None
+) -> list[Issue]:
     """A warning where beads of the first layer lie on the plane of the platform, a disc of `diameter` mm about the origin of
-    the frame (4, 4) in part coordinates, and beyond its edge by more than half of their width, on none of the bodies."""
+    the frame (4, 4) in part coordinates, and beyond its edge by more than half of their width, on none of the bodies.
+    feature: the frame that `cell.mount: feature` would have instead, which is tried."""
     first = cut(replace(toolpath, layers=toolpath.layers[:1]), support.PIECE)
-    local = (first.middle - frame[:3, 3]) @ frame[:3, :3]
-    beyond = np.hypot(local[:, 0], local[:, 1]) - 0.5 * diameter
-    on_plane = np.abs(local[:, 2]) <= ON * toolpath.layer_height
-    out = np.flatnonzero(on_plane & (beyond > 0.5 * first.width))
+    beyond = _beyond(toolpath, first, frame, diameter)
+    out = np.flatnonzero(beyond > 0.5 * first.width)
     out = out[~_Ground(toolpath, (), bodies, ())(first.middle[out], first.build[out])]
     if not len(out):
         return []
     worst = out[beyond[out].argmax()]
+    mounted = feature is not None and _stands_on(toolpath, feature, bodies) and bool(
+        (_beyond(toolpath, first, feature, diameter) <= 0.5 * first.width).all()
+    )
     return [Issue(
         WARNING, OVER_PLATFORM, Text("{:.4g} mm of the first layer lie over the edge of the platform, up to {:.4g} mm "
-            "beyond it; move the part, or set cell.platform_diameter to what there is (0 for none)",
-            math.fsum(first.length[out]), beyond[worst]),
+            "beyond it; {}, or set cell.platform_diameter to what there is (0 for none)",
+            math.fsum(first.length[out]), beyond[worst],
+            Word("put the part on its middle by cell.mount: feature, move it" if mounted else "move the part")),
         0, int(first.bead[worst]), int(first.point[worst]),
     )]
+
+
+def _beyond(toolpath: Toolpath, first: Pieces, frame: Array, diameter: float) -> Array:
+    """How far (n,) mm pieces of the first layer on the plane of a platform are beyond its edge; -inf of all others."""
+    local = (first.middle - frame[:3, 3]) @ frame[:3, :3]
+    on_plane = np.abs(local[:, 2]) <= ON * toolpath.layer_height
+    return np.where(on_plane, np.hypot(local[:, 0], local[:, 1]) - 0.5 * diameter, -np.inf)
+
+
+def _stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool:
+    """Whether all that is deposited, and bodies, are above a plane, z = 0 of a frame (4, 4), onto which the first layer
+    comes."""
+    points = [bead.points for _, _, bead in toolpath]
+    heights = [(some - frame[:3, 3]) @ frame[:3, 2] for some in (*points, *(body.vertices for body in bodies))]
+    first = np.concatenate(heights[: len(toolpath.layers[0].beads)])
+    return min(map(np.min, heights)) >= -ON * toolpath.layer_height and bool((first <= ON * toolpath.layer_height).any())
 
 
 def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issue]:

@@ -87,7 +87,8 @@ def over_edge(made: CoreToolpath, of: Given) -> CoreToolpath:
     """The toolpath with a warning where it begins beyond the edge of the platform."""
     if of.cell is None or of.cell.platform_diameter <= 0.0:
         return made
-    found = support.over_edge(made, _stands(made, of, of.cell), of.cell.platform_diameter, made.surroundings)
+    feature = made.frame if of.stands is None else None  # of several the first one's frame counts for all
+    found = support.over_edge(made, _stands(made, of, of.cell), of.cell.platform_diameter, made.surroundings, feature)
     return dataclasses.replace(made, issues=(*made.issues, *found))
 
 

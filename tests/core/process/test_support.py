@@ -288,6 +288,25 @@ def test_a_first_layer_over_the_edge_of_the_platform_is_told(lift, radius, over)
         assert most == pytest.approx(math.hypot(100.0, 20.0) - radius, abs=WIDTH * support.support.PIECE)
 
 
+def test_the_frame_of_the_feature_is_a_remedy_where_it_does():
+    """A bead of 40 mm, beside a disc of 30 mm radius: with its middle on that of the disc it stands there, unless the disc
+    is smaller, or the frame turned or higher; so it does not where it would bury a body."""
+    path = toolpath([rod(40.0, 80.0)], [rod(40.0, 80.0, 0.0, HEIGHT)])
+    middle, higher, turned = np.eye(4), np.eye(4), np.eye(4)
+    middle[0, 3] = higher[0, 3] = turned[0, 3] = 60.0
+    higher[2, 3] = 5.0
+    turned[:3, :3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
+    low, flush = Body("low", square(9.0)[0] - [0, 0, 3.0], square(9.0)[1]), Body("flush", *square(9.0))
+    for radius, frame, bodies, mended in (
+        (30.0, middle, (), True), (30.0, None, (), False), (30.0, np.eye(4), (), False), (12.0, middle, (), False),
+        (30.0, higher, (), False), (30.0, turned, (), False), (30.0, middle, (low,), False), (30.0, middle, (flush,), True),
+    ):
+        (issue,) = support.over_edge(path, np.eye(4), 2.0 * radius, bodies, frame)
+        assert ("put the part on its middle by cell.mount: feature" in issue.message) == mended, (radius, frame)
+        if frame is not None and mended:
+            assert not support.over_edge(path, frame, 2.0 * radius, bodies)
+
+
 def test_a_substrate_beyond_the_edge_of_the_platform_carries():
     frame, plate = np.eye(4), disc(400.0, np.eye(4), "plate")
     path = toolpath([rod(-100, 100)])

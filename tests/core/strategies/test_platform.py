@@ -60,6 +60,15 @@ def test_a_base_that_reaches_over_the_edge_is_deposited_with_a_warning(diameter,
     assert all("Cup has a diameter of 40 mm" in issue.message for issue in found)
 
 
+@pytest.mark.parametrize(("diameter", "frame", "mended"), [
+    (30.0, None, False), (130.0, at(0.0, 0.0, 0.0), True), (40.0, at(29.0, 40.0, 0.0), True), (39.9, at(29, 40, 0), False),
+])
+def test_the_frame_of_the_feature_is_a_remedy_where_it_does(diameter, frame, mended):
+    (found,) = platform.overhanging(WALL, platform.under(WALL, diameter, frame))
+    assert ("use cell.mount: feature" in found.message) == mended
+    assert mended == (frame is not None and not platform.overhanging(WALL, platform.under(WALL, diameter, None)))
+
+
 @pytest.mark.parametrize("depth", [0.0, 7.5])
 def test_of_a_part_far_larger_than_the_platform_only_what_is_over_it_is_looked_at(depth):
     """A plate of 6 m, whose underside would be 70 million places, reaches below the disc with the middle of its underside

@@ -12,7 +12,7 @@ from ...geometry.curves.profile import RevolvedWall
 from ...geometry.formatting import place
 from ...geometry.mesh.solid import spread
 from ...geometry.on_hub import SolidsOnHub
-from ...issues import WARNING, InputError, Issue, Text
+from ...issues import WARNING, InputError, Issue, Text, Word
 from ...types import Array
 
 UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
@@ -72,10 +72,11 @@ def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
     base, edge = float(wall.meridian.points[0, 0]), platform.radius - 2.0 * platform.off
     if platform.radius == 0.0 or base <= edge + TOUCH:
         return []
+    mounted = platform.off > 0.0 and base <= platform.radius - platform.off + TOUCH  # its axis in the middle
     return [Issue(
         WARNING, "OVER_PLATFORM",
-        Text("the base of {} has a diameter of {:.4g} mm and reaches over the platform; check cell.platform_diameter (0 for "
-            "none)", wall.label, 2.0 * base), 0,
+        Text("the base of {} has a diameter of {:.4g} mm and reaches over the platform; {}check cell.platform_diameter (0 "
+            "for none)", wall.label, 2.0 * base, Word("use cell.mount: feature, move the part, or " if mounted else "")), 0,
     )]
 
 
