@@ -8052,6 +8052,11 @@
         <translation>cubes du dépôt contre section du fil x vitesse x temps, ou ce que comptent les cordons là où aucun fil n&apos;est connu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>curved layers are looked for on a grid of about {0} nodes, which takes about {1} min of the processor; a larger strategy.layer_height, or layers: planes, takes less</source>
+        <translation>les couches courbes sont cherchées sur une grille d&apos;environ {0} nœuds, ce qui prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou layers: planes, en prend moins</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/surfaces.py"/>
         <source>curves and cladding plan no surface; compare the points with the part</source>
         <translation>les courbes et le rechargement ne planifient pas de surface ; comparez les points à la pièce</translation>

@@ -12,6 +12,7 @@ from .strategy import LAYER_TIME, MEND, LayerParameters
 
 LEAST_BEAD = 2.0  # mm, as short as a bead of usual width is worth a start
 PLANES, GEODESIC = "planes", "geodesic"  # layers that are proposed by themselves
+OFFSET = "offset"
 
 
 @dataclass(frozen=True)
@@ -194,10 +195,10 @@ class SolidParameters(FilledParameters):
     """How any solid is cut by planes and filled. mm and rad."""
 
     layers: str = f.parameter(
-        "planes", f.CHOICE, "What the layers are: parallel planes; at equal distances by the way through the part from "
+        PLANES, f.CHOICE, "What the layers are: parallel planes; at equal distances by the way through the part from "
         "where it stands, so that nothing needs support (geodesic); at equal distances straight from there (offset); or "
         "planes normal to a guide curve (along).",
-        choices=("planes", "geodesic", "offset", "along"),
+        choices=(PLANES, GEODESIC, OFFSET, "along"),
     )
     direction: str = f.parameter(
         "0 0 1", f.TEXT, "Stacking direction x y z in the part's coordinates, from the first layer to the last; auto: the "

@@ -19,7 +19,8 @@ from ..geometry.mesh.facets import doubled_areas
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.on_hub import SolidsOnHub
 from ..issues import NOTE, InputError, Issue, Text, Word
-from ..parameters.filled import CladdingParameters, FilledParameters
+from ..layers.curved.grid import step_of
+from ..parameters.filled import GEODESIC, OFFSET, CladdingParameters, FilledParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import MOST_LAYERS, LayerParameters, RevolutionParameters, SurfaceParameters
 from ..types import Array
@@ -42,6 +43,7 @@ SECONDS_A_LAYER = 0.05  # s of the processor through all stages, however few poi
 SECONDS_A_SQUARE = 1.5e-4  # s of the processor that filling layers that differ takes by the square of the spacing, measured
 SECONDS_A_REMEDY = 8e-3  # s of the processor that a point takes with each remedy on an arm with an offset wrist, measured
 SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point of a bead that needs some, measured
+SECONDS_A_NODE = 5e-5  # s of the processor that curved layers take by the node of their grid, measured: flat ones a third
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to
 # layer, and layers of cladding are laid flat to be filled
 _SECONDS_A_POINT: dict[type, float] = {
@@ -52,11 +54,12 @@ _SECONDS_A_POINT: dict[type, float] = {
 @dataclass(frozen=True)
 class Size:
     """About how many layers and points a toolpath would have. squares: with sides of the bead spacing, as many as there are
-    in all layers, where each of these is filled by itself."""
+    in all layers, where each of these is filled by itself. nodes: of the grids on which curved layers are looked for."""
 
     layers: float
     points: float
     squares: float = 0.0
+    nodes: float = 0.0
 
 
 def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
@@ -111,15 +114,16 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
     an overlap takes its place."""
     if spacing is None:
         spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
-    layers = points = squares = 0.0
+    layers = points = squares = nodes = 0.0
     for group in solids.groups:
-        deep = []
+        deep, whole = [], 0.0
         for body in group.bodies:
             distance = group.base.surface.distance(group.base.inside(body.vertices))
             away, within = max(0.0, float(distance.max())), max(0.0, -float(distance.min()))
             deep.append((away + strategy.margin) / strategy.layer_height)
             grown = float(np.prod(1.0 + 2.0 * strategy.margin / np.ptp(body.vertices, axis=0)))
             volume = abs(SolidMesh(body.vertices, body.triangles).volume)
+            whole += volume
             length = volume * grown * away / max(away + within, 1e-9) / strategy.layer_height / spacing
             # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
             extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
@@ -128,7 +132,9 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
             if strategy.margin > 0.0:  # rounded by it, each layer is another
                 squares += length / spacing
         layers += sum(deep) if strategy.order == "feature" else max(deep, default=0.0)
-    return Size(layers, points, squares)
+        if getattr(strategy, "layers", "") in (GEODESIC, OFFSET):
+            nodes += whole / step_of(whole, strategy.layer_height) ** 3
+    return Size(layers, points, squares, nodes)
 
 
 def of_cladding(faces: CladFaces, strategy: CladdingParameters) -> Size:
@@ -180,6 +186,12 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     a_point = next(seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind))
     seconds = max(size.points * a_point, size.layers * SECONDS_A_LAYER, size.squares * SECONDS_A_SQUARE)
     gigabytes = size.points * GIGABYTES_A_POINT
+    if size.nodes * SECONDS_A_NODE > max(seconds, LARGE_SECONDS):
+        minutes = at_least(size.nodes * SECONDS_A_NODE / 60.0)
+        return (Issue(
+            NOTE, LARGE, Text("curved layers are looked for on a grid of about {} nodes, which takes about {:g} min of the "
+                "processor; a larger strategy.layer_height, or layers: planes, takes less", count(size.nodes), minutes),
+        ),)
     if seconds < LARGE_SECONDS and gigabytes < LARGE_GIGABYTES:
         return ()
     return (Issue(

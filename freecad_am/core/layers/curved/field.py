@@ -18,9 +18,8 @@ from ..charts.layer import ChartLayer
 from ..margins import BORDER
 from ..surface import Slice
 from .geodesic import GeodesicField, field
+from .grid import COARSE, step_of
 
-FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most
-MAX_NODES = 2_000_000  # nodes, where that keeps below COARSE
 STANDING = 0.05  # layer heights from the plane or the substrate; facets so near to it stand there
 LOST = 0.002  # share of a part that no way need lead to: rounding at corners
 FACETS = 1.5  # chord errors between triangles of a face, however made
@@ -103,7 +102,7 @@ def _field(
 def _step(volume: float, name: str, strategy: SolidParameters) -> float:
     """Mm from node to node. InputError TOO_FINE."""
     height = strategy.layer_height
-    step = max(FINE * height, float(np.cbrt(volume / MAX_NODES)))
+    step = step_of(volume, height)
     if step > COARSE * height:
         raise InputError(
             "TOO_FINE", "strategy.layer_height", "{:g} mm is too fine for curved layers of {}, {:.4g} cm3; give at least "
