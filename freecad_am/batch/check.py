@@ -33,6 +33,7 @@ from freecad_am.core.simulation.margins import on_deposit
 from freecad_am.objects.checks import controllers
 from freecad_am.posts import catalogue
 from freecad_am.read_back import driven, switched
+from freecad_am.read_back.finding import Finding
 from freecad_am.read_back.into_platform import into_platform
 from freecad_am.report import figures
 from freecad_am.sections import cell as job_cell
@@ -84,21 +85,29 @@ def check(programs: Sequence[str], cell_file: str, post: str | None, folder: str
     settings = known.program or ProgramParameters(post=name)
     motion = driven.driven(cell, without_moves(cell, settings, catalogue.controller(name), "check"), read)
     promises = _promises(motion, cell, known)
-    issues = [
-        Issue(ERROR, code, Text("{} - it does not: {}", one.promise, one.figure), *(one.place or (None, None, None)))
+    findings = [
+        Finding(Issue(
+            ERROR, code, Text("{} - it does not: {}", one.promise, one.figure), *(one.place or (None, None, None))), one.row)
         for code, one in zip(CODES, promises, strict=True) if one.ok is False
     ]
-    issues += [*switched.switching_issues(motion, read), *into_platform(motion, cell)]
+    findings += [*switched.switching_findings(motion, read), *into_platform(motion, cell)]
     if not motion.deposit.any():
-        issues.append(Issue(NOTE, "NO_DEPOSIT", "the program never switches the deposit on"))
+        findings.append(Finding(Issue(NOTE, "NO_DEPOSIT", "the program never switches the deposit on"), None))
+    lines = [one.line(motion, read) for one in findings]
+    issues = [_with_line(one.issue, line) for one, line in zip(findings, lines, strict=True)]
     stem = os.path.splitext(os.path.basename(catalogue.main_file(files)))[0]
     target = folder or os.path.join(os.path.dirname(os.path.abspath(programs[0])), "out", f"{stem}-check")
     with outputs.Outputs(target, session) as written:
         written.write(outputs.WAYPOINTS, waypoints.text(motion, cell.machine.columns, cell.machine.units))
-        written.write(outputs.REPORT, [figures.text(_report(stem, name, motion, cell, promises, issues))])
+        written.write(outputs.REPORT, [figures.text(_report(stem, name, motion, cell, promises, issues, lines))])
         earlier = {one for one in (outputs.WAYPOINTS, outputs.REPORT) if os.path.isfile(os.path.join(written.folder, one))}
         made = [os.path.join(written.folder, one) for one in written.publish(earlier)]
     return Result(made, issues, 3 if any(one.level == ERROR for one in issues) else 0)
+
+
+def _with_line(issue: Issue, line: tuple[str, int] | None) -> Issue:
+    """The issue with the line of the program that it is about, where that is known."""
+    return issue if line is None else replace(issue, message=Text("{}; {} line {}", issue.message, *line))
 
 
 def _files(programs: Sequence[str]) -> dict[str, bytes]:
@@ -181,10 +190,11 @@ def _promises(motion: Motion, cell: Cell, known: Known) -> list[Promise]:
         how = "not checked: a cell alone does not tell how wide and high beads are; give a job"
         return [*found, Promise(clearance.ON_RAPIDS, how, None)]
     looked = rapid_look.looked_at(motion, driven.beads(motion), cell, [], *known.bead, RAPID_PLACES)
-    place = row_place(motion, int(looked.rows[0])) if len(looked.rows) else None
+    row = int(looked.rows[0]) if len(looked.rows) else None
+    place = None if row is None else row_place(motion, row)
     how = f"driven at {looked.places} places against the platform and what is deposited by then; no other body is known"
     met = float(len(looked.rows))
-    return [*found, Promise(clearance.ON_RAPIDS, how, not met, met, "rapids", 0.0, place)]
+    return [*found, Promise(clearance.ON_RAPIDS, how, not met, met, "rapids", 0.0, place, row=row)]
 
 
 def _condition(cell: Cell, serial: Any, length: float) -> Any:
@@ -197,7 +207,8 @@ def _condition(cell: Cell, serial: Any, length: float) -> Any:
 
 
 def _report(
-    name: str, post: str, motion: Motion, cell: Cell, promises: Sequence[Promise], issues: Sequence[Issue]
+    name: str, post: str, motion: Motion, cell: Cell, promises: Sequence[Promise], issues: Sequence[Issue],
+    lines: Sequence[tuple[str, int] | None],
 ) -> dict[str, Any]:
     """The keys of a plan's report that a text alone can fill."""
     deposited, reached = motion.deposit & motion.moves, motion.reachable
@@ -207,7 +218,10 @@ def _report(
     return {
         "version": figures.VERSION, "name": name, "post": post,
         "status": "infeasible" if any(one.level == ERROR for one in issues) else "ok",
-        "issues": [one.as_dict() for one in issues],
+        "issues": [
+            {**one.as_dict(), **dict(zip(("file", "line"), line or (None, None), strict=True))}
+            for one, line in zip(issues, lines, strict=True)
+        ],
         "counts": {
             "layers": len(np.unique(motion.layer[motion.deposit])), "beads": int(starts.sum()),
             "points": int(motion.deposit.sum()),

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .types import Array, Mask
+from .types import Array, Index, Mask
 
 ARC = "ARC"  # in place of the word of an output, where the deposit is switched by an arc instruction
 
@@ -38,6 +38,19 @@ class Configuration:
     up: Mask
     front: Mask
     turns: Array
+
+
+@dataclass(frozen=True, eq=False)
+class TextLines:
+    """Where n moves stand in a text. files: names; file: (n,) which of them; line: (n,) from 1."""
+
+    files: tuple[str, ...]
+    file: Index
+    line: Index
+
+    def at(self, move: int) -> tuple[str, int]:
+        """File and line of a move."""
+        return self.files[self.file[move]], int(self.line[move])
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +88,7 @@ class ReadMoves:
     of moves of bare axes, which count on none, is left out.
     unit: what a text calls the mechanism that carries the part, and that its positions are seen from, or the track;
     first_external: the number of the first axis beside the robot. Both as in `Program`.
+    lines: where the moves stand, those of a loop all on its line; None of what is not of a text.
     """
 
     joints: Array | None
@@ -115,3 +129,4 @@ class ReadMoves:
     tool_frame: Array | None = None
     unit: str = ""
     first_external: int = 1
+    lines: TextLines | None = None

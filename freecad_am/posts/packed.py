@@ -5,7 +5,36 @@ from __future__ import annotations
 
 from array import array
 
+import numpy as np
+
+from freecad_am.core.types import Index
+
+from ..core.read_moves import TextLines
+
 
 def floats() -> array[float]:
     """An empty column of numbers."""
     return array("d")
+
+
+class Lines:
+    """Where the moves that were read so far stand."""
+
+    def __init__(self) -> None:
+        self._files: dict[str, int] = {}
+        self._file, self._line = array("l"), array("l")
+
+    def add(self, where: str, times: int = 1) -> None:
+        """So many moves more, of what stands at `FILE line NUMBER`."""
+        file, _, line = where.rpartition(" line ")
+        self._file.extend([self._files.setdefault(file, len(self._files))] * times)
+        self._line.extend([int(line)] * times)
+
+    def extend(self, file: str, lines: Index) -> None:
+        """More moves, of these lines (n,) of a file."""
+        self._file.extend([self._files.setdefault(file, len(self._files))] * len(lines))
+        self._line.extend(lines.tolist())
+
+    def read(self) -> TextLines:
+        """Those of all moves."""
+        return TextLines(tuple(self._files), np.array(self._file, dtype=np.intp), np.array(self._line, dtype=np.intp))

@@ -9,11 +9,12 @@ from ..core.geometry import frames
 from ..core.issues import ERROR, Issue, Text
 from ..core.kinematics.cell import Cell
 from ..core.motion import Motion
+from .finding import Finding
 
 ROUNDED = 0.1  # mm that digits of a program, and joints between its points, may take
 
 
-def into_platform(motion: Motion, cell: Cell) -> list[Issue]:
+def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
     """INTO_PLATFORM with the lowest place, where the nozzle's tip is below the platform, within its edge, while it deposits.
     motion: what the text drives; what is not reached is not looked at."""
     rows = np.flatnonzero(motion.deposit & motion.reachable)
@@ -23,9 +24,9 @@ def into_platform(motion: Motion, cell: Cell) -> list[Issue]:
     if not below.any():
         return []
     low = int(np.where(below, points[:, 2], np.inf).argmin())
-    row = rows[low]
-    return [Issue(
+    row = int(rows[low])
+    return [Finding(Issue(
         ERROR, "INTO_PLATFORM", Text("the nozzle deposits at {} points below the platform, here {:.3g} mm; correct their "
             "heights, or the cell's platform", int(below.sum()), -points[low, 2]),
         int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]),
-    )]
+    ), row)]

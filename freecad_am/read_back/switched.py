@@ -13,30 +13,31 @@ from freecad_am.core.types import Array
 from ..core.issues import ERROR, Issue, Text
 from ..core.motion import Motion
 from ..core.read_moves import Event, ReadMoves
+from .finding import Finding
 from .leads import timed
 
 # s that a time in a text may be longer than that of its move: both are rounded to milliseconds
 MOST_LONGER = 0.002
 
 
-def switching_issues(motion: Motion, read: ReadMoves) -> list[Issue]:
+def switching_findings(motion: Motion, read: ReadMoves) -> list[Finding]:
     """The first DEPOSIT_SWITCH where it is switched on a second time, or is on where the program ends: an end of a bead is
     lost; and the first TRIGGER_LEAD where it is switched earlier than the move begins on which it is. motion: what the text
     drives."""
-    first: dict[str, Issue] = {}
-    for issue in _issues(motion, read):
-        first.setdefault(issue.code, issue)
+    first: dict[str, Finding] = {}
+    for finding in _findings(motion, read):
+        first.setdefault(finding.issue.code, finding)
     return list(first.values())
 
 
-def _issues(motion: Motion, read: ReadMoves) -> Iterator[Issue]:
+def _findings(motion: Motion, read: ReadMoves) -> Iterator[Finding]:
     rows, on = np.flatnonzero(motion.moves), False
     for event in timed(read.events, motion.speed[rows]):
         if event.kind not in ("on", "off"):
             continue
         if on and event.kind == "on":
             message = Text("the deposit is switched on where it is on already")
-            yield Issue(ERROR, "DEPOSIT_SWITCH", message, *_place(motion, rows, event.row))
+            yield _finding("DEPOSIT_SWITCH", message, motion, rows, event.row)
         on = event.kind == "on"
         seconds = _time_of_its_move(event, motion.duration[rows])
         if seconds is not None:
@@ -45,16 +46,16 @@ def _issues(motion: Motion, read: ReadMoves) -> Iterator[Issue]:
                 "would be switched ahead; use a program.trigger.lead no longer than that, a larger retract distance "
                 "where it is switched on, or a larger strategy.chord_error where it is switched off", seconds, event.ahead,
             )
-            yield Issue(ERROR, "TRIGGER_LEAD", message, *_place(motion, rows, event.row - 1))
+            yield _finding("TRIGGER_LEAD", message, motion, rows, event.row - 1)
     if on:
         message = Text("the deposit is still on where the program ends")
-        yield Issue(ERROR, "DEPOSIT_SWITCH", message, *_place(motion, rows, len(rows)))
+        yield _finding("DEPOSIT_SWITCH", message, motion, rows, len(rows))
 
 
-def _place(motion: Motion, rows: NDArray[np.intp], move: int) -> tuple[int, int, int]:
-    """Layer, bead and point of a move; of the last one for what follows it."""
-    row = rows[min(move, len(rows) - 1)]
-    return int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])
+def _finding(code: str, message: Text, motion: Motion, rows: NDArray[np.intp], move: int) -> Finding:
+    """An error at a move; at the last one for what follows it."""
+    row = int(rows[min(move, len(rows) - 1)])
+    return Finding(Issue(ERROR, code, message, int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])), row)
 
 
 def _time_of_its_move(event: Event, seconds: Array) -> float | None:

@@ -11477,16 +11477,6 @@
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, qui s&apos;écarterait de {0} mm du chemin examiné ; donnez une distance de retrait plus courte, ou un autre {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/switched.py"/>
-        <source>the deposit is still on where the program ends</source>
-        <translation>le dépôt est encore actif où le programme finit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/switched.py"/>
-        <source>the deposit is switched on where it is on already</source>
-        <translation>le dépôt est activé où il l&apos;est déjà</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>the deposit is switched otherwise than planned</source>
         <translation>le dépôt est commandé autrement que planifié</translation>

@@ -42,6 +42,14 @@ def changed(folder, pattern, by):
     raise AssertionError(pattern)
 
 
+def told_line(workshop, done, code):
+    """The line of the program that a finding names, in the report too."""
+    (issue,) = [one for one in report(workshop)["issues"] if one["code"] == code]
+    assert issue["message"].endswith(f"; {issue['file']} line {issue['line']}")
+    assert f"; {issue['file']} line {issue['line']}\n" in done.err
+    return (workshop.folder / "edited" / issue["file"]).read_text(encoding="ascii").splitlines()[issue["line"] - 1]
+
+
 def run(workshop, *words, cell="cell.yaml"):
     return workshop.run("check", "edited", "--cell", cell, "-o", "out", *words)
 
@@ -91,6 +99,13 @@ def test_what_was_broken_is_told_with_its_place(workshop, sound, pattern, by, co
     assert done.status == 3
     assert f"error[{code}] layer " in done.err, done.err
     assert report(workshop)["status"] == "infeasible"
+    line = told_line(workshop, done, code)
+    if code == "SPEED":
+        assert " 1msec " in line
+    else:  # the move to the record that was changed
+        texts = [path.read_text(encoding="ascii") for path in sound[0].iterdir()]
+        (record,) = [found[1] for text in texts if (found := re.search(r"P\[(\d+)\]\{[^}]*J3=   300.000", text))]
+        assert re.match(rf" *\d+:[JL] P\[{record}\] ", line)
 
 
 @pytest.mark.parametrize(
@@ -106,6 +121,8 @@ def test_a_deposit_that_is_switched_as_no_program_does_is_told(workshop, sound, 
     done = run(workshop)
     assert done.status == 3 and f"error[{code}] layer " in done.err and words in done.err, done.err
     assert done.err.count(f"error[{code}]") == 1
+    line = told_line(workshop, done, code)
+    assert "DO[1]=OFF" in line if code == "TRIGGER_LEAD" else re.match(r" *\d+:[JL] P\[", line)
 
 
 @pytest.mark.parametrize(("depth", "told"), [(0.05, 0), (3.0, 1)])
@@ -122,6 +139,7 @@ def test_a_nozzle_that_deposits_below_the_platform_is_told(workshop, sound, dept
     if told:
         depth_said = float(re.search(r"here ([\d.]+) mm", done.err)[1])
         assert done.status == 3 and depth_said == pytest.approx(depth, abs=0.02)
+        assert re.match(r" *\d+:[JL] P\[", told_line(workshop, done, "INTO_PLATFORM"))
 
 
 @pytest.mark.parametrize("controller", ["abb", "kuka", "linuxcnc", "siemens", "ur", "val3", "yaskawa"])

@@ -311,7 +311,7 @@ def test_same_program_same_bytes_and_parts_are_the_program(random_application):
         parts = abb.write(random_application(2, motion, setup, max_points=50))
         assert parts == abb.write(random_application(2, motion, setup, max_points=50)) and len(parts) > 3
         whole, cut = abb.read(abb.write(random_application(2, motion, setup, max_points=10**5))), abb.read(parts)
-        for field in dataclasses.fields(whole):
+        for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
             if field.name in ("rotation", "position"):  # products may differ in their last bit by where they stand in memory
                 np.testing.assert_equal(getattr(cut, field.name) is None, getattr(whole, field.name) is None)
                 if getattr(cut, field.name) is not None:

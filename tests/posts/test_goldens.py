@@ -140,7 +140,7 @@ def test_golden_files_are_what_is_written_and_come_back_as_its_numbers(root, cel
 
 
 def told(read):
-    """All that a reader found, to be compared."""
+    """All that a reader found of the motion, to be compared: damage that moves its lines alone changes nothing."""
     def plain(value):
         if dataclasses.is_dataclass(value):
             return tuple(plain(getattr(value, field.name)) for field in dataclasses.fields(value))
@@ -148,7 +148,7 @@ def told(read):
             return value.shape, np.nan_to_num(value.astype(float), nan=1e99).tobytes()
         return tuple(map(plain, value)) if isinstance(value, (tuple, list)) else value
 
-    return plain(read)
+    return plain(dataclasses.replace(read, lines=None))
 
 
 @pytest.mark.parametrize("cell", ALL, ids=IDS)

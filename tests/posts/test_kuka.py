@@ -252,7 +252,7 @@ def test_parts_are_the_program_hold_whole_beads_and_their_sum_is_told():
     # each file ends with a standstill of no time
     whole, cut = (dataclasses.replace(read, events=tuple(e for e in read.events if (e.kind, e.value) != ("wait", (0.0,))))
                   for read in (whole, kuka.read(files)))
-    for field in dataclasses.fields(whole):
+    for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
         if field.name == "rotation":  # sines may differ in their last bit by where they stand in memory
             np.testing.assert_allclose(cut.rotation, whole.rotation, rtol=0.0, atol=1e-15)
         else:

@@ -118,7 +118,7 @@ def test_the_parts_of_a_program_are_the_program(post):
         files = [post.write(random_program(seed, motion, max_points=most)) for most in (10**5, 45)]
         assert len(files[0]) == 1 and len(files[1]) > 2
         whole, parts = map(post.read, files)
-        for field in dataclasses.fields(whole):
+        for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
             np.testing.assert_array_equal(getattr(parts, field.name), getattr(whole, field.name), field.name)
 
 

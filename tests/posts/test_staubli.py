@@ -218,7 +218,7 @@ def test_the_parts_of_a_program_are_the_program(random_application):
         for motion, setup in VARIANTS:
             whole = staubli.read(staubli.write(random_application(seed, motion, setup, max_points=10**5)))
             parts = staubli.read(staubli.write(random_application(seed, motion, setup, max_points=50)))
-            for field in dataclasses.fields(whole):
+            for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
                 np.testing.assert_array_equal(getattr(parts, field.name), getattr(whole, field.name), field.name)
 
 

@@ -35,7 +35,7 @@ def _limits(motion: Motion, cell: Cell) -> Promise:
     units = cell.machine.units
     return Promise(
         what, how, bool(worst >= -ROUNDING), worst, units[limit] if limit < len(units) else "deg", 0.0,
-        row_place(motion, int(row)), at_least=True,
+        row_place(motion, int(row)), at_least=True, row=int(row),
     )
 
 
@@ -44,13 +44,13 @@ def _reach(motion: Motion, cell: Cell) -> Promise:
     lost = np.flatnonzero(~motion.reachable)
     if len(lost):
         place = row_place(motion, int(lost[0]))
-        return Promise(what, "closed-form inverse", False, float(len(lost)), "points", 0.0, place)
+        return Promise(what, "closed-form inverse", False, float(len(lost)), "points", 0.0, place, row=int(lost[0]))
     deposited = np.flatnonzero(motion.deposit)
     away = np.linalg.norm(cell.tip_at(motion.joints[deposited]) - motion.position[deposited], axis=1)
     row = int(deposited[int(away.argmax())])
     how = "planned joints of the deposit driven through the joint-frame chain, which planning does not use"
     worst = float(away.max())
-    return Promise(what, how, worst <= COMPUTED_MM, worst, "mm", COMPUTED_MM, row_place(motion, row))
+    return Promise(what, how, worst <= COMPUTED_MM, worst, "mm", COMPUTED_MM, row_place(motion, row), row=row)
 
 
 def _speeds(motion: Motion, cell: Cell, most: float) -> Promise:
@@ -63,7 +63,7 @@ def _speeds(motion: Motion, cell: Cell, most: float) -> Promise:
     row = int(np.nanargmax(ratios))
     worst = PERCENT * float(ratios[row])
     how = "mean speed of each axis on each move, rapids included, against the machine file"
-    return Promise(what, how, bool(worst <= most * (1.0 + ROUNDING)), worst, "%", most, row_place(motion, row))
+    return Promise(what, how, bool(worst <= most * (1.0 + ROUNDING)), worst, "%", most, row_place(motion, row), row=row)
 
 
 def _singularities(motion: Motion, condition: Array, threshold: Array) -> Promise:
@@ -76,5 +76,5 @@ def _singularities(motion: Motion, condition: Array, threshold: Array) -> Promis
     how = "inverse condition number of the Jacobian at the points of the deposit, against the least one allowed"
     return Promise(
         what, how, bool(spare[row] >= -ROUNDING), float(condition[row]), "", float(threshold[row]), row_place(motion, row),
-        at_least=True,
+        at_least=True, row=row,
     )

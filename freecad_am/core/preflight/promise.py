@@ -28,7 +28,7 @@ class Promise:
 
     promise: what holds. how: how it was checked. worst: its worst value, in `unit`, None where there is no figure. bound:
     what `worst` is compared with, in the same unit: the most it may be, or with at_least the least. place: where the worst
-    value is.
+    value is, row: of the motion, where that is a place of it.
     """
 
     promise: str
@@ -39,6 +39,7 @@ class Promise:
     bound: float | None = None
     place: Place | None = None
     at_least: bool = False
+    row: int | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """The form used in report.json."""

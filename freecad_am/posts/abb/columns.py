@@ -15,7 +15,7 @@ from freecad_am.core.types import Array
 
 from ...core.issues import Text
 from ...core.read_moves import ARC, Event, ReadMoves
-from ..packed import floats
+from ..packed import Lines, floats
 from .modules import Frames, Module, turned, unreadable
 from .process_data import ProcessData
 
@@ -81,6 +81,7 @@ class Run:
     feeding: bool = False
     fed: bool = False
     analogue: int | None = None
+    lines: Lines = field(default_factory=Lines)
 
     @property
     def moving(self) -> bool:
@@ -112,6 +113,7 @@ class Run:
         self._external_axes(move.axes.split(","), move.frames, where)
         for column, value in zip((self.places, self.turns) if move.linear else (self.joints,), move.values, strict=True):
             column.append(value)
+        self.lines.add(where)
         self.linear.append(move.linear)
         self.placed.append(move.linear)
         self.deposit.append(self.on)
@@ -179,7 +181,7 @@ def all_moves(run: Run) -> ReadMoves:
         deposit, linear, np.isnan(rounding), tuple(run.events), speed=np.where(linear, time_or_speed, np.nan),
         speed_digits=float(half[linear].max(initial=0.0)), duration_digits=half, rounding=rounding,
         unit=run.unit if used else "", first_external=used[0] if used else 1,
-        linear_digits=_half_digit(run.external) if run.slides else 0.0,
+        linear_digits=_half_digit(run.external) if run.slides else 0.0, lines=run.lines.read(),
     )
     if run.analogue is not None:
         read_moves = dataclasses.replace(

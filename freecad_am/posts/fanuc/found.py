@@ -12,7 +12,7 @@ import numpy as np
 from freecad_am.core.types import Array, Index
 
 from ...core.read_moves import Configuration, Event, ReadMoves
-from ..packed import floats
+from ..packed import Lines, floats
 from .parsed import Listing
 from .records import unreadable
 
@@ -50,6 +50,7 @@ class Run:
     numbers: tuple[float, float] = (np.nan, np.nan)
     output: str = ""
     on: bool = False
+    lines: Lines = field(default_factory=Lines)
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None) -> None:
         """Something happens before the next move, or ahead of the end of the last one."""
@@ -86,7 +87,7 @@ def read_moves(run: Run) -> ReadMoves:
         joints, half_turn, np.array(run.duration), deposit, linear, np.isnan(blend), tuple(run.events),
         speed=np.array(run.speed), share=np.array(run.share), share_digits=0.005, blend=blend,
         user_frame=np.array(run.user_frame), tool_frame=np.array(run.tool_frame), unit=run.group or "",
-        linear_digits=digits if run.track[1] else 0.0,
+        linear_digits=digits if run.track[1] else 0.0, lines=run.lines.read(),
     )
     if not cartesian:
         return found

@@ -153,6 +153,7 @@ def _move(listing: Listing, some: slice, option: str, run: Run) -> None:
         run.user_frame.extend([run.numbers[0]] * (end - first))
         run.tool_frame.extend([run.numbers[1]] * (end - first))
     run.pending.append(rows)
+    run.lines.extend(listing.file, moves.line[some])
     value = moves.value[some, None] * _FACTORS[unit]
     for column, numbered in zip((run.duration, run.speed, run.share, run.blend), (*value.T, corner)):
         column.frombytes(numbered.tobytes())

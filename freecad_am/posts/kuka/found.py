@@ -12,7 +12,7 @@ from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.read_moves import Event, ReadMoves
-from ..packed import floats
+from ..packed import Lines, floats
 from .read_arc import ArcMove
 
 
@@ -50,6 +50,7 @@ class Run:
     standing: bool = True
     arc: ArcMove = field(default_factory=ArcMove)
     trigger: tuple[float, str, bool] | None = None
+    lines: Lines = field(default_factory=Lines)
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None) -> None:
         """Something happens before the next move, or so many s before the end of the last one."""
@@ -80,7 +81,7 @@ def read_moves(run: Run) -> ReadMoves:
         speed=np.array(run.speed), speed_digits=half.get("speed", 0.0), share=np.array(run.share), share_digits=0.005,
         linear_digits=half.get("slides", 0.0), rounding=rounding,
         user_frame=np.array(run.base), tool_frame=np.array(run.tool),
-        unit=run.unit or "", first_external=run.numbers[0] if run.numbers else 1,
+        unit=run.unit or "", first_external=run.numbers[0] if run.numbers else 1, lines=run.lines.read(),
     )
 
 

@@ -243,6 +243,7 @@ def _moved(line: str, run: Run, where: str) -> None:
     else:
         run.note_digits("joints", texts)
     run.linear.append(straight is not None)
+    run.lines.add(where)
     run.deposit.append(run.on)
     run.speed.append(state["speed"] if straight else np.nan)
     run.share.append(np.nan if straight else 0.01 * state["percent"])

@@ -15,6 +15,7 @@ from freecad_am.core.types import Array
 
 from ...core.issues import InputError
 from ...core.read_moves import Event, ReadMoves
+from ..packed import Lines
 
 # feed as the time of the move; as the speed of the linear axes; as theirs, or that of the rotary axes where these alone
 # move; and as that of the tip in part coordinates
@@ -78,6 +79,7 @@ class Track:
     numbers: list[tuple[float, float]] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
     known: set[tuple[str, tuple[str, ...]]] = field(default_factory=set)
+    lines: Lines = field(default_factory=Lines)
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
         """Something happens before the next move."""
@@ -108,6 +110,7 @@ class Track:
         if sort in (SLIDES, AXES) and (not self.rows or self.rows[-1][0] == TIP):
             raise unreadable(where, "the way of the move, and so its time, is not known")
         self.rows.append((sort, words))
+        self.lines.add(where)
         self.deposit.append(self.on)
         self.wires.append(self.wire)
         self.stops.append(stops or self.exact)
@@ -139,6 +142,7 @@ class Track:
         turning, sliding = (float(np.max(digits[side], initial=0.0)) for side in (~linear, linear))
         shorter = np.array([name in self.shorter for name in self.axes])
         read = {"linear_digits": sliding, "duration_digits": duration_digits, "shorter_way": shorter}
+        read["lines"] = self.lines.read()
         read |= self._wire() | self._numbers(tips)
         deposit, stops, events = np.array(self.deposit), np.array(self.stops), tuple(self.events)
         if not tips.any():

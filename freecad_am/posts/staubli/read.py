@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ...core.issues import Text, Word
 from ...core.read_moves import Event, ReadMoves
+from ..packed import Lines
 from .files import Application, Data, applications, unreadable
 from .moves import Step, moves_of
 
@@ -67,7 +68,10 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         raise unreadable("program", "there are no moves")
     if run.moving:
         raise unreadable("program", "it ends before the last move does")
-    read_moves = dataclasses.replace(moves_of(run.steps), events=tuple(run.events))
+    lines = Lines()
+    for step in run.steps:
+        lines.add(step.where, len(step.point))
+    read_moves = dataclasses.replace(moves_of(run.steps), events=tuple(run.events), lines=lines.read())
     for app in found.values():
         _check_stop(app, run.output)
     return read_moves

@@ -19,6 +19,7 @@ from freecad_am.core.types import Array
 
 from ...core.issues import InputError, Text
 from ...core.read_moves import Event, ReadMoves
+from ..packed import Lines
 
 _N = r"-?\d+\.\d+"
 _SIX = rf"\[({_N}), ({_N}), ({_N}), ({_N}), ({_N}), ({_N})\]"
@@ -72,6 +73,7 @@ class _Run:
     decimals: dict[str, int] = field(default_factory=lambda: dict.fromkeys(_COLUMNS, 99))
     deposit: bytearray = field(default_factory=bytearray)
     events: list[Event] = field(default_factory=list)
+    lines: Lines = field(default_factory=Lines)
     tcp: tuple[str, ...] = ()
     platform: tuple[str, ...] = ()
     output: float | None = None
@@ -207,6 +209,7 @@ def _move(text: str, run: _Run, where: str) -> bool:
         raise unreadable(where, "its time, speed or blend is none that is kept")
     run.numbers.extend(values)
     run.deposit.append(run.on)
+    run.lines.add(where)
     for name, columns in _COLUMNS.items():
         run.decimals[name] = min(run.decimals[name], _decimals(found[columns]))
     return True
@@ -220,7 +223,7 @@ def _moves(run: _Run) -> ReadMoves:
     moves = ReadMoves(
         joints, half["joints"], duration, np.array(run.deposit, dtype=np.bool_), np.isfinite(speed), radius == 0.0,
         tuple(run.events), speed=1000.0 * speed, speed_digits=1000.0 * half["speed"],
-        duration_digits=np.full(len(values), half["time"]), blend_radius=1000.0 * radius, tool=tool,
+        duration_digits=np.full(len(values), half["time"]), blend_radius=1000.0 * radius, tool=tool, lines=run.lines.read(),
     )
     if not run.platform:
         return moves

@@ -18,6 +18,7 @@ from freecad_am.core.types import Array
 
 from ...core.issues import InputError, Text
 from ...core.read_moves import ARC, Event, ReadMoves
+from ..packed import Lines
 
 _NAME = re.compile(r"//NAME ([A-Z][A-Z0-9_]{0,31})$")
 _COUNT = re.compile(r"///NPOS (\d+),(\d+),(\d+),0,0,0$")
@@ -68,6 +69,7 @@ class _Run:
     moves: array[float] = field(default_factory=lambda: array("d"))
     deposit: bytearray = field(default_factory=bytearray)
     events: list[Event] = field(default_factory=list)
+    lines: Lines = field(default_factory=Lines)
     per_unit: dict[str, float] = field(default_factory=dict)
     slides: set[str] = field(default_factory=set)
     unit: str = ""
@@ -130,6 +132,7 @@ def _moves(run: _Run) -> ReadMoves:
         np.array(run.deposit, dtype=np.bool_), linear, level == 0.0, tuple(run.events), speed=path * unit,
         speed_digits=half[1] * unit if linear.any() else 0.0, share=0.01 * share, share_digits=0.01 * half[0], level=level,
         tool_frame=tool, unit=run.external[1] if run.external else "", linear_digits=0.5 / per_mm,
+        lines=run.lines.read(),
     )
 
 
@@ -276,3 +279,4 @@ def _move(job: _Job, text: str, run: _Run, where: str) -> None:
     run.moves.extend((float(move[6]), job.tool))
     run.moves.extend(job.points[int(move[1])].tolist())
     run.deposit.append(run.on)
+    run.lines.add(where)

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A finding about what a text does, with the row of its motion."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.issues import Issue
+from ..core.motion import Motion
+from ..core.read_moves import ReadMoves
+
+
+class Finding(NamedTuple):
+    """An issue, and the row of the motion that it is about; None where it is about no row."""
+
+    issue: Issue
+    row: int | None
+
+    def line(self, motion: Motion, read: ReadMoves) -> tuple[str, int] | None:
+        """File and line, from 1, of the move to the row, the motion being what the text drives; None where it is unknown."""
+        if self.row is None or read.lines is None:
+            return None
+        # the first row of a bead repeats the end of the move before
+        return read.lines.at(max(int(np.count_nonzero(motion.moves[: self.row + 1])) - 1, 0))
