@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.issues import NOTE, AmError, InputError, Issue, Text
 from ..core.kinematics import cell as cells
+from ..core.kinematics.links.external_links import untold
 from ..core.kinematics.machines.machine import UNKNOWN_REMARK
 from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
@@ -136,8 +137,8 @@ class JointPath(Stage):
             )
             near = () if not cylinders else arm_issues(
                 motion, cell, toolpath, process, cylinders, (*joint_path.issues, *rapid_issues))
-            issues = (*joint_path.issues, *rapid_issues, *near, *_not_kept(cell), *_drawn_plain(cell), *_moved(cell))
-            issues = (*issues, *_heights_as_run(joint_path, toolpath, process))
+            notes = (*_not_kept(cell), *_not_known(cell), *_drawn_plain(cell), *_moved(cell))
+            issues = (*joint_path.issues, *rapid_issues, *near, *notes, *_heights_as_run(joint_path, toolpath, process))
             asked = Tried(
                 lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed,
                 cylinders=cylinders, obstacles=cell.obstacles, torch=cell.torch, external_links=cell.external_links,
@@ -185,6 +186,16 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
     return [Issue(
         NOTE, "OBSTACLES_NOT_KEPT", Text("{}: looked at for the nozzle, and for links and part in simulation and preflight "
             "alone; give cell.arm_clearance so that these are kept clear of it while planning", names)
+    )]
+
+
+def _not_known(cell: cells.Cell) -> list[Issue]:
+    """A note on positioners and tracks of which nothing is kept clear, for no file tells what they are made of."""
+    if cell.external is None or not (lacking := ", ".join(untold(cell.external, cell.external_links))):
+        return []
+    return [Issue(
+        NOTE, "BODIES_NOT_KNOWN", Text("no file tells what {} is made of, so nozzle, torch and robot are not kept clear of "
+            "it; give its machine file bodies, or name what of it stands still in cell.obstacles", lacking)
     )]
 
 

@@ -10167,6 +10167,11 @@
         <translation>aucun fichier ne dit de quoi {0} est fait</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>no file tells what {0} is made of, so nozzle, torch and robot are not kept clear of it; give its machine file bodies, or name what of it stands still in cell.obstacles</source>
+        <translation>aucun fichier ne dit de quoi {0} est fait, si bien que buse, torche et robot n’en sont pas tenus à l’écart ; donnez bodies à son fichier de machine, ou nommez dans cell.obstacles ce qui en est immobile</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>no flip</source>
         <translation>non retourné</translation>

@@ -94,6 +94,25 @@ def columns(workshop, first):
     return np.array([[float(word) for word in line.split(",")[at:-1]] for line in lines[1:]])
 
 
+@pytest.mark.parametrize(("mechanism", "untold"), [
+    ("motoman-motopos-d500", ""), ("kuka-kp2-hv500", "no file tells what KUKA KP2-HV500 is made of"),
+])
+def test_a_positioner_that_no_file_tells_the_shape_of_is_told_to_be_passed_over(workshop, written, mechanism, untold):
+    def change(job):
+        job["strategy"]["layer_height"] = "15 mm"
+        job["cell"]["external"][0].update(machine=mechanism, pose=[1400, 0, -500, 0, 0, 0])
+        del job["program"]
+
+    written(change)
+    done = workshop.run("plan", "dome.yaml", "-o", "out", "--no-page")
+    report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
+    found = [(one["level"], one["message"]) for one in report["issues"] if one["code"] == "BODIES_NOT_KNOWN"]
+    assert len(found) == done.err.count("note[BODIES_NOT_KNOWN] job: ") == bool(untold), done.err
+    assert all(level == "note" and message.startswith(untold) for level, message in found)
+    (line,) = [one["how"] for one in report["preflight"] if one["promise"].startswith("Positioner and track")]
+    assert ("not checked: no file tells" in line) == bool(untold)
+
+
 def test_one_urdf_of_a_whole_cell_moves_as_its_mechanisms_named_one_by_one(workshop, written):
     """Robot on a track, and a positioner, told apart by the tree; the cell by hand has the figures of the maker's files."""
     (workshop.folder / "cell.urdf").write_text(urdf_cells.whole_cell(), encoding="utf-8")

@@ -11,6 +11,7 @@ import numpy as np
 from ..issues import Issue, Text, Word, values_in
 from ..kinematics.cell import Cell
 from ..kinematics.links.contact import LINKS_MORE
+from ..kinematics.links.external_links import untold
 from ..kinematics.links.rounds import NONE
 from ..motion import Motion
 from ..simulation.arm import ArmTouches
@@ -75,11 +76,10 @@ def external_links(
         return []
     what = "Positioner and track stay clear of nozzle, torch, robot and obstacles"
     names = [one.name for one in cell.external_links]
-    known = {one.mechanism for one in cell.external_links}
-    untold = [one.machine.title for k, one in enumerate(cell.external.mechanisms) if k not in known]
-    missing = Text("no file tells what {} is made of", ", ".join(untold)) if untold else ""
+    lacking = ", ".join(untold(cell.external, cell.external_links))
+    missing = Text("no file tells what {} is made of", lacking) if lacking else ""
     if touches is None or not names:
-        return [Promise(what, Text("not checked: no file tells what {} is made of", ", ".join(untold)), None)]
+        return [Promise(what, Text("not checked: no file tells what {} is made of", lacking), None)]
     own = cell.robot.chain.axes
     about = np.isin(touches.what, [touches.names.index(name) for name in names]) | (touches.link >= own + LINKS_MORE)
     rows = np.flatnonzero((touches.link != NONE) & about)
@@ -90,7 +90,7 @@ def external_links(
         met = Text("{} with {}", touches.names[touches.what[rows[0]]], touches.links[touches.link[rows[0]]])
     text = [one for one in of_codes(issues, (*DEPOSITING, *RAPIDS)) if not {*names}.isdisjoint(values_in(one.message))]
     broken = bool(text) or bool(len(rows) and (true_shapes or touches.link[rows[0]] > own))
-    whole = true_shapes and not untold
+    whole = true_shapes and not lacking
     step = number(math.degrees(touches.step))
     how = Text("{} links that move with their axes, every {} deg of the whole motion, the nozzle every mm: they touch {}",
                len(names), step, Word(met))
