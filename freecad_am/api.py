@@ -63,7 +63,7 @@ from .macro.suit import put_on_platform, suit
 from .objects import user_machines
 from .objects.cell import Cell
 from .objects.checks.controllers import post_of
-from .objects.fields.naming import proposed_name
+from .objects.fields.naming import proposed_name, taken_name
 from .objects.job_group import grouped
 from .objects.joint_path import JointPath
 from .objects.program import Program
@@ -187,7 +187,7 @@ def make_all(
             made.append(path)
             post, motion = post_of(chosen, post, user_machines.folders())
             if path.Status == "up to date" and post:
-                made.append(make_program(doc, path, name=name or proposed_name(source.Label), post=post, motion=motion))
+                made.append(make_program(doc, path, name=name or taken_name(source.Label, post), post=post, motion=motion))
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
 

@@ -14,6 +14,7 @@ from ..core.issues import InputError
 from ..core.orientation import Pendant
 from ..core.program import Program
 from ..core.read_moves import ReadMoves
+from .names import Naming
 from .refusals import Asked
 
 NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb", "kuka")  # of the modules beside this one
@@ -24,7 +25,8 @@ class Post(Protocol):
     frames, None where it shows axes alone. NO_WIRE: why programs cannot tell the speed of the wire along a bead, '' where
     they can. NO_SCHEDULE: why it cannot be told schedules, by the ways ('output', 'arc') in which it cannot. NO_WEAVE: why
     beads cannot be woven, NO_TRIGGER: why the deposit cannot be switched ahead of a place; '' where they can. MOVE_LINE:
-    how a line begins that tells a move, or, in a loop, several. ON_CONTROLLER: what only the controller can show."""
+    how a line begins that tells a move, or, in a loop, several. NAMING: of programs. ON_CONTROLLER: what only the controller
+    can show."""
 
     CONTROLLER: Controller
     PENDANT: Pendant | None
@@ -33,6 +35,7 @@ class Post(Protocol):
     NO_WEAVE: str
     NO_TRIGGER: str
     MOVE_LINE: re.Pattern[bytes]
+    NAMING: Naming
     ON_CONTROLLER: tuple[str, ...]
 
     def program_name(self, name: str, where: str) -> str:

@@ -47,15 +47,26 @@ class Naming:
             raise self.refused(name, where, "it is a reserved word")
         return shown
 
+    def fits(self, name: str) -> bool:
+        """Whether the controller takes a name, with the digits of parts behind it."""
+        try:
+            return len(self.checked(name, "name")) <= self.longest - self.spare
+        except InputError:
+            return False
+
     def refused(self, name: str, where: str, why: str) -> InputError:
         """The error for a name that is none, with one that is."""
+        return InputError(
+            "PROGRAM_NAME", where, "{!r} cannot be {} on the controller: {}; use {!r}", name, self.what, why,
+            self.proposed(name),
+        )
+
+    def proposed(self, name: str) -> str:
+        """One like it that the controller takes, with the digits of parts behind it."""
         proposal = self.written(re.sub(r"[^A-Za-z0-9]+", "_", plain(name)).strip("_"))
         if not re.match(self.start, proposal) or self._taken(proposal):
             proposal = f"{self.prefix}{proposal}".rstrip("_")
-        proposal = proposal[: self.longest - self.spare].rstrip("_")
-        return InputError(
-            "PROGRAM_NAME", where, "{!r} cannot be {} on the controller: {}; use {!r}", name, self.what, why, proposal
-        )
+        return proposal[: self.longest - self.spare].rstrip("_")
 
     def parts(self, name: str, count: int) -> list[str]:
         """Names of so many parts. Raises InputError PROGRAM_NAME where there is no room for their digits."""

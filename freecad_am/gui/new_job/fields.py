@@ -9,10 +9,11 @@ from PySide import QtGui
 
 from ...core.kinematics.arrangement import OF_ROBOTS
 from ...core.parameters.build_direction import BuildDirectionParameters
-from ...objects.fields import saved_cells
+from ...objects.fields import naming, saved_cells
 from ...objects.fields.rows import rows
+from ..picking import inputs
 from ..texts.translation import tr
-from ..widgets import choices, fields
+from ..widgets import choices, fields, suggestions
 
 LEANING = "max_from_vertical"
 
@@ -47,6 +48,36 @@ def machines(chosen: str, doc: Any) -> Any:
     choices.offer(machine, [*cells, *choices.machines()])
     choices.enter(machine, chosen)
     return machine
+
+
+class JobName:
+    """The name of the program: of what is deposited, as the controller takes it, until another one is typed."""
+
+    place = "name"  # as errors call it
+
+    def __init__(self) -> None:
+        self.choice = inputs.NameChoice("")
+        self.widget = self.choice.widget
+        self.label = self.post = self.proposed = ""
+        self.asked: tuple[str, str] | None = None  # machine and set-up that the post is of
+
+    def of(self, label: str) -> None:
+        """Name it after what has a label."""
+        self.label = label
+        self._propose()
+
+    def follow(self, machine: str, setup: str) -> str:
+        """Propose one for a machine or saved cell; why its controller refuses what is entered, '' where it does not."""
+        if self.asked != (machine, setup):
+            self.asked, self.post = (machine, setup), suggestions.post_of_job(machine, setup)
+            self._propose()
+        text = self.widget.text().strip()
+        return naming.refusal(text, self.post) if text else ""
+
+    def _propose(self) -> None:
+        if self.label and self.widget.text() in ("", self.proposed):
+            self.proposed = naming.name_for(self.label, self.post)
+            self.widget.setText(self.proposed)
 
 
 class HowItStands:

@@ -21,7 +21,7 @@ from ..background.later import Background
 from ..background.worker import Worker
 from ..colours import WRONG
 from ..panels.stage import CLOSED
-from ..picking import inputs, picking
+from ..picking import picking
 from ..picking.picking import Pick
 from ..signals import connect
 from ..texts.translation import sentence, tr, translated, translated_error
@@ -30,7 +30,7 @@ from ..widgets.fold import Fold
 from ..widgets.wheel import scrolls
 from . import after, before, proposal
 from .as_macro import arguments
-from .fields import HowItStands, label, machines, shown
+from .fields import HowItStands, JobName, label, machines, shown
 from .left_out import left_out
 from .proposal import CLADDING, CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
 
@@ -50,7 +50,6 @@ class JobPanel:
         self.picks: list[Pick] = []
         self.found = JobProposal("", "")
         self.asked = ""  # the family the user chose, '' for the one that is proposed
-        self.proposed = ""
         self.followed = ""  # the machine that a set-up was proposed for
         self._lay_out()
         self.background = Background(self.form)
@@ -72,7 +71,7 @@ class JobPanel:
         self.ground = shown("Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view"))
         self.machine = machines(before.machine(self.document), self.document)
         self.stands = HowItStands()
-        self.name = inputs.NameChoice("")
+        self.name = JobName()
         self.fold = Fold(tr("Inputs"), True)
         rows = (
             (tr("Deposit"), self.part), (tr("Grows on"), self.ground), (tr("Kind"), self.kind),
@@ -81,7 +80,7 @@ class JobPanel:
         )
         notes = {widget: self.fold.add(text, widget) for text, widget in rows}
         # under the fields, by what errors call what is entered there
-        self.notes = {"cell.machine": notes[self.machine], "name": notes[self.name.widget],
+        self.notes = {"cell.machine": notes[self.machine], self.name.place: notes[self.name.widget],
                       self.stands.leaning.label: notes[self.stands.leaning.widget]}
         connect(self.machine, "editTextChanged(QString)", self._entered_anew)
         self.stands.setup.currentIndexChanged.connect(self._entered_anew)
@@ -203,10 +202,8 @@ class JobPanel:
         self.reason.setText("\n".join(filter(None, (reason, whole, missing))))
         self.reason.setStyleSheet(f"QLabel {{ color: {WRONG if missing and self.picks else 'palette(text)'}; }}")
         self.reason.setVisible(bool(self.reason.text()))
-        parts = found.parts
-        if parts and self.name.widget.text() in ("", self.proposed):
-            self.proposed = api.proposed_name(parts[0].obj.Label)
-            self.name.widget.setText(self.proposed)
+        if found.parts:
+            self.name.of(found.parts[0].obj.Label)
 
     def say(self, text: str) -> None:
         """Show what is wrong."""
@@ -230,6 +227,8 @@ class JobPanel:
         without = suggestions.no_post(name, self.stands.chosen())
         self.no_post.setText(without)
         self.no_post.setVisible(bool(without))
+        refusal = self.name.follow(name, self.stands.chosen())
+        self._tell(self.name.place, translated(refusal))
 
     # ---- called by FreeCAD
 
@@ -237,6 +236,8 @@ class JobPanel:
         """Make all stages; True closes the panel, an error is shown in it."""
         self.say("")
         self._entered_anew()
+        if self.notes[self.name.place].text():
+            return False
         try:
             self._wait()
             if self.found.missing or not self.found.parts:
@@ -271,7 +272,7 @@ class JobPanel:
 
     def _arguments(self) -> dict[str, str]:
         given = arguments(self.found, choices.entered(self.machine))
-        return {**given, **self.stands.arguments(), **self.name.arguments()}
+        return {**given, **self.stands.arguments(), **self.name.choice.arguments()}
 
     def reject(self) -> Any:
         """Nothing was done."""

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
+from ... import api
 from ...core.issues import InputError
 from ...core.kinematics.machines import machine
 from ...core.parameters.cell import CellParameters
@@ -13,7 +15,7 @@ from ...core.parameters.program import ProgramParameters
 from ...core.process.model import bead_table
 from ...objects import user_machines
 from ...objects.checks.controllers import post_of, writers, written_by
-from ...objects.fields import preferences
+from ...objects.fields import preferences, saved_cells
 from ...posts import catalogue
 from ..texts.translation import tr
 from .choices import machines
@@ -72,6 +74,20 @@ def no_post(name: str, setup: str = "") -> str:
                   "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.")
     return tr("There is no post for this machine's controller yet: all is planned, checked and simulated, but no program is "
               "written. Export Path… writes its points as a table.")
+
+
+def post_of_job(name: str, setup: str = "") -> str:
+    """The post of a new job with a machine in a set-up, '' for its usual one, or with a saved cell; '' where none writes its
+    program, or it cannot be read."""
+    try:
+        if saved_cells.is_file_of_cell(name):
+            cell = api.read_cell(name)
+        else:
+            loaded = machine.load(name or CellParameters().machine, user_machines.folders())
+            cell = replace(CellParameters(machine=loaded.id), setup=setup or loaded.arrangements[0].setup)
+        return post_of(cell, preferences.post(), user_machines.folders())[0]
+    except (InputError, OSError):
+        return ""
 
 
 def setup_for(name: str) -> str:

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The name of a new job's program follows the machine until another one is typed, and what its controller refuses is told
+under the field before anything is planned."""
+
+from freecad_am import api
+
+
+def test_the_name_follows_the_machine_until_another_one_is_typed(person, hand, hemisphere):
+    doc = hemisphere.Document
+    hemisphere.Label = "Nozzle of the second stage"
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    name, note = person.field(panel, "ProgramName"), person.field(panel, "ProgramNameNote")
+    person.as_revolution(panel)
+    assert name.text() == api.proposed_name(hemisphere.Label) == "NOZZLE_OF_THE_SECOND"
+    hand.enter(panel, "Machine", "abb-irb140")
+    person.until(lambda: name.text() == "NOZZLE_OF", "a name that the controller takes", 5)
+    assert not note.isVisible()
+    hand.enter(panel, "Machine", "fanuc-arcmate120ic")
+    person.until(lambda: name.text() == "NOZZLE_OF_THE_SECOND", "the longer name", 5)
+    person.type(panel, "ProgramName", "SECOND_STAGE_NOZZLE")
+    assert not note.isVisible()
+    hand.enter(panel, "Machine", "abb-irb140")
+    person.until(note.isVisible, "that the controller refuses the name that was typed", 5)
+    assert name.text() == "SECOND_STAGE_NOZZLE" and "more than 14 characters" in note.text()
+    person.screenshot("new_job_name_refused")
+    person.press("Ok")
+    assert note.isVisible() and api.stages_of(doc) == []  # nothing was planned
+    person.type(panel, "ProgramName", "STAGE_2")
+    person.until(lambda: not note.isVisible(), "the note to go", 5)
+    hand.enter(panel, "Machine", "fanuc-arcmate120ic")
+    assert name.text() == "STAGE_2"
+    person.press("Cancel")
+    person.panel_closed()
