@@ -59,7 +59,7 @@ from .macro.features import (
 )
 from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
-from .macro.suit import put_on_platform, suit
+from .macro.suit import in_other_layers, on_platform, suit
 from .objects import user_machines
 from .objects.cell import Cell
 from .objects.checks.controllers import post_of
@@ -151,7 +151,7 @@ def make_all(
     doc: Any, source: Any, faces: Sequence[str] = (), *, kind: str = "revolution", layers: str = "", substrate: Any = None,
     further: Sequence[Any] = (), base_faces: Sequence[str] = (), name: str = "", machine: str = "", cell: str = "",
     post: str = "", process: Mapping[str, Any] | None = None, then: Sequence[Mapping[str, Any]] = (), mend: float = 0.0,
-    setup: str = "", max_from_vertical: Any = None,
+    setup: str = "", max_from_vertical: Any = None, layers_otherwise: str = "",
 ) -> tuple[Any, ...]:
     """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
 
@@ -162,7 +162,8 @@ def make_all(
     writes this set-up, or with an infeasible joint path, and neither with an infeasible toolpath. process: parameters of the
     toolpath by key. A robot other than the default one gets a deposition point and a branch that suit it, another where the
     job cannot be done so, and with `setup="tool-on-robot"` a positioner where the torch would lean more than
-    max_from_vertical. `cell`, the path of a saved cell, stands in place of the machine. `am.make_all(doc, doc.Pot)`
+    max_from_vertical. `cell`, the path of a saved cell, stands in place of the machine. `layers_otherwise`: those of the
+    feature where its `layers` cannot be carried out. `am.make_all(doc, doc.Pot)`
 
     then: features that are deposited after it, in this order and one program, each by the keys of the first one
     (`source`, `kind`, `layers`, `faces` ...); they come after the feature in what is returned.
@@ -176,31 +177,28 @@ def make_all(
             "base_faces": base_faces, "mend": mend, "max_from_vertical": max_from_vertical,
         }
         features = [_feature_of_job(doc, one) for one in (first, *then)]
-        toolpath = _toolpath_on_platform(doc, features, made[0], process or {})
+        toolpath = on_platform(made[0], lambda: make_toolpath(doc, features, made[0], **(process or {})))
         made += [*features, toolpath]
+        in_other_layers(features[0], layers_otherwise, toolpath)
         if toolpath.Status != "infeasible":
-            if setup:
-                suit(made[0], toolpath)
-            path = make_joint_path(doc, toolpath, made[0])
-            if path.Status == "infeasible" and not (setup or cell):
-                suit(made[0], toolpath, path)
-            made.append(path)
+            made.append(_suited_path(doc, toolpath, made[0], setup, bool(cell)))
+            in_other_layers(features[0], layers_otherwise, made[-1])
             post, motion = post_of(chosen, post, user_machines.folders())
-            if path.Status == "up to date" and post:
-                made.append(make_program(doc, path, name=name or taken_name(source.Label, post), post=post, motion=motion))
+            if made[-1].Status == "up to date" and post:
+                named = name or taken_name(source.Label, post)
+                made.append(make_program(doc, made[-1], name=named, post=post, motion=motion))
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
 
 
-def _toolpath_on_platform(doc: Any, features: list[Any], cell: Any, process: Mapping[str, Any]) -> Any:
-    """The toolpath of a new job; what reaches below the platform, or begins above it, is put on it where `mount` does so."""
-    try:
-        return put_on_platform(cell, make_toolpath(doc, features, cell, **process))
-    except InputError as error:
-        if error.code != "OFF_PLATFORM" or not error.mended_by:
-            raise
-        change(cell, **error.mended_by)
-        return make_toolpath(doc, features, cell, **process)
+def _suited_path(doc: Any, toolpath: Any, cell: Any, setup: str, saved: bool) -> Any:
+    """The joint path of a new job, in a cell that suits it unless that is a saved one."""
+    if setup:
+        suit(cell, toolpath)
+    path = make_joint_path(doc, toolpath, cell)
+    if path.Status == "infeasible" and not (setup or saved):
+        suit(cell, toolpath, path)
+    return path
 
 
 def read_cell(file: str) -> CellParameters:

@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+import FreeCAD as App
+
+from ..core.issues import ERROR, InputError
 from ..core.strategies.support import ABOVE_PLATFORM
 from ..objects.fields import properties
 from ..objects.planned import suited_cell
 from ..objects.results.findings import issues_of
+from ..objects.staleness import INFEASIBLE
 from .changes import change
 from .steps import one_step, renew
 
@@ -25,8 +30,25 @@ def suit(cell: Any, *stages: Any) -> None:
                 renew(stage)
 
 
-def put_on_platform(cell: Any, toolpath: Any) -> Any:
-    """The toolpath object, of what stands on the platform where it began above it, over nothing."""
-    if any(issue.code == ABOVE_PLATFORM for issue in issues_of(toolpath)):
-        change(cell, mount="feature")
+def on_platform(cell: Any, make: Callable[[], Any]) -> Any:
+    """The toolpath object that is made; what reaches below the platform, or begins above it, over nothing, is put on it
+    where `mount` does so."""
+    try:
+        toolpath = make()
+        if any(issue.code == ABOVE_PLATFORM for issue in issues_of(toolpath)):
+            change(cell, mount="feature")
+    except InputError as error:
+        if error.code != "OFF_PLATFORM" or not error.mended_by:
+            raise
+        change(cell, **error.mended_by)
+        toolpath = make()
     return toolpath
+
+
+def in_other_layers(feature: Any, layers: str, stage: Any) -> None:
+    """Give a feature object other layers, '' for none, where a stage of it is infeasible; what follows is renewed."""
+    if not layers or stage.Status != INFEASIBLE or feature.Layers == layers:
+        return
+    code = next((issue.code for issue in issues_of(stage) if issue.level == ERROR), "")
+    App.Console.PrintWarning(f"{feature.Label}: layers: {layers}, for {feature.Layers} ones end with {code}\n")
+    change(feature, layers=layers)

@@ -3192,6 +3192,11 @@
         <translation>Dans un fichier de travail : {} ; dans les macros : {}.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/after.py"/>
+        <source>In plane layers, for curved ones could not be carried out. {}</source>
+        <translation>En couches planes, car des couches courbes n’étaient pas réalisables. {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>In tolerance</source>
         <translation>Dans la tolérance</translation>

@@ -11,6 +11,7 @@ import FreeCADGui as Gui
 from ... import api
 from ...core.issues import WARNING
 from ...core.parameters.external import externals
+from ...core.parameters.filled import GEODESIC
 from ...objects.results.findings import issues_of
 from ...objects.staleness import FAILED, INFEASIBLE, STALE, UP_TO_DATE
 from ..texts.translation import tr
@@ -18,8 +19,8 @@ from ..texts.translation import tr
 SHOWN_MS = 15000  # ms that the next step is told on the status bar
 
 
-def tell_next(stages: list[Any]) -> None:
-    """Show the whole result, and tell what came of it and what can be done next."""
+def tell_next(stages: list[Any], proposed: str) -> None:
+    """Show the whole result, and tell what came of it and what can be done next. proposed: layers, where some were."""
     wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
     if wrong is not None:
         # why is in the report view already
@@ -35,6 +36,8 @@ def tell_next(stages: list[Any]) -> None:
     warned = [obj.Label for obj in stages if any(issue.level == WARNING for issue in issues_of(obj))]
     if wrong is None and warned:
         text = tr("{} Read the warnings first: double-click {}.").format(text, ", ".join(warned))
+    if proposed == GEODESIC and any(obj.Proxy.kind == "feature" and obj.Layers != GEODESIC for obj in stages):
+        text = tr("In plane layers, for curved ones could not be carried out. {}").format(text)
     Gui.getMainWindow().statusBar().showMessage(text, SHOWN_MS)
     App.Console.PrintMessage(text + "\n")
     _show_whole()

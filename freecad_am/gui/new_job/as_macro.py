@@ -4,20 +4,23 @@
 from __future__ import annotations
 
 from ...core.parameters.cell import CellParameters
-from ...core.parameters.filled import GEODESIC
+from ...core.parameters.filled import GEODESIC, PLANES
 from ...objects.fields import preferences, saved_cells
 from .. import recorded
 from .proposal import DEVELOPABLE, REVOLUTION, SOLID, JobProposal
 
 
-def arguments(found: JobProposal, machine: str) -> dict[str, str]:
-    """Keywords and their values as text, of what was proposed for a machine or a saved cell."""
+def arguments(found: JobProposal, machine: str, asked: bool) -> dict[str, str]:
+    """Keywords and their values as text, of what was proposed, or asked for, for a machine or a saved cell. Where curved
+    layers that were proposed cannot be carried out planes are laid, as in jobs with `kind: auto`."""
     first = found.parts[0]
     given = {"source": recorded.reference(first.obj)}
     if found.kind != REVOLUTION:
         given["kind"] = repr(found.kind)
     if found.layers == GEODESIC:
         given["layers"] = repr(found.layers)
+        if not asked:
+            given["layers_otherwise"] = repr(PLANES)
     if found.mend:
         given["mend"] = repr(found.mend)
     if found.kind in (DEVELOPABLE, SOLID):

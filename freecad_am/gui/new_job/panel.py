@@ -259,7 +259,7 @@ class JobPanel:
             made = [obj for obj in api.stages_of(self.document) if obj.Name not in known]
             after.show_alone(made)
             after.show_machine(made, bool(self.stands.chosen()))
-            after.tell_next(made)
+            after.tell_next(made, self.found.layers)
             return True
         return False
 
@@ -271,7 +271,7 @@ class JobPanel:
             self.background.at_once()
 
     def _arguments(self) -> dict[str, str]:
-        given = arguments(self.found, choices.entered(self.machine))
+        given = arguments(self.found, choices.entered(self.machine), bool(self.asked))
         return {**given, **self.stands.arguments(), **self.name.choice.arguments()}
 
     def reject(self) -> Any:

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A new job whose curved layers cannot be carried out has planes where that is asked for, as jobs with `kind: auto` do."""
+
+import pytest
+
+from freecad_am import api
+from tests.batch.test_auto_jobs import tee
+
+ROBOT, TOOL = "kuka-kr16-2", "tool-on-robot"  # which turns through its singularity along curved layers of the T
+
+
+@pytest.fixture
+def coarse_tee(doc, monkeypatch):
+    """A T as an object, and features of it in coarse layers."""
+    make = api.make_feature_of
+    coarse = {"layer_height": 8.0, "chord_error": 0.4, "bead_spacing": 6.0}
+    monkeypatch.setattr(api, "make_feature_of", lambda *given, values, **named: make(
+        *given, values={**coarse, **values}, **named))
+    part = doc.addObject("Part::Feature", "Tee")
+    part.Shape = tee()
+    return part
+
+
+def test_planes_are_laid_where_curved_layers_cannot_be(doc, coarse_tee, no_remedies):
+    asked = {"kind": "solid", "layers": "geodesic", "machine": ROBOT, "setup": TOOL, "process": {"bead_width": 6.0}}
+    doc.UndoMode = 1
+    _, feature, _, path = api.make_all(doc, coarse_tee, **asked)
+    assert (feature.Layers, path.Status) == ("geodesic", "infeasible")
+    doc.undo()
+    _, feature, toolpath, path, program = api.make_all(doc, coarse_tee, **asked, layers_otherwise="planes")
+    assert feature.Layers == "planes" and {one.Status for one in (feature, toolpath, path, program)} == {"up to date"}
+    doc.undo()  # all of it is one step
+    assert doc.Objects == [coarse_tee]
+
+
+def test_curved_layers_that_can_be_carried_out_stay(doc, coarse_tee):
+    made = api.make_all(
+        doc, coarse_tee, kind="solid", layers="geodesic", process={"bead_width": 6.0}, layers_otherwise="planes")
+    assert made[1].Layers == "geodesic" and made[3].Status == "up to date"
