@@ -189,6 +189,18 @@ def test_layers_on_a_shaft_and_in_a_bore_keep_their_spacing_where_they_lie(plann
             assert apart.max() < 1.03 * SPACING
 
 
+def test_a_shaft_is_laid_flat_as_it_is_wherever_the_vertices_of_its_mesh_lie_beside_the_seam(planned):
+    """Two of them, one on either side of the seam and joined by an edge, were both moved onto it and met there."""
+    shape = Part.makeCylinder(36, 60)
+    faces = named(shape, lambda face: getattr(face.Surface, "Radius", 0.0) == 36.0)
+    done, report, rows = planned(shape, faces, ", fill: zigzag")
+    assert done.status == 0, done.err
+    assert [issue["message"] for issue in report["issues"] if issue["code"] in ("DISTORTED", "DEPOSITED_TWICE")] == []
+    points = column(rows, "x_mm", "y_mm", "z_mm")
+    np.testing.assert_allclose(np.hypot(points[:, 0], points[:, 1]), 36.0, atol=1e-5)
+    assert report["length_mm"] == pytest.approx(2.0 * np.pi * 36.0 * 60.0 / SPACING, rel=0.1)
+
+
 def test_a_ball_is_covered_in_pieces_within_the_distortion_told(planned):
     done, report, rows = planned(Part.makeSphere(20), ", faces: [Face1]", ", fill: contours, distortion: 8 %")
     assert done.status == 0, done.err

@@ -59,7 +59,7 @@ def split(mesh: Mesh, middle: Array, across: Array, where: Callable[[Array], Mas
     value = (mesh.vertices - middle) @ across
     border = np.zeros(len(value), dtype=bool)
     border[mesh.border_edges] = True
-    on = (np.abs(value) < ONTO * mesh.typical_edge) & ~border
+    on = _onto(mesh, value, across, border)
     vertices = mesh.vertices - np.where(on, value, 0.0)[:, None] * across
     aside = ASIDE * mesh.typical_edge
     value = np.where(np.abs(value) < aside, np.where(value < 0.0, -aside, aside), value)
@@ -92,6 +92,20 @@ def split(mesh: Mesh, middle: Array, across: Array, where: Callable[[Array], Mas
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     used, index = np.unique(faces, return_inverse=True)
     return Mesh(np.vstack([vertices, points, points, vertices])[used], np.ravel(index).reshape(-1, 3).astype(np.intp))
+
+
+def _onto(mesh: Mesh, value: Array, across: Array, border: Mask) -> Mask:
+    """The vertices (n,) that are moved onto a cut, value (n,) mm from it along its normal (3,): those near it, but of two
+    that an edge joins and that would meet there, or nearly, the nearer one: what has no area cannot be laid flat."""
+    near = ONTO * mesh.typical_edge
+    on = (np.abs(value) < near) & ~border
+    pairs = mesh.edges[on[mesh.edges].all(axis=1)]
+    along = mesh.vertices[pairs[:, 1]] - mesh.vertices[pairs[:, 0]]
+    along -= np.outer(along @ across, across)
+    pairs = pairs[np.linalg.norm(along, axis=1) < near]
+    farther = np.abs(value[pairs[:, 0]]) < np.abs(value[pairs[:, 1]])
+    on[np.where(farther, pairs[:, 1], pairs[:, 0])] = False
+    return on
 
 
 def _lies_flat(mesh: Mesh, most: float) -> bool:
