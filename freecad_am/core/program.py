@@ -24,6 +24,7 @@ JOINT_MOVE, LINEAR_MOVE = "joint", "linear"
 # Where the machine stands before a program is not known, so its first move has no planned time: share of the axes' largest
 # speeds, and s where a controller is told a time
 FIRST_SHARE, FIRST_TIME = 0.1, 10.0
+SHORTEST_RAPID = 0.05  # s that a rapid is planned to take at least, however short its way
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from freecad_am.core.types import Array
 
 from ..core.issues import Issue
 from ..core.kinematics.cell import Cell
-from ..core.program import FIRST_SHARE, FIRST_TIME
+from ..core.program import FIRST_SHARE, FIRST_TIME, SHORTEST_RAPID
 from ..core.read_moves import ReadMoves
 from .planned import COMPUTED_AXIS, Planned
 from .text_path import digits
@@ -48,7 +48,8 @@ def time_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
         by_share = np.isfinite(read.share)
         taken, allowed = np.where(by_share, times, taken), np.where(by_share, times_allowed, allowed)
         coarse |= by_share
-        short |= timed & ~planned.deposit & by_share & (turned < STILL)
+        tame = (wanted <= SHORTEST_RAPID * (1.0 + 1e-9)) & (read.share <= 2.0 * read.share_digits)
+        short |= timed & ~planned.deposit & by_share & ((turned < STILL) | tame & (taken <= wanted))
     least = allowed + np.where(coarse, 0.0, owed(wanted))
     wrong = timed & ~short & ~((taken - wanted <= allowed) & (wanted - taken <= least))
     issues += planned.issue("VERIFY_TIME", wrong, "the time in the text does not give the planned speed")

@@ -178,6 +178,18 @@ def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
         assert done.status == 2 and "error[BAD_GCODE]" in done.err and words in done.err, done.err
 
 
+def test_beads_that_begin_beside_the_end_of_others_have_a_kuka_program(workshop):
+    """The way over is so short that the axes would need less than the least share of their speeds that KRL is told."""
+    (workshop.folder / "beads.csv").write_text("x,y,z,bead\n0,0,0,1\n30,0,0,1\n30.4,0,0,2\n60,0,0,2\n")
+    job = workshop.write_job(JOB.format(file="beads.csv", part="", more="", mode="") + """\
+cell: {machine: kuka-kr8-r2100-2-arc-hw, setup: tool-on-robot, branch: auto, nozzle: {tool: [0, 0, 300, 0, 0, 0]}}
+program: {post: kuka, motion: cartesian}
+""")
+    done = workshop.run("plan", job.name, "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    assert next(workshop.folder.rglob("*.src")).read_text(encoding="ascii").count("BAS(#VEL_PTP,1)") == 1
+
+
 def test_a_sketch_of_a_document_is_laid_where_it_stands(workshop, planned):
     """Two lines and an arc, on a plane that leans: read back from the text of their own placement."""
     placement = FreeCAD.Placement(V(5, -7, 30), FreeCAD.Rotation(V(1, 0, 0), 25))

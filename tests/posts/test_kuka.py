@@ -282,6 +282,9 @@ def test_speeds_and_corners():
     fast, slow = (program(moves("rapid", np.zeros(6)), moves("rapid", [0, 0, step, 0, 0, 0], 1.0)) for step in (160.0, 0.7))
     assert "103 %" in refusal(fast, code="JOINT_SPEED", where="layer 0 bead 0")
     assert "0.449 %" in refusal(slow, code="JOINT_SPEED")
+    short = program(moves("rapid", np.zeros(6)), moves("rapid", [0, 0, 0.03, 0, 0, 0], 0.05))  # 0.385 % for the least time
+    assert [line for line in lines(kuka.write(short), "part.src") if "VEL_PTP" in line] == [
+        f"BAS(#VEL_PTP,{share})" for share in (10, 1)]
     for speed in (0.004, 1e6, np.nan):
         refusal(program(moves("rapid", np.zeros(6)), laid(3, 2, 1, speed)), code="MOVE_SPEED", where="layer 2 bead 1")
 

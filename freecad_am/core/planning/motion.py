@@ -16,6 +16,7 @@ from ..motion import DEPOSIT, Motion
 from ..parameters.bead_classes import number_of
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
+from ..program import SHORTEST_RAPID
 from ..types import Array
 from . import nozzle_obstacles
 from .arm.kept import Cylinders
@@ -25,9 +26,7 @@ from .rapids.findings import findings
 from .rapids.retract_ways import Leg
 from .rapids.ways import RapidWays, Way
 
-# share of an axis's largest speed a rapid move may ask for, and the shortest time of one
-RAPID_SHARE = 0.8
-SHORTEST = 0.05
+RAPID_SHARE = 0.8  # of an axis's largest speed that a rapid move may ask for
 OF_ALL = ("layer", "bead", "bead_class")  # what is the same for all rows of a part
 
 
@@ -132,7 +131,7 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
     distance = np.linalg.norm(position[rapid] - position[before], axis=1)
     turned = np.abs(joints[rapid] - joints[before])
     by_axes = np.nan_to_num(turned / (RAPID_SHARE * cell.machine.max_speed)).max(axis=1)
-    shortest = np.maximum(np.maximum(distance / process.rapid_speed, by_axes), SHORTEST)
+    shortest = np.maximum(np.maximum(distance / process.rapid_speed, by_axes), SHORTEST_RAPID)
     duration[rapid], speed[rapid] = shortest, distance / np.maximum(shortest, 1e-12)
     if len(rapid) and rapid[0] == 0:
         speed[0] = process.rapid_speed

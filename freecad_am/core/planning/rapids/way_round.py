@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry.spread import spread
+from ...program import SHORTEST_RAPID
 from ...types import Array, Index, Mask
 
 Free = Callable[[Array, Array], Mask]  # (k,) whether moves straight in the joints from (k, axes) to (k, axes) are clear
@@ -25,7 +26,6 @@ WIDER = 10  # rounds until samples are of the whole ranges; the first are of a p
 STEP = 0.2  # longest move that a tree grows by, as a share of the ranges
 SHORTENED = 4  # times that a way is made shorter
 PULLS = np.array([0.0, 0.03, 0.1, 0.3])  # of the way from a place to halfway between its neighbours
-SHORTEST = 0.05  # s that a move takes at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +135,7 @@ def _shortest(way: Array, ranges: Ranges, free: Free) -> Array:
     others = np.flatnonzero(~clear)
     clear[others] = free(way[first[others]], way[last[others]])
     lasts = np.full((count, count), np.inf)
-    lasts[first, last] = np.where(clear, np.maximum(ranges.lasts(way[first], way[last]), SHORTEST), np.inf)
+    lasts[first, last] = np.where(clear, np.maximum(ranges.lasts(way[first], way[last]), SHORTEST_RAPID), np.inf)
     soonest, before = np.zeros(count), np.zeros(count, dtype=np.intp)
     for place in range(1, count):
         total = soonest[:place] + lasts[:place, place]
@@ -158,7 +158,7 @@ def _pulled(way: Array, ranges: Ranges, free: Free, fits: Fits) -> Array:
     first = [np.repeat(some, len(then), axis=0) for some, then in zip(layers[:-1], layers[1:])]
     last = [np.tile(then, (len(some), 1)) for some, then in zip(layers[:-1], layers[1:])]
     a, b = np.concatenate(first), np.concatenate(last)
-    lasts = np.where(free(a, b), np.maximum(ranges.lasts(a, b), SHORTEST), np.inf)
+    lasts = np.where(free(a, b), np.maximum(ranges.lasts(a, b), SHORTEST_RAPID), np.inf)
     soonest, before, done = np.zeros(1), [], 0
     for some, then in zip(layers[:-1], layers[1:]):
         total = soonest[:, None] + lasts[done : done + len(some) * len(then)].reshape(len(some), len(then))
