@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from freecad_am.core.types import Array
+from freecad_am.core.types import Array, Mask
 
 from ..core.issues import Issue
 from ..core.kinematics.cell import Cell
@@ -44,12 +44,11 @@ def time_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
     # written as 1 ms, the shortest there is
     short = timed & ~planned.deposit & (wanted < MILLISECOND) & (taken <= MILLISECOND + 1e-9)
     if read.share is not None:
-        times, times_allowed, turned = _share_times(cell, planned, read, read.share)
+        times, times_allowed, tame = _share_times(cell, planned, read, read.share, wanted)
         by_share = np.isfinite(read.share)
         taken, allowed = np.where(by_share, times, taken), np.where(by_share, times_allowed, allowed)
         coarse |= by_share
-        tame = (wanted <= SHORTEST_RAPID * (1.0 + 1e-9)) & (read.share <= 2.0 * read.share_digits)
-        short |= timed & ~planned.deposit & by_share & ((turned < STILL) | tame & (taken <= wanted))
+        short |= timed & ~planned.deposit & by_share & tame
     least = allowed + np.where(coarse, 0.0, owed(wanted))
     wrong = timed & ~short & ~((taken - wanted <= allowed) & (wanted - taken <= least))
     issues += planned.issue("VERIFY_TIME", wrong, "the time in the text does not give the planned speed")
@@ -76,9 +75,12 @@ def owed(wanted: Array) -> Array:
     return np.asarray(debt[0, :-1] + debt[1, -2::-1])
 
 
-def _share_times(cell: Cell, planned: Planned, read: ReadMoves, share: Array) -> tuple[Array, Array, Array]:
-    """(n,) s of moves in which the fastest axis runs at a share of its largest speed, what the digits allow, and the
-    largest angle of an axis; from the joint values of the text, where it has them."""
+def _share_times(
+    cell: Cell, planned: Planned, read: ReadMoves, share: Array, wanted: Array
+) -> tuple[Array, Array, Mask]:
+    """(n,) s of moves in which the fastest axis runs at a share of its largest speed, what the digits allow, and which
+    may take another time than is wanted, being too short to tell or no longer at the least share there is; from the joint
+    values of the text, where it has them."""
     shown = cell.machine.to_controller(planned.joints)
     if read.joints is not None:
         shown = np.where(np.isnan(read.joints), shown, read.joints)
@@ -88,4 +90,6 @@ def _share_times(cell: Cell, planned: Planned, read: ReadMoves, share: Array) ->
     ends = 2.0 * float((digits(cell, read) / cell.machine.max_speed).max()) / share
     # the share itself was as much as a half digit less: at few percent that is more of the time than of the share
     least = np.maximum(share - read.share_digits, 0.5 * share)
-    return times, times * read.share_digits / least + ends + COMPUTED_AXIS, turned.max(axis=1)
+    slowest = (wanted <= SHORTEST_RAPID * (1.0 + 1e-9)) & (share <= 2.0 * read.share_digits) & (times <= wanted)
+    tame = (turned.max(axis=1) < STILL) | slowest
+    return times, times * read.share_digits / least + ends + COMPUTED_AXIS, tame

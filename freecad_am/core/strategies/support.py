@@ -109,7 +109,8 @@ def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issu
 
 
 class _Ground:
-    """Whether something other than deposit carries points (n, 3) with build directions (n, 3)."""
+    """Whether something other than deposit carries points (n, 3) with build directions (n, 3), of the first layer or, where
+    `first` (n,) is not true, of those after it."""
 
     def __init__(
         self, toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
@@ -120,34 +121,39 @@ class _Ground:
             first = toolpath.layers[0].beads
             points, build = (np.vstack([getattr(bead, name) for bead in first]) for name in ("points", "build"))
             some = slice(None, None, max(1, len(points) // 1000))
-            if self._on_bodies(points[some], build[some]).mean() > 0.5:
+            reach = np.full(len(points), support.REACH * self._height)
+            if self._on_bodies(points[some], build[some], reach[some]).mean() > 0.5:
                 self._bases = ()
 
-    def __call__(self, points: Array, build: Array) -> Mask:
-        reach = support.REACH * self._height * (1.0 + FLUSH)
+    def __call__(self, points: Array, build: Array, first: Mask | None = None) -> Mask:
+        first = np.ones(len(points), dtype=bool) if first is None else first
+        down = np.where(first, support.REACH, support.DOWN) * self._height
+        reach = down * (1.0 + FLUSH)
         found = np.zeros(len(points), dtype=bool)
         for frame in self._planes:
             found |= (points - frame[:3, 3]) @ frame[:3, 2] <= reach
         for base in self._bases:
             found |= base.surface.distance(base.inside(points)) <= reach
         rest = np.flatnonzero(~found)
-        found[rest] = self._on_bodies(points[rest], build[rest])
+        found[rest] = self._on_bodies(points[rest], build[rest], down[rest])
         return found
 
-    def _on_bodies(self, points: Array, build: Array) -> Mask:
+    def _on_bodies(self, points: Array, build: Array, reach: Array) -> Mask:
+        """Whether there is a body below them, no more than `reach` (n,) mm."""
         found = np.zeros(len(points), dtype=bool)
         if not len(points):
             return found
-        reach, stride = support.REACH * self._height, support.REACH * self._height / (STEPS - 1)
+        stride = reach / (STEPS - 1)
         for search in self._searches:
             left = np.flatnonzero(~found)
             away = _away(search, points[left])
             found[left[away <= ON * self._height]] = True
-            left = left[(away > ON * self._height) & (away <= reach + stride)]
+            left = left[(away > ON * self._height) & (away <= (reach + stride)[left])]
             for step in range(1, STEPS):
                 left = left[~found[left]]
                 if len(left):
-                    found[left] = _away(search, points[left] - step * stride * build[left]) <= 0.5 * stride
+                    below = points[left] - step * stride[left, None] * build[left]
+                    found[left] = _away(search, below) <= 0.5 * stride[left]
         return found
 
 

@@ -62,6 +62,19 @@ def test_what_is_below_is_no_farther_than_one_and_a_half_layers(rise, over):
     assert told(toolpath([rod(0, 100)], [rod(0, 100, 0.0, rise * HEIGHT)]))[0] == pytest.approx(over)
 
 
+@pytest.mark.parametrize("ground", ["plane", "body"])
+def test_ground_a_layer_below_carries_the_first_layer_alone(ground):
+    """A flange over the platform, a layer above it on a narrower foot: its second layer hangs over air as high as one."""
+    path = toolpath([rod(0, 100)], [rod(0, 100, 0.0, HEIGHT), rod(0, 100, 20.0, HEIGHT)], family="solid")
+    planes, bodies = ((np.eye(4),), ()) if ground == "plane" else ((), (disc(400.0, np.eye(4), "plate"),))
+    length, issues = told(path, planes, bodies)
+    assert length == pytest.approx(100.0)
+    assert [(issue.layer, issue.bead) for issue in issues] == [(1, 1)]
+    assert told(toolpath([rod(0, 100, 0.0, HEIGHT)], family="solid"), planes, bodies)[0] == 0.0
+    half = toolpath([rod(0, 100)], [rod(0, 100, 20.0, 0.6 * HEIGHT)], family="solid")  # beside a slope there are such steps
+    assert told(half, planes, bodies)[0] == 0.0
+
+
 def test_beside_is_not_below_and_neither_is_later_or_above():
     over = [[rod(0, 100)], [rod(0, 100, 40.0, 2.0), rod(0, 100, 46.0, 2.0)], [rod(0, 100, 40.0, 0.0)]]
     length, issues = told(toolpath(*over))

@@ -2,7 +2,8 @@
 """Beads over nothing: where neither earlier deposit nor anything that stands there carries a bead.
 
 Below is against the build direction. A piece of a bead is carried where the ray from its middle meets something no more than
-REACH layer heights below: earlier deposit as wide as it counts, or ground. So a bead may overhang what is below by half of
+REACH layer heights below: earlier deposit as wide as it counts, or, of the first layer, ground; of others, whose own height
+is between their path and what carries it, ground DOWN layer heights below. So a bead may overhang what is below by half of
 its width. It is carried too where that holds of both its sides, as over a seam between two beads. What is carried at both
 ends bridges a gap up to its own width.
 """
@@ -22,10 +23,14 @@ from ...toolpath import Toolpath
 from ...types import Array, Index, Mask
 from .pieces import Pieces, cut
 
-Ground = Callable[[Array, Array], Mask]
+Ground = Callable[[Array, Array, Mask], Mask]
+Held = Callable[[Array, Index], Mask]  # places (n, 3) for pieces (n,): whether ground carries them
 
 CODE = "UNSUPPORTED"
 REACH = 1.5  # layer heights that what carries a bead may be below it
+# layer heights that ground may be below beads of other layers than the first: beside slopes layers have steps of half of
+# one; with a whole one a layer is missing there
+DOWN = 0.75
 LEVEL_WITH = 0.1  # layer heights; what is no farther below than this is beside
 GRACE = 0.05  # of the width that counts; pieces have places, and chords are not arcs
 PIECE = 0.25  # of the width: no piece of a bead is longer, but for the chord error, by which beads count as wider
@@ -42,38 +47,41 @@ def carried(
     """How much of the layers of a toolpath lies over nothing, mm of those with such beads, and an issue for each of these,
     the longest ten.
 
-    ground(points (n, 3), build (n, 3)): whether something other than deposit carries them. first: something carries all of
-    the first layer. numbers: (k,) rising, of the layers asked about, all where left out. Time grows little faster than the
-    number of pieces, memory as it.
+    ground(points (n, 3), build (n, 3), lowest (n,)): whether something other than deposit carries them, which of them are of
+    the first of the layers asked about. first: something carries all of that layer. numbers: (k,) rising, of the layers
+    asked about, all where left out. Time grows little faster than the number of pieces, memory as it.
     """
     pieces = cut(toolpath, PIECE)
-    reach = REACH * toolpath.layer_height
     numbers = np.arange(len(toolpath.layers)) if numbers is None else numbers
     asked = np.flatnonzero(np.isin(pieces.layer, numbers[1:] if first else numbers))
-    open_ = _alone(pieces, toolpath, ground, asked)
-    open_ = _without_both(pieces, toolpath, ground, open_)
+
+    def held(points: Array, which: Index) -> Mask:
+        return ground(points, pieces.build[which], pieces.layer[which] == numbers[0])
+
+    open_ = _alone(pieces, toolpath, held, asked)
+    open_ = _without_both(pieces, toolpath, held, open_)
     free = np.zeros(len(pieces), dtype=bool)
     free[open_] = True
     runs = list(_runs(pieces, free, toolpath))
     open_by_layer: dict[int, float] = {}
     for run in runs:
         open_by_layer[run.layer] = open_by_layer.get(run.layer, 0.0) + run.length
-    return open_by_layer, _issues(runs, toolpath, reach)
+    return open_by_layer, _issues(runs, toolpath, int(numbers[0]))
 
 
-def _without_both(pieces: Pieces, toolpath: Toolpath, ground: Ground, some: Index) -> Index:
+def _without_both(pieces: Pieces, toolpath: Toolpath, held: Held, some: Index) -> Index:
     """Those of some pieces that are not carried at both of their sides."""
     found = []
     for side in (SIDE, -SIDE):
         across = np.cross(pieces.build[some], pieces.travel[some])
         across *= (side * pieces.width[some] / np.maximum(lengths(across), 1e-300))[:, None]
-        found.append(_alone(pieces, toolpath, ground, some, across))
+        found.append(_alone(pieces, toolpath, held, some, across))
         some = np.setdiff1d(some, found[-1], assume_unique=True)
     return np.union1d(*found)
 
 
 def _alone(
-    pieces: Pieces, toolpath: Toolpath, ground: Ground, some: Index, aside: Array | None = None
+    pieces: Pieces, toolpath: Toolpath, held: Held, some: Index, aside: Array | None = None
 ) -> Index:
     """Those of some pieces that nothing carries, at their middles or `aside` (n, 3) mm of these."""
     height = toolpath.layer_height
@@ -94,7 +102,7 @@ def _alone(
         nearest = np.asarray(tree.query(at[mine] - height * pieces.build[some[mine]])[1]) + low
         done[mine] = _below(pieces, some[mine], at[mine], nearest, toolpath)
     left = left[~done]
-    left = left[~ground(at[left], pieces.build[some[left]])]
+    left = left[~held(at[left], some[left])]
     if not len(left):
         return np.zeros(0, dtype=np.intp)
     tree = cKDTree(pieces.middle)
@@ -186,7 +194,7 @@ def _runs(pieces: Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
                 yield _Run(int(pieces.layer[first]), number, int(pieces.point[first]), total)
 
 
-def _issues(runs: list[_Run], toolpath: Toolpath, reach: float) -> list[Issue]:
+def _issues(runs: list[_Run], toolpath: Toolpath, first: int) -> list[Issue]:
     layers: dict[int, list[_Run]] = {}
     for run in runs:
         layers.setdefault(run.layer, []).append(run)
@@ -195,6 +203,7 @@ def _issues(runs: list[_Run], toolpath: Toolpath, reach: float) -> list[Issue]:
     found = []
     for layer in worst:
         longest = max(layers[layer], key=lambda run: run.length)
+        reach = (REACH if layer == first else DOWN) * toolpath.layer_height
         found.append(Issue(
             WARNING, CODE, Text("{:.4g} mm of beads lie over nothing, {:.4g} mm of them in a row from here: what is below "
                 "is more than {:.4g} mm away, or they overhang it by more than half of their width; deposit what carries "
