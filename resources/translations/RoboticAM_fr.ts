@@ -7432,6 +7432,11 @@
         <translation>tel que trouvé</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>as high as their layer is there, {0} to {1} mm</source>
+        <translation>la hauteur que leur couche a là, {0} à {1} mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/size.py"/>
         <source>as it is this job cannot be carried out; looking for what would make it feasible takes up to {0} min of the processor</source>
         <translation>tel quel, ce travail n&apos;est pas réalisable ; chercher ce qui le rendrait réalisable prend jusqu&apos;à {0} min de processeur</translation>
@@ -7445,6 +7450,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>as the axes can</source>
         <translation>selon les axes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>as wide as the room that they have, {0} to {1} mm</source>
+        <translation>la largeur de la place qu’ils ont, {0} à {1} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
@@ -14770,6 +14780,16 @@
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
         <source>{0} of them are called {1}; give each its own name</source>
         <translation>{0} d&apos;entre eux s&apos;appellent {1} ; donnez à chacun son propre nom</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>{0} of {1} beads are deposited at {2} to {3} mm/s instead of {4} mm/s, for one wire feed to make them {5}; the speed follows that along them</source>
+        <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s au lieu de {4} mm/s, pour qu’un même dévidage leur donne {5} ; la vitesse la suit le long d’eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>{0} of {1} beads are deposited at {2} to {3} mm/s, for one wire feed to make them {4}; the speed follows that along them</source>
+        <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s, pour qu’un même dévidage leur donne {4} ; la vitesse la suit le long d’eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>

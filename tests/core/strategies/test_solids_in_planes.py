@@ -2,6 +2,7 @@
 """Solids in plane layers: beads where the part is and nowhere else, by its equations and by counting pixels."""
 
 import math
+import re
 from itertools import product
 
 import numpy as np
@@ -219,8 +220,19 @@ def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
     made = planned(part, fill=fill, process=process)
     assert laid(made) == pytest.approx(volume, rel=0.03) and made.twice < 0.03 * volume
     assert min(bead.width.min() for _, _, bead in made if bead.width is not None) >= 0.3 * 4.0 - 1e-9
+    (told,) = [issue for issue in made.issues if issue.code == "SPEED_VARIES"]
+    beads = [bead for _, _, bead in made]
+    others = [bead for bead in beads if np.abs(bead.speed[1:] / 20.0 - 1.0).max() > 0.01]
+    count, every, slow, fast, usual, thin, wide = (
+        float(number) for number in re.findall(r"(?<![a-z])\d+\.?\d*", told.message))
+    assert (count, every, usual) == (len(others), len(beads), 20.0)
+    for said, exact in ((slow, min(bead.speed[1:].min() for bead in others)),
+                        (fast, max(bead.speed[1:].max() for bead in others)),
+                        (thin, min(bead.width.min() for bead in others)), (wide, max(bead.width.max() for bead in others))):
+        assert said == pytest.approx(exact, rel=5e-3)
+    assert told.level == "note" and made.layers[told.layer].beads[told.bead] in others
     full = planned(part, fill=fill, process=process, narrowest=1.0)
-    assert laid(full) > 1.03 * volume
+    assert laid(full) > 1.03 * volume and not [issue for issue in full.issues if issue.code == "SPEED_VARIES"]
     assert [bead.closed for _, _, bead in full] == [bead.closed for _, _, bead in made]
 
 
@@ -228,6 +240,7 @@ def test_where_beads_do_not_crowd_all_are_as_wide_as_ever():
     for fill in ("contours", "lines", "spiral"):
         made = planned(box((0, 0, 0), (60, 32, 4)), fill=fill)
         assert all(bead.width is None and np.ptp(bead.speed) == 0.0 for _, _, bead in made)
+        assert not [issue for issue in made.issues if issue.code == "SPEED_VARIES"]
 
 
 def test_beads_are_as_short_as_their_spacing_where_that_is_less_than_2_mm():

@@ -7,6 +7,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
@@ -14,9 +16,14 @@ from ...parameters.process import ProcessParameters
 from ...process.model.bead_model import BeadModel
 from ...process.model.notes import of_model
 from ...toolpath import Layer
+from ...types import Array
 from .beads import MadeBead
 from .course import LEAST_DEPARTURE
 from .lean import Turned
+
+SLIGHTLY = 0.01  # of the travel speed, by which one may differ and nothing is told
+WIDE = "as wide as the room that they have, {:.3g} to {:.3g} mm"
+HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
 
 
 def notes(
@@ -31,6 +38,8 @@ def notes(
         found.append(Issue(first.level, code, text, first.layer))
     if model is not None:
         found += of_model(made, strategy.layer_height, process, model)
+    else:
+        found += _speeds(layers, process)
     found += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
     if waits and strategy.min_layer_time > 0.0:
@@ -46,6 +55,38 @@ def notes(
                 strategy.wait),
         ))
     return found
+
+
+def _speeds(layers: Sequence[Layer], process: ProcessParameters) -> list[Issue]:
+    """At which speeds one wire feed makes beads as wide as their room and as high as their layer, where these are others
+    than usual; at the bead that departs most from its travel speed."""
+    classes = {bead.bead_class for layer in layers for bead in layer.beads}
+    usual = {name: process.for_class(name).travel_speed for name in classes}
+    places = [
+        (float(np.abs(bead.speed[1:] / usual[bead.bead_class] - 1.0).max()), i, j)
+        for i, layer in enumerate(layers) for j, bead in enumerate(layer.beads)
+    ]
+    some = [place for place in places if place[0] > SLIGHTLY]
+    if not some:
+        return []
+    beads = [layers[i].beads[j] for _, i, j in some]
+    speed = np.concatenate([bead.speed[1:] for bead in beads])
+    asked = {usual[bead.bead_class] for bead in beads}
+    instead = Text(" instead of {:.4g} mm/s", asked.pop()) if len(asked) == 1 else ""
+    wide = [bead.width for bead in beads if bead.width is not None]
+    high = [bead.height for bead in beads if bead.height is not None]
+    sizes = [Text(text, *_ends(found)) for text, found in ((WIDE, wide), (HIGH, high)) if found]
+    _, layer, number = max(some, key=lambda place: place[0])
+    return [Issue(
+        NOTE, "SPEED_VARIES", Text("{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, for one wire feed to make them "
+            "{}; the speed follows that along them", len(some), len(places), speed.min(), speed.max(), Word(instead),
+            Text.joined(" and ", sizes)), layer, number,
+    )]
+
+
+def _ends(columns: Sequence[Array]) -> tuple[float, float]:
+    """The least and the largest value of all."""
+    return min(float(one.min()) for one in columns), max(float(one.max()) for one in columns)
 
 
 def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[Issue]:
