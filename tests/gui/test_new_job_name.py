@@ -33,3 +33,18 @@ def test_the_name_follows_the_machine_until_another_one_is_typed(person, hand, h
     assert name.text() == "STAGE_2"
     person.press("Cancel")
     person.panel_closed()
+
+
+def test_a_program_is_called_so_that_the_controller_of_its_machine_takes_it(person, hemisphere, coarse, no_remedies):
+    doc = hemisphere.Document
+    hemisphere.Label = "Nozzle of the second stage"
+    for machine, name in (("", "NOZZLE_OF_THE_SECOND"), ("abb-irb140", "NOZZLE_OF")):
+        path = api.make_all(doc, hemisphere, machine=machine, post="none")[3]
+        person.select(path)
+        person.click("RoboticAM_Program")
+        panel = person.panel("RoboticAM_Program")
+        assert person.field(panel, "ProgramName").text() == name
+        person.until(lambda panel=panel: person.field(panel, "FirstLines").isVisible(), "how it begins", 20)
+        assert not person.field(panel, "ProgramNameNote").isVisible()
+        person.press("Cancel")
+        person.panel_closed()

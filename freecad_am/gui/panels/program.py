@@ -9,13 +9,13 @@ from typing import Any
 
 import FreeCAD as App
 
-from ... import api
 from ...core.issues import AmError
 from ...core.parameters.program import ProgramParameters
 from ...core.preflight.promise import Place, Promise
 from ...core.simulation.timeline import timeline
 from ...core.simulation.totals import Totals, totals
 from ...objects.checks import preflight
+from ...objects.fields import naming
 from ...objects.program import Job, Program, Written, posted
 from ...objects.stage_parts import Outcome
 from ...objects.staleness import UP_TO_DATE
@@ -59,14 +59,16 @@ class ProgramPanel(PreviewPanel):
     stage, draft = Program, "Program"
 
     def __init__(self, obj: Any = None) -> None:
-        self.name = inputs.NameChoice(_part_name() if obj is None else obj.ProgramName)
+        self.name = inputs.NameChoice("" if obj is None else obj.ProgramName)
         super().__init__(
             tr("Program") if obj is None else obj.Label, [*inputs.of(Program, obj), self.name], obj, None
         )
         if obj is None:
-            for name, text in zip((POST, MOTION), suggestions.post_for(self._links()["JointPath"]), strict=True):
+            found = suggestions.post_for(self._links()["JointPath"])
+            for name, text in zip((POST, MOTION), found, strict=True):
                 if text:
                     self.places[name][0].show(text)
+            self.name.widget.setText(naming.name_for(_part_label(), found[0] or suggestions.usual_post()))
         self._add_text()
 
     def _add_text(self) -> None:
@@ -158,9 +160,9 @@ def _lines(beginning: Beginning) -> list[str]:
     ]
 
 
-def _part_name() -> str:
-    """A first proposal for the program's name, from the part that is deposited: that of the selected job first."""
+def _part_label() -> str:
+    """What a program is called after: the part that is deposited, that of the selected job first."""
     for obj in [*meant(), *App.ActiveDocument.Objects]:
         if getattr(getattr(obj, "Proxy", None), "kind", "") == "feature" and obj.Source:
-            return api.proposed_name(obj.Source[0].Label)
-    return api.proposed_name(App.ActiveDocument.Label)
+            return str(obj.Source[0].Label)
+    return str(App.ActiveDocument.Label)

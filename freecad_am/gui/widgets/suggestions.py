@@ -103,13 +103,17 @@ def setup_for(name: str) -> str:
     return [*written, loaded.arrangements[0].setup][0]
 
 
+def usual_post() -> str:
+    """The post of new programs where the machine does not ask for another one."""
+    return str(preferences.post() or ProgramParameters().post)
+
+
 def post_for(path: Any) -> tuple[str, str]:
     """Post and motion of a new program for the cell of a joint path, ('none', '') where nothing writes for its controller;
     ('', '') where those by default will do, or the machine says nothing."""
     if path is None or path.Cell is None:
         return "", ""
-    usual = ProgramParameters()
-    wanted = preferences.post() or usual.post
+    usual, wanted = ProgramParameters(), usual_post()
     try:
         post, motion = post_of(path.Cell.Proxy.parameters(path.Cell, CellParameters), wanted, user_machines.folders())
     except InputError:
