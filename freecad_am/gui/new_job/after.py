@@ -19,7 +19,7 @@ from ..texts.translation import tr
 SHOWN_MS = 15000  # ms that the next step is told on the status bar
 
 
-def tell_next(stages: list[Any], proposed: str) -> None:
+def tell_next(stages: list[Any], proposed: str = "") -> None:
     """Show the whole result, and tell what came of it and what can be done next. proposed: layers, where some were."""
     wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
     if wrong is not None:
