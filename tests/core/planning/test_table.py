@@ -113,6 +113,33 @@ def test_over_the_vertical(machine, off):
         assert np.ptp(turning, axis=0).min() < 1e-5 and np.ptp(turning, axis=0).max() == pytest.approx(1.6, abs=1e-5)
 
 
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("way", ["nearly upright", "over level ground"])
+def test_beside_the_vertical_the_table_has_the_way_there_to_turn(machine, way):
+    """Curved layers are upright but for some tenths of a degree, this way and that, or lean, are upright for a while and
+    lean another way: the table would have turned within hundredths of a millimetre, or nowhere."""
+    x = np.linspace(0.0, 60.0, 61)
+    lean, aside = np.zeros((2, len(x)))
+    if way == "nearly upright":
+        lean, aside = np.radians(np.random.default_rng(5).uniform(-0.13, 0.13, (2, len(x))))
+    else:
+        lean = np.tan(np.radians(np.interp(x, [20.0, 25.0], [15.0, 0.0])))
+        aside = np.tan(np.radians(np.interp(x, [35.0, 40.0], [0.0, 15.0])))
+    cell = resolved(machine)
+    asked = bead(np.stack([x, 5.0 + 0.0 * x, 20.0 + 0.0 * x], axis=1), np.stack([lean, aside, np.ones(len(x))], axis=1))
+    path = plan_joints(toolpath(asked), cell, JointParameters())
+    assert path.feasible, [issue.message for issue in path.issues]
+    assert [issue.code for issue in path.issues] == []
+    check(cell, path)
+    run = path.beads[0]
+    found = np.stack([np.interp(run.bead.points[:, 0], x, column) for column in asked.tool.T], axis=1)
+    sine = np.linalg.norm(np.cross(found, run.bead.tool), axis=1) / np.linalg.norm(found, axis=1)
+    assert np.degrees(np.arcsin(sine)).max() < 0.41
+    turning = ~cell.machine.chain.sliding
+    rate = np.abs(np.diff(run.joints, axis=0))[:, turning] / np.diff(run.bead.points[:, 0])[:, None] * 8.0
+    assert (rate <= cell.machine.max_speed[turning]).all()
+
+
 def test_round_a_hub_on_the_turning_axis_only_the_table_turns():
     base = Developable(60.0, 200.0)
     cell = resolved()

@@ -27,6 +27,7 @@ from ..joint_path import BeadPath
 from ..reserve import RESERVE
 from ..task import Task
 from ..turns import directed
+from ..turns.rotary_courses import AT_POLE
 from ..turns.unwrap import is_otherwise, seam_notes
 
 Progress = Callable[[float, str], None]
@@ -38,6 +39,9 @@ FEWEST_POINTS = 3  # of a piece
 ROUNDS = 10
 STRAY = math.radians(0.5)  # between two points the tool may lean this far from the direction asked for
 KEPT = 1e-9  # a limit met exactly is kept, rad and mm
+# rad; how near to a pole directions count as on it, tried in turn where an axis would race round beside it; less than STRAY
+POLES = (AT_POLE, math.radians(0.2), math.radians(0.4))
+RACES = 2.0  # times its largest speed at which an axis does; below that the bead is slowed
 
 
 class _Run(NamedTuple):
@@ -93,12 +97,34 @@ def _within_stroke(task: Task, bead: Bead, before: Array) -> list[_Run]:
 
 
 def _run(task: Task, bead: Bead, before: Array) -> _Run:
-    """The bead in the turns and the branch that suit best after axes (5,), finer where it must be."""
+    """The bead in the turns and the branch that suit best after axes (5,), past poles with the directions asked for where
+    that can be run."""
+    runs: list[tuple[bool, float, _Run]] = []
+    for pole in POLES[:1] if task.lock is not None else POLES:
+        run = _finer(task, bead, before, pole)
+        race = _race(task, run)
+        if run.bent is None and race <= RACES:
+            return run
+        runs.append((run.bent is not None, race, run))
+    return min(runs, key=lambda one: one[:2])[2]
+
+
+def _race(task: Task, run: _Run) -> float:
+    """How many times as fast as it can an axis would have to be along a run, at most; 0 of what cannot be run."""
+    if not np.isfinite(run.axes).all():
+        return 0.0
+    time = np.linalg.norm(np.diff(run.bead.points, axis=0), axis=1) / run.bead.speed[1:]
+    fastest = (np.abs(np.diff(run.axes, axis=0)) / task.cell.machine.max_speed).max(axis=1)
+    return float((fastest / np.maximum(time, 1e-300)).max(initial=0.0, where=time > 0.0))
+
+
+def _finer(task: Task, bead: Bead, before: Array, pole: float) -> _Run:
+    """The bead with directions within `pole` rad of a pole on it, finer where it must be."""
     cell, looked, axes = task.cell, bead, before
     bead = gone_back(bead, task.retreat).run_on(task.overlap)
     for _ in range(ROUNDS):
         # all of it anew: near a pole the shorter way on shows only with more points
-        axes = directed.chosen(cell, directed.courses(cell, task.lock, bead), before)
+        axes = directed.chosen(cell, directed.courses(cell, task.lock, bead, pole), before)
         if not np.isfinite(axes).all():
             return _Run(bead, axes, False)
         away, leans = deviation(task, bead, axes, task.chord_error), leaning(cell, bead, axes)

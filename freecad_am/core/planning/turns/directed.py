@@ -27,16 +27,23 @@ class Lock:
     angle: float
 
 
-def courses(cell: Cell, lock: Lock | None, bead: Bead) -> list[Array]:
-    """All ways (n, 5) to run a bead, up to whole turns."""
+def courses(cell: Cell, lock: Lock | None, bead: Bead, pole: float = rotary_courses.AT_POLE) -> list[Array]:
+    """All ways (n, 5) to run a bead, up to whole turns. Directions within `pole` rad of the turning axis count as along it;
+    where that is more than usual, the axis turns there as it has to be afterwards."""
     arm, torch = FiveAxis(cell.machine.chain), cell.station[:3, 2]
     points, tools = cell.on_flange(bead.points, bead.tool)
     if lock is not None:
         turned = _locked(arm, lock, tools, torch)
         turned[:, 1 - lock.axis] = np.unwrap(turned[:, 1 - lock.axis])
         return [arm.placed(turned, points, cell.station)]
-    found = arm.turns(rotary_courses.onto_pole(tools, arm.pole), torch)
-    return [arm.placed(course, points, cell.station) for course in rotary_courses.courses(found)]
+    found = arm.turns(rotary_courses.onto_pole(tools, arm.pole, pole), torch)
+    ways = rotary_courses.courses(found)
+    if pole > rotary_courses.AT_POLE:
+        place = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.points, axis=0), axis=1))]
+        for axis, free in enumerate((found.first_free, found.second_free)):
+            for course in ways:
+                course[:, axis] = rotary_courses.led_over(course[:, axis], free, place)
+    return [arm.placed(course, points, cell.station) for course in ways]
 
 
 def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:

@@ -17,9 +17,9 @@ from ...types import Array
 AT_POLE = math.radians(0.1)
 
 
-def onto_pole(directions: Array, pole: Array) -> Array:
-    """Directions (n, 3), those nearly along a turning axis (3,) or against it brought onto it."""
-    near = np.linalg.norm(np.cross(directions, pole), axis=1) < math.sin(AT_POLE)
+def onto_pole(directions: Array, pole: Array, within: float = AT_POLE) -> Array:
+    """Directions (n, 3), those within an angle (rad) of a turning axis (3,), or of its other way, brought onto it."""
+    near = np.linalg.norm(np.cross(directions, pole), axis=1) < math.sin(within)
     return np.where(near[:, None], np.sign(directions @ pole)[:, None] * pole, directions)
 
 
@@ -29,6 +29,18 @@ def courses(found: Turns) -> list[Array]:
     for axis, free in enumerate((found.first_free, found.second_free)):
         turned[:, :, axis] = kept(turned[:, :, axis], free)
     return continuous(turned)
+
+
+def led_over(course: Array, free: NDArray[np.bool_], place: Array) -> Array:
+    """Angles (n,) along places (n,) mm of a bead: those that are free, between others, led evenly from one to the other, so
+    that the axis has all of the way to turn and need not turn where it ends."""
+    known = np.flatnonzero(~free)
+    if not len(known):
+        return course
+    # even along the way; what is before the first and after the last stays as it is
+    led = np.interp(place, place[known], course[known])
+    inside = free & (np.arange(len(free)) > known[0]) & (np.arange(len(free)) < known[-1])
+    return np.where(inside, led, course)
 
 
 def continuous(turned: Array) -> list[Array]:
