@@ -57,70 +57,64 @@ def left_open(curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Bead
     return wider(without(grown(inner, half, error), covered, beads.gap), beads.gap, error)
 
 
-def closing(region: Region, curves: Sequence[PlaneCurve], beads: Beads, ring: int) -> list[PlaneCurve]:
-    """Beads in what other beads leave open of the part of a region that beads can reach."""
-    inner = region.grown(-beads.inset, beads.chord_error)
-    return centre_beads(left_open(curves, inner, beads), beads, ring, inner, "closing")
+def closing(
+    inner: Sequence[Region], curves: Sequence[PlaneCurve], beads: Beads, ring: int, filled: Sequence[Region] = ()
+) -> list[PlaneCurve]:
+    """Beads in what other beads leave open of what beads can reach with their middles in `inner`, and of that without what
+    else is filled."""
+    left = left_open(curves, inner, beads)
+    if filled:
+        left = wider(without(left, filled), beads.gap, beads.chord_error)
+    return centre_beads(left, beads, ring, inner, "closing")
 
 
 def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
-    """One bead along the middle of each region narrower than a bead. InfeasibleError THIN_REGION where none is wanted."""
-    found = []
+    """Beads along the middle of all branches of regions narrower than a bead, of each the longest first; none begins inside
+    of others. InfeasibleError THIN_REGION where none is wanted."""
+    found: list[PlaneCurve] = []
     for region in thin:
         if beads.thin == "refuse":
             raise InfeasibleError(
                 "THIN_REGION", "filling", "the region at {} is {:.3g} mm wide, less than a bead ({:.3g} mm); choose thin = "
                 "single, a narrower bead or a margin", beads.where(region.inside()), region.width, 2.0 * beads.inset,
             )
-        found += _network(region, beads)
+        before = len(found)
+        left: Sequence[Region] = (region,)
+        for _ in range(ROUNDS):
+            rest: list[Region] = []
+            for part in left:
+                sliver = part.width < SLIVER * beads.chord_error
+                points, closed = _along_border(part) if sliver else _spine(part, beads, 0.15 * part.width)
+                if len(points) > 1 and (len(found) == before or length(points, closed) >= beads.shortest):
+                    found.append(PlaneCurve(points, closed, "centre", 0))
+                    rest += part.without(along([(points, closed)], beads.inset, beads.chord_error), beads.gap)
+            left = wider(rest, beads.gap, beads.chord_error)
     return found
 
 
-def _network(region: Region, beads: Beads) -> list[PlaneCurve]:
-    """Beads along the middle of all branches of a thin region, the longest first; none begins inside of others."""
-    found: list[PlaneCurve] = []
-    left: Sequence[Region] = (region,)
-    for _ in range(ROUNDS):
-        rest: list[Region] = []
-        for part in left:
-            width = part.width
-            sliver = width < SLIVER * beads.chord_error
-            points, closed = _along_border(part) if sliver else _spine(part, beads, 0.15 * width)
-            if len(points) > 1 and (not found or length(points, closed) >= beads.shortest):
-                found.append(PlaneCurve(points, closed, "centre", 0))
-                rest += part.without(along([(points, closed)], beads.inset, beads.chord_error), beads.gap)
-        left = wider(rest, beads.gap, beads.chord_error)
-        if not left:
-            break
-    return found
-
-
-def outermost(region: Region, beads: Beads) -> tuple[tuple[Region, ...], tuple[Region, ...]]:
-    """What the middle of the outermost bead goes round, and what is too thin for that: necks of the region, or all of it.
-    Places that are hardly wider than a bead, as where ribs meet, are left to the beads along the middle of the ribs."""
-    inner = region.grown(-beads.inset, beads.chord_error)
+def outermost(
+    region: Region, inner: tuple[Region, ...], beads: Beads
+) -> tuple[tuple[Region, ...], tuple[Region, ...]]:
+    """What of `inner`, where middles of beads may lie, the outermost bead goes round, and what is too thin for that: necks
+    of the region, or all of it. Places that are hardly wider than a bead, as where ribs meet, are left to the beads along
+    the middle of the ribs."""
     if beads.thin != "refuse":
         long = longer(inner, beads.shortest)
         inner = long if long or region.area > NETWORK * beads.inset**2 else inner
-    return (inner, _necks(region, inner, beads)) if inner else ((), (region,))
-
-
-def _necks(region: Region, inner: Sequence[Region], beads: Beads) -> tuple[Region, ...]:
-    """Parts of a region that no bead inside of `inner` reaches and that join two places which beads do reach, or stand out
-    from one as ribs do: longer than a bead is wide and nearly as thick all along, not corners that run to a point."""
+    if not inner:
+        return (), (region,)
     reached = grown(inner, beads.inset, beads.chord_error)
-    found = []
-    for part in region.without(reached):
-        adjacent = [other for other in reached if other.distance(part) < 2.0 * beads.chord_error]
-        if len(adjacent) > 1 or (adjacent and _is_rib(part, adjacent[0], 2.0 * beads.inset)):
-            found.append(part)
-    return tuple(found)
+    return inner, tuple(part for part in region.without(reached) if _is_neck(part, reached, beads))
 
 
-def _is_rib(part: Region, foot: Region, width: float) -> bool:
-    if part.area <= RIB * width**2:  # less than the least rib has
-        return False
-    out = float(foot.nearest(part.borders()[0])[1].max())
+def _is_neck(part: Region, reached: Sequence[Region], beads: Beads) -> bool:
+    """Whether a part that beads do not reach joins two places which they do reach, or stands out from one as ribs do: longer
+    than a bead is wide and nearly as thick all along, not a corner that runs to a point."""
+    adjacent = [other for other in reached if other.distance(part) < 2.0 * beads.chord_error]
+    width = 2.0 * beads.inset
+    if len(adjacent) != 1 or part.area <= RIB * width**2:  # less than the least rib has
+        return len(adjacent) > 1
+    out = float(adjacent[0].nearest(part.borders()[0])[1].max())
     return out > width and part.area > RIB * width * out
 
 

@@ -69,10 +69,10 @@ class _Found(NamedTuple):
     link: Link
 
 
-def connected(region: Region, beads: Beads) -> list[PlaneCurve]:
+def connected(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
     """One closed bead through all contours of a region; what has no place for links stays a bead of its own, as does the one
     bead of a region too narrow for contours. InfeasibleError THIN_REGION, see `Beads`."""
-    found = levels(region, beads)
+    found = levels(region, inner, beads)
     loose = centres(found, beads)
     curves = long_enough(rounds(found, beads), beads.shortest)
     if not curves:

@@ -21,11 +21,11 @@ class Levels:
     thin: tuple[Region, ...]  # the region, or necks of it, narrower than a bead
 
 
-def levels(region: Region, beads: Beads) -> Levels:
+def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
     """The contours of a region, each parallel to its border, not to the contour before, so that errors do not add. Contours
-    too short are left open, for the beads in the middle."""
+    too short are left open, for the beads in the middle. inner: where the middles of beads may lie."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner, thin = outermost(region, beads)
+    inner, thin = outermost(region, inner, beads)
     regions, left = [], []
     k = 0
     while inner:
@@ -37,9 +37,9 @@ def levels(region: Region, beads: Beads) -> Levels:
     return Levels(tuple(regions), tuple(left), thin)
 
 
-def contours(region: Region, beads: Beads) -> list[PlaneCurve]:
+def contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
     """Closed contours from outside in, then the beads in their middle. InfeasibleError THIN_REGION, see `Beads`."""
-    found = levels(region, beads)
+    found = levels(region, inner, beads)
     return long_enough(rounds(found, beads) + centres(found, beads), beads.shortest)
 
 

@@ -40,8 +40,13 @@ def total(covers: Sequence[Cover]) -> Cover:
 
 def covered(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads, density: float = 1.0) -> Cover:
     """How well beads cover a region; what they leave open on purpose, at a density below 1, does not count."""
-    if isinstance(region, Strip):
-        found = _of_strip(region, curves, beads)
+    if isinstance(region, Strip):  # window by window; beads of regions round a hub are as wide as usual
+        beads = replace(beads, chord_error=max(beads.chord_error, COARSE * beads.inset))
+        found = total([
+            _of_regions(region.flat(window.low, window.high, window.about), [_lines(near, beads.chord_error)], beads,
+                        region.pane(window))
+            for window, near in near_windows(region, curves, 2.0 * beads.inset)
+        ])
     else:
         found = _of_regions((region,), [_widths(curve) for curve in curves], beads, ())
     return found if density == 1.0 else found._replace(left=0.0)
@@ -62,15 +67,10 @@ def _of_regions(
     return Cover(whole, whole - inside, once - inside, once)
 
 
-def _of_strip(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Cover:
-    """Window by window; beads of regions round a hub are as wide as usual."""
-    covers = []
-    beads = replace(beads, chord_error=max(beads.chord_error, COARSE * beads.inset))
-    for window, near in near_windows(strip, curves, 2.0 * beads.inset):
-        lines = [(simplified(curve.points, beads.chord_error, curve.closed), curve.closed) for curve in near]
-        regions = strip.flat(window.low, window.high, window.about)
-        covers.append(_of_regions(regions, [(lines, [1.0] * len(lines))], beads, strip.pane(window)))
-    return total(covers)
+def _lines(curves: Sequence[PlaneCurve], chord_error: float) -> tuple[list[Line], list[float]]:
+    """Beads as wide as usual in lines, and the share of the usual width of each."""
+    lines = [(simplified(curve.points, chord_error, curve.closed), curve.closed) for curve in curves]
+    return lines, [1.0] * len(lines)
 
 
 def _widths(curve: PlaneCurve) -> tuple[list[Line], list[float]]:

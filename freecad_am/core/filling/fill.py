@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One way into all patterns."""
+"""One way into all patterns, and what they share: where the middles of beads may lie, what is too thin for that, walls,
+beads that close gaps, none too short."""
 
 from __future__ import annotations
 
@@ -10,16 +11,16 @@ from ..geometry.regions.region import Region, joined
 from ..geometry.regions.strip import Strip
 from ..issues import InputError
 from ..types import Array
-from .centre import left_open
+from .centre import closing, left_open, single_beads
 from .connected import connected
 from .contours import contours
-from .curve import Beads, PlaneCurve
-from .lines import lines
+from .curve import Beads, PlaneCurve, long_enough
+from .lines import frame, lines
 from .sparse import Infill, sparse
 from .spiral import spiral
-from .strip_closing import strip_left_open
+from .strip_closing import open_windows
 from .strip_lines import lines_along, lines_round
-from .strips import strip_contours
+from .strips import single, strip_contours
 
 PATTERNS = ("contours", "connected", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
 CURVED = ("contours", "connected", "spiral")  # without walls: the border's parallel curves are all they have
@@ -43,24 +44,37 @@ def fill(
         raise InputError("PATTERN", "filling", "there is no pattern {!r}; use one of {}", pattern, ", ".join(PATTERNS))
     if pattern not in CURVED and math.isinf(walls):
         pattern, infill = "contours", WHOLE
+    inner = region.grown(-beads.inset, beads.chord_error)
     if isinstance(region, Strip):
+        if not inner:
+            return tuple(single(region, beads))
         if pattern in CURVED:
-            return tuple(strip_contours(region, beads))
+            return tuple(strip_contours(region, inner, beads))
         upright = abs(math.sin(angle)) > abs(math.cos(angle))
-        return tuple((lines_along if upright else lines_round)(region, beads, int(walls), infill.density))
+        return tuple((lines_along if upright else lines_round)(region, inner, beads, int(walls), infill.density))
+    if pattern in CURVED and infill.density == 1.0:
+        return tuple({"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, inner, beads))
     link = (longest_link or LINK * beads.spacing) if pattern == "zigzag" else None
-    if infill.density < 1.0:
-        return tuple(sparse(region, beads, pattern, angle, 0 if math.isinf(walls) else int(walls), link, infill))
-    if pattern in CURVED:
-        return tuple({"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, beads))
-    return tuple(lines(region, beads, angle, int(walls), link))
+    rounds = 0 if math.isinf(walls) else int(walls)
+    framed = frame(region, inner, beads, rounds)
+    curves = single_beads(framed.thin, beads) + framed.curves
+    if infill.density == 1.0:
+        curves += lines(framed, beads, angle, rounds, link)
+        curves += closing(inner, curves, beads, rounds)
+    else:
+        curves += closing(inner, curves, beads, rounds, framed.ends) if framed.curves else []
+        curves += sparse(framed, beads, pattern, angle, rounds, link, infill)
+    return tuple(long_enough(curves, beads.shortest))
 
 
 def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> list[tuple[Array, float]]:
     """Places (2,) that beads leave open of what beads inside can reach, and how wide (mm) each is, more than the gap
     allowed."""
     if isinstance(region, Strip):
-        return strip_left_open(region, curves, beads)
+        return [
+            (region.period.unroll(region.unrolled(window, part.inside()[None]))[0], part.width)
+            for window, left, _ in open_windows(region, curves, beads) for part in left
+        ]
     inner = region.grown(-beads.inset, beads.chord_error)
     return [(part.inside(), part.width) for part in left_open(curves, inner, beads)] if inner else []
 

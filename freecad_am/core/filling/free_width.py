@@ -67,26 +67,22 @@ def shared(
     found = []
     for curve in curves:
         if curve.kind in CENTRES:
-            curve = _within_width(curve, others, region, beads, share, least, most)
+            points = _denser(curve, PLACES * beads.spacing)
+            away = nearest_among([(other.points, other.closed) for other in others], points)[1]
+            free = np.minimum(region.nearest(points)[1] / beads.inset, 2.0 * away / beads.spacing - 1.0)
+            curve = replace(curve, points=points, share=np.clip(share * free, least, most))
         elif share != 1.0:
             curve = replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
         found.append(curve)
     return tuple(found)
 
 
-def _within_width(
-    curve: PlaneCurve, others: Sequence[PlaneCurve], region: Region, beads: Beads, share: float, least: float, most: float
-) -> PlaneCurve:
-    """A bead with points as dense as its width may change, as wide as the room about it."""
-    step = PLACES * beads.spacing
+def _denser(curve: PlaneCurve, step: float) -> Array:
+    """The points of a curve and more, so dense as its width may change."""
     if curve.closed:
-        points = dense(curve.points, step)
-    else:  # there and back is a ring, of which the way there is the first half
-        points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)
-        points = points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
-    away = nearest_among([(other.points, other.closed) for other in others], points)[1]
-    free = np.minimum(region.nearest(points)[1] / beads.inset, 2.0 * away / beads.spacing - 1.0)
-    return replace(curve, points=points, share=np.clip(share * free, least, most))
+        return dense(curve.points, step)
+    points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)  # there and back is a ring: the first half of it
+    return points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
 
 
 def narrowed(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float) -> tuple[PlaneCurve, ...]:

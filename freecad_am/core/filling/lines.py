@@ -12,8 +12,8 @@ from ..geometry.curves.plane_curve import turned
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grown, longer
 from ..types import Array
-from .centre import closing, outermost, single_beads
-from .curve import Beads, PlaneCurve, contours_of, long_enough
+from .centre import outermost
+from .curve import Beads, PlaneCurve, contours_of
 from .lattice import crossings
 from .zigzag import in_rows
 
@@ -31,11 +31,11 @@ class Frame(NamedTuple):
     thin: tuple[Region, ...]
 
 
-def frame(region: Region, beads: Beads, walls: int) -> Frame:
+def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -> Frame:
     """Where lines may run: half a bead inside the border, or a spacing inside of the last of so many contours that are laid
-    first, onto which they end."""
+    first, onto which they end. inner: where the middles of beads may lie."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner, thin = outermost(region, beads)
+    inner, thin = outermost(region, inner, beads)
     if not walls or not inner:
         return Frame([], inner, inner, thin)
     curves = []
@@ -48,26 +48,19 @@ def frame(region: Region, beads: Beads, walls: int) -> Frame:
     return Frame(curves, grown(inner, -2.0 * half, error), grown(inner, -half, error), thin)
 
 
-def lines(
-    region: Region, beads: Beads, angle: float = 0.0, walls: int = 0, longest_link: float | None = None
-) -> list[PlaneCurve]:
-    """Lines at an angle (rad), every other one the other way round; so many contours round them come first.
+def lines(framed: Frame, beads: Beads, angle: float, walls: int, longest_link: float | None) -> list[PlaneCurve]:
+    """Lines at an angle (rad) within a frame of so many contours, every other one the other way round.
 
     First and last line are half a bead inside the border (with walls: a spacing inside of the last), and the rest
     at the spacing from these. Where the breadth is not a multiple of the spacing the lines move evenly if that takes no more
     than TOGETHER and APART; otherwise what is left over is in the middle and has a line of its own. With walls, lines end
-    on the last. What lines leave open elsewhere, beside borders almost along them, is filled too, as is the place of lines
-    that would be too short. InfeasibleError THIN_REGION, see `Beads`.
+    on the last.
 
     longest_link: mm; lines are linked to zigzags along the border of the room that beads have, so that no link is outside;
     beside contours links lie inside of their beads, so that little is laid twice. None: no line is linked.
     """
-    framed = frame(region, beads, walls)
-    curves = single_beads(framed.thin, beads) + framed.curves
     inside = INSIDE * beads.spacing if walls else 0.0
-    curves += in_rows(rows(framed, beads, angle), framed.ends, beads, walls, longest_link, inside)
-    curves += closing(region, curves, beads, walls)
-    return long_enough(curves, beads.shortest)
+    return in_rows(rows(framed, beads, angle), framed.ends, beads, walls, longest_link, inside)
 
 
 def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grown, wider, without
-from .centre import centre_beads, left_open, single_beads
-from .curve import Beads, PlaneCurve, contours_of, long_enough
+from .centre import closing
+from .curve import Beads, PlaneCurve, contours_of
 from .lattice import families, gyroid, honeycomb
-from .lines import Frame, frame, rows
+from .lines import Frame, rows
 from .zigzag import in_rows
 
 SPARSE = ("contours", "lines", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
@@ -34,25 +34,17 @@ class Infill:
 
 
 def sparse(
-    region: Region, beads: Beads, pattern: str, angle: float, walls: int, longest_link: float | None, infill: Infill
+    framed: Frame, beads: Beads, pattern: str, angle: float, walls: int, longest_link: float | None, infill: Infill
 ) -> list[PlaneCurve]:
-    """The walls of a region, the beads that close what these leave open between them, then what is inside, see `Infill`.
-
-    angle (rad): of lines and zigzags, and of the lines where the whole is filled. longest_link: as of `lines`.
-    InfeasibleError THIN_REGION.
-    """
-    framed = frame(region, beads, walls)
-    curves = single_beads(framed.thin, beads) + framed.curves
-    inner = region.grown(-beads.inset, beads.chord_error)
-    if framed.curves:
-        left = wider(without(left_open(curves, inner, beads), framed.ends), beads.gap, beads.chord_error)
-        curves += centre_beads(left, beads, walls, inner, "closing")
+    """What is inside of walls, see `Infill`. angle (rad): of lines and zigzags, and of the lines where the whole is filled.
+    longest_link: as of `lines`."""
+    curves = []
     loose, whole = _divided(framed.ends, infill.buried, beads)
     for part in whole:
         curves += _whole(part, beads, angle, walls, longest_link)
     for part in loose:
         curves += _pattern(part, beads, pattern, angle, walls, longest_link, infill)
-    return long_enough(curves, beads.shortest)
+    return curves
 
 
 def _divided(
@@ -73,8 +65,7 @@ def _whole(region: Region, beads: Beads, angle: float, ring: int, longest_link: 
     """Lines, or zigzags, over all of a region that lines end on the border of, and beads in what they leave open."""
     inner = region.grown(-0.5 * beads.spacing, beads.chord_error)
     curves = in_rows(rows(Frame([], inner, (region,), ()), beads, angle), (region,), beads, ring, longest_link)
-    left = left_open(curves, inner, beads) if inner and curves else []
-    return curves + centre_beads(left, beads, ring, inner, "closing")
+    return curves + (closing(inner, curves, beads, ring) if inner and curves else [])
 
 
 def _pattern(

@@ -21,10 +21,10 @@ LEAST_LENGTH = 4.0  # spacings; contours shorter than that are not linked
 LINK = 3.0  # spacings; longest link
 
 
-def spiral(region: Region, beads: Beads) -> list[PlaneCurve]:
+def spiral(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
     """One curve from each outer contour and from each hole as far as contours follow one another singly; where they split or
     join, new ones begin. A contour of its own stays closed. What contours leave open is filled as theirs is."""
-    found = levels(region, beads)
+    found = levels(region, inner, beads)
     rings = [[border for region in regions for border in region.borders()] for regions in found.regions]
     follower = [_followers(here, there, beads.spacing) for here, there in zip(rings, rings[1:])] + [{}]
     led: set[tuple[int, int]] = set()
@@ -40,7 +40,7 @@ def spiral(region: Region, beads: Beads) -> list[PlaneCurve]:
             led.update(chain[: len(pieces)])
             curves.append(_curve(pieces, beads, k))
     curves = long_enough(curves + centres(found, beads), beads.shortest)
-    return curves + long_enough(closing(region, curves, beads, 0), beads.shortest)
+    return curves + long_enough(closing(inner, curves, beads, 0), beads.shortest)
 
 
 def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) -> dict[int, int]:

@@ -6,12 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import common, grown
 from ..geometry.regions.strip import Strip, Window
-from ..types import Array
 from .centre import centre_beads, left_open
 from .curve import Beads, PlaneCurve, long_enough
 
@@ -21,22 +18,14 @@ REACH = 3.0  # spacings beside a window that tell what is open in it
 def strip_closing(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring: int, kind: str) -> list[PlaneCurve]:
     """Beads in what curves leave open, wider than the gap allowed; cut where windows meet."""
     found = []
-    for window, left, inner in _open(strip, curves, beads):
+    for window, left, inner in open_windows(strip, curves, beads):
         for curve in centre_beads(left, beads, ring, inner, kind):
-            uv = strip.period.unrolled(curve.points) + np.array([window.about, 0.0])
+            uv = strip.unrolled(window, curve.points)
             found.append(replace(curve, points=strip.period.unroll(uv), sheet=float(uv[:, 0].mean())))
     return long_enough(found, beads.shortest)
 
 
-def strip_left_open(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads) -> list[tuple[Array, float]]:
-    """Places (2,) on the plane that curves leave open, wider than the gap allowed, and how wide (mm) each is."""
-    return [
-        (strip.period.unroll(strip.period.unrolled(part.inside()[None]) + np.array([window.about, 0.0]))[0], part.width)
-        for window, left, _ in _open(strip, curves, beads) for part in left
-    ]
-
-
-def _open(
+def open_windows(
     strip: Strip, curves: Sequence[PlaneCurve], beads: Beads
 ) -> list[tuple[Window, list[Region], tuple[Region, ...]]]:
     """Window by window, laid flat about its middle, what is open and where beads may lie."""

@@ -18,7 +18,6 @@ from ..types import Array
 from .curve import Beads, PlaneCurve, contours_of, long_enough
 from .lines import levels_between
 from .strip_closing import strip_closing
-from .strips import single
 
 PROBE, HALVES = 0.1, 10  # of the spacing, between places that tell where lines are inside; and how often that is halved
 
@@ -31,11 +30,10 @@ class _Frame(NamedTuple):
     inset: float
 
 
-def _frame(strip: Strip, beads: Beads, walls: int) -> _Frame:
-    """See `lines.frame`; without anything where the strip is nowhere as wide as a bead."""
+def _frame(inner: tuple[Strip | Region, ...], beads: Beads, walls: int) -> _Frame:
+    """See `lines.frame`."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner = strip.grown(-beads.inset, error)
-    if not walls or not inner:
+    if not walls:
         return _Frame([], inner, beads.inset)
     curves, done = contours_of(inner, beads, 0), 1
     while done < walls and (further := grown(inner, -2.0 * half, error)):
@@ -43,12 +41,12 @@ def _frame(strip: Strip, beads: Beads, walls: int) -> _Frame:
     return _Frame(curves, grown(inner, -half, error), beads.inset + 2.0 * half * done)
 
 
-def lines_round(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0) -> list[PlaneCurve]:
+def lines_round(
+    strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads, walls: int, density: float
+) -> list[PlaneCurve]:
     """Lines round the hub, half a bead inside the borders' farthest places and at the spacing between, see `lines`.
     Closed where nothing interrupts them. density: below 1, lines are as much farther apart."""
-    framed = _frame(strip, beads, walls)
-    if not framed.ends and not framed.curves:
-        return single(strip, beads)
+    framed = _frame(inner, beads, walls)
     low, high = strip.levels
     turn, within = strip.period.around, _Inside(strip, framed.ends)
     curves = list(framed.curves)
@@ -67,12 +65,12 @@ def lines_round(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0
     return curves + (strip_closing(strip, curves, beads, walls, "closing") if density == 1.0 else [])
 
 
-def lines_along(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0) -> list[PlaneCurve]:
+def lines_along(
+    strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads, walls: int, density: float
+) -> list[PlaneCurve]:
     """Lines along generatrices, evenly round the hub, no farther apart than the spacing; on a cone that is where they are
     farthest from the apex, and they come nearer to each other towards it. Every other one runs the other way."""
-    framed = _frame(strip, beads, walls)
-    if not framed.ends and not framed.curves:
-        return single(strip, beads)
+    framed = _frame(inner, beads, walls)
     turn, interior = strip.period.around, _Inside(strip, framed.ends)
     apart = beads.spacing / density
     count = max(1, math.ceil(turn * _stretch(strip) / apart - 0.01 * turn / apart))

@@ -22,12 +22,9 @@ from .strip_closing import strip_closing
 AFRESH = 4  # contours made from the same borders; farther in, windows would get too narrow and errors are small yet
 
 
-def strip_contours(strip: Strip, beads: Beads) -> list[PlaneCurve]:
+def strip_contours(strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads) -> list[PlaneCurve]:
     """As `contours`: from both borders and from the holes inwards, then what they leave open."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner = strip.grown(-beads.inset, error)
-    if not inner:
-        return single(strip, beads)
     curves: list[PlaneCurve] = []
     start: tuple[Strip | Region, ...] = (strip,)
     k = first = 0

@@ -157,6 +157,10 @@ class Strip:
             for part in regions([self.period.unroll(ring, about) for ring in region.borders()])
         ]
 
+    def unrolled(self, window: Window, points: Array) -> Array:
+        """(u, v) (n, 2) of points (n, 2) laid flat about the middle of a window."""
+        return np.asarray(self.period.unrolled(points) + np.array([window.about, 0.0]))
+
     def _repeated(self, border: Array, low: float, high: float) -> Array:
         turn = self.period.around
         sense = 1 if border is self.lower else -1
@@ -280,8 +284,7 @@ def _begun(ring: Array, sense: int, turn: float) -> tuple[Array, int]:
 
 
 def _within(strip: Strip, hole: Array) -> bool:
-    u = float(hole[0, 0])
-    near = 0.25 * strip.period.around
+    u, near = float(hole[0, 0]), 0.25 * strip.period.around
     return any(part.contains(hole[:1])[0] for part in strip.between(u - near, u + near))
 
 
