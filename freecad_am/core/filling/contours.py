@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grown, longer, without
 from .centre import centre_beads, outermost, single_beads
-from .curve import Beads, PlaneCurve, begun, contours_of, long_enough
+from .curve import Beads, PlaneCurve, begun, contours_of
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
 def contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
     """Closed contours from outside in, then the beads in their middle. InfeasibleError THIN_REGION, see `Beads`."""
     found = levels(region, inner, beads)
-    return long_enough(rounds(found, beads) + centres(found, beads), beads.shortest)
+    return rounds(found, beads) + centres(found, beads)
 
 
 def rounds(found: Levels, beads: Beads) -> list[PlaneCurve]:

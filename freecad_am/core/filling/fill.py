@@ -48,22 +48,23 @@ def fill(
     if isinstance(region, Strip):
         if not inner:
             return tuple(single(region, beads))
-        if pattern in CURVED:
-            return tuple(strip_contours(region, inner, beads))
         upright = abs(math.sin(angle)) > abs(math.cos(angle))
-        return tuple((lines_along if upright else lines_round)(region, inner, beads, int(walls), infill.density))
-    if pattern in CURVED and infill.density == 1.0:
-        return tuple({"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, inner, beads))
-    link = (longest_link or LINK * beads.spacing) if pattern == "zigzag" else None
-    rounds = 0 if math.isinf(walls) else int(walls)
-    framed = frame(region, inner, beads, rounds)
-    curves = single_beads(framed.thin, beads) + framed.curves
-    if infill.density == 1.0:
-        curves += lines(framed, beads, angle, rounds, link)
-        curves += closing(inner, curves, beads, rounds)
+        curves = strip_contours(region, inner, beads) if pattern in CURVED else (lines_along if upright else lines_round)(
+            region, inner, beads, int(walls), infill.density
+        )
+    elif pattern in CURVED and infill.density == 1.0:
+        curves = {"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, inner, beads)
     else:
-        curves += closing(inner, curves, beads, rounds, framed.ends) if framed.curves else []
-        curves += sparse(framed, beads, pattern, angle, rounds, link, infill)
+        link = (longest_link or LINK * beads.spacing) if pattern == "zigzag" else None
+        rounds = 0 if math.isinf(walls) else int(walls)
+        framed = frame(region, inner, beads, rounds)
+        curves = single_beads(framed.thin, beads) + framed.curves
+        if infill.density == 1.0:
+            curves += lines(framed, beads, angle, rounds, link)
+            curves += closing(inner, curves, beads, rounds)
+        else:
+            curves += closing(inner, curves, beads, rounds, framed.ends) if framed.curves else []
+            curves += sparse(framed, beads, pattern, angle, rounds, link, infill)
     return tuple(long_enough(curves, beads.shortest))
 
 

@@ -40,7 +40,7 @@ def spiral(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[Plan
             led.update(chain[: len(pieces)])
             curves.append(_curve(pieces, beads, k))
     curves = long_enough(curves + centres(found, beads), beads.shortest)
-    return curves + long_enough(closing(inner, curves, beads, 0), beads.shortest)
+    return curves + closing(inner, curves, beads, 0)
 
 
 def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) -> dict[int, int]:

@@ -10,7 +10,7 @@ from ..geometry.regions.region import Region
 from ..geometry.regions.several import common, grown
 from ..geometry.regions.strip import Strip, Window
 from .centre import centre_beads, left_open
-from .curve import Beads, PlaneCurve, long_enough
+from .curve import Beads, PlaneCurve
 
 REACH = 3.0  # spacings beside a window that tell what is open in it
 
@@ -22,7 +22,7 @@ def strip_closing(strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring
         for curve in centre_beads(left, beads, ring, inner, kind):
             uv = strip.unrolled(window, curve.points)
             found.append(replace(curve, points=strip.period.unroll(uv), sheet=float(uv[:, 0].mean())))
-    return long_enough(found, beads.shortest)
+    return found
 
 
 def open_windows(

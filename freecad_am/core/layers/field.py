@@ -12,9 +12,11 @@ from ..geometry.obstacles import Body
 from ..geometry.on_hub import Group
 from ..parameters.filled import DevelopableParameters, FilledParameters, SolidParameters
 from ..slicing.solids.equidistant import Facets
+from ..slicing.solids.plane_sections import PlaneCuts
 from ..slicing.solids.unrolled import cut
 from ..types import Array
 from .along import field as along
+from .along.field import AlongCuts
 from .curved import field as curved
 from .over_and_under import with_buried, with_overhangs
 from .planes import field as planes
@@ -54,12 +56,14 @@ def stacks(group: Group, substrate: Sequence[Body], strategy: FilledParameters) 
 
 
 def footprints(group: Group, chord_error: float) -> list[list[Array]]:
-    """Where each solid of a group leaves its base: closed curves (k, 3) in part coordinates, the first point not repeated.
-    InputError OPEN_MESH."""
+    """Where each solid of a group leaves its base: closed curves (k, 3) in part coordinates, the first point not repeated;
+    on planes cut a chord error above it. InputError OPEN_MESH, GUIDE_TIGHT."""
     base, surface = group.base, group.base.surface
     if isinstance(surface, Developable):
         made = [Facets(surface, base.inside(body.vertices), body.triangles, body.name) for body in group.bodies]
         return [[base.placed(loop.points) for loop in cut(facets, 0.0, chord_error)] for facets in made]
-    foot = along.footprint if isinstance(surface, Guide) else planes.footprint
-    found = [foot(base, body, chord_error) for body in group.bodies]
-    return [[base.placed(PlaneLayer(0.0).wrap(loop).points) for loop in loops] for loops in found]
+    cuts = [
+        AlongCuts(base, body) if isinstance(surface, Guide) else PlaneCuts(base.inside(body.vertices), body.triangles)
+        for body in group.bodies
+    ]
+    return [[base.placed(PlaneLayer(0.0).wrap(loop).points) for loop in next(one.loops([chord_error]))] for one in cuts]

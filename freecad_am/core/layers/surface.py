@@ -78,6 +78,12 @@ class Slice(NamedTuple):
     buried: tuple[Region, ...] | None = None
     heights: tuple[float, float, float] | None = None
 
+    @property
+    def borders(self) -> list[Array]:
+        """Those of its regions, (n, 2) on the plane, however often they go round."""
+        plane = [border for region in self.regions if isinstance(region, Region) for border in region.borders()]
+        return plane + [border for strip in self.regions if isinstance(strip, Strip) for border, _ in strip.borders()]
+
     def where(self, point: Array) -> str:
         """A point (2,) of the plane in the part, as text."""
         return self.base.where(self.surface.wrap(point[None]).points[0])

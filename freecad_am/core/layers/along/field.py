@@ -21,7 +21,6 @@ from ...issues import ERROR, InfeasibleError, InputError, Issue, Text
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
 from ...types import Array, Index
-from ..margins import sections
 from ..planes import field as planes
 from ..surface import Slice
 from .layer import AlongLayer, between
@@ -34,12 +33,26 @@ HEIGHT = "LAYER_HEIGHT"
 
 
 class AlongCuts(PlaneCuts):
-    """A mesh, its vertices (n, 3) in the frame of the guide, prepared for sections by planes normal to it, of which
-    `loops` gives points (m, 2) in their own frames. far: (n,) mm along the guide, of the plane of each vertex."""
+    """A body in the frame of the guide, prepared for sections by planes normal to it, of which `loops` gives points (m, 2)
+    in their own frames. The height of a vertex is how far (mm) along the guide its plane is; edges are so short that planes
+    change little along each. InputError GUIDE_TIGHT."""
 
-    def __init__(self, guide: Guide, vertices: Array, triangles: Index, far: Array) -> None:
-        super().__init__(np.column_stack([vertices[:, :2], far]), triangles)
-        self._guide, self._space = guide, vertices
+    def __init__(self, base: Base, body: Body) -> None:
+        guide = base.surface
+        assert isinstance(guide, Guide)
+        points, triangles = base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)
+        more = True
+        while more:
+            far = guide.distance(points)
+            _refuse_tight(base, guide, body.name, points, triangles, far)
+            along = guide.at(far)[1]
+
+            def bends(ends: Index, along: Array = along) -> NDArray[np.bool_]:
+                return np.asarray((along[ends[0]] * along[ends[1]]).sum(axis=1) < BENDS)
+
+            points, triangles, more = split(points, triangles, bends)
+        super().__init__(np.column_stack([points[:, :2], far]), triangles)
+        self._guide, self._space = guide, points
 
     def _places(self, edge: Index, height: Array) -> Array:
         known, of = np.unique(height, return_inverse=True)
@@ -56,8 +69,8 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
     GUIDE_OUTSIDE; InfeasibleError LAYER_HEIGHT where a layer is higher or lower than `band` allows."""
     guide, height = base.surface, strategy.layer_height
     assert isinstance(guide, Guide)
-    meshes = [_ready(base, body) for body in bodies]
-    top = max(float(far.max()) for _, _, far in meshes)
+    cuts = [AlongCuts(base, body) for body in bodies]
+    top = max(cut.top for cut in cuts)
     layers = planes.count(top, strategy)
     if not layers:
         raise InputError(
@@ -65,47 +78,15 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
             "cut in its {}; give at most {:.3g} mm", height, ", ".join(body.name for body in bodies), top, strategy.cut_at,
             0.99 * top / max(strategy.share_of_cut, 0.001),
         )
-    heights: Array = height * (np.arange(layers, dtype=np.float64) + strategy.share_of_cut)
-    cuts = [
-        AlongCuts(guide, points, triangles, far).loops(
-            planes.off_faces(np.column_stack([points[:, :2], far]), triangles, heights, strategy)
-        ) for points, triangles, far in meshes
-    ]
     made: list[Slice] = []
-    for number, regions, issues in sections(cuts, strategy):
+    for number, regions, issues in planes.cut_together(cuts, layers, strategy):
         surface = between(guide, number * height, (number + 1) * height, strategy.share_of_cut)
-        borders = [border for region in regions for border in region.borders()]
-        if guide.way[0] <= heights[number] <= guide.way[-1]:  # beyond its ends, slanted ends of a part may be beside it
-            _refuse_outside(borders, surface, base, number)
-        made.append(Slice(number, base, surface, regions, issues, heights=_heights(borders, surface)))
+        layer = Slice(number, base, surface, regions, issues)
+        if guide.way[0] <= (number + strategy.share_of_cut) * height <= guide.way[-1]:  # beyond, slanted ends may be beside it
+            _refuse_outside(layer)
+        made.append(layer._replace(heights=_heights(layer)))
     _refuse_uneven(made, strategy)
     return made
-
-
-def footprint(base: Base, body: Body, chord_error: float) -> list[Array]:
-    """The loops (n, 2) in which a body stands on the first plane, cut a chord error along the guide. InputError
-    GUIDE_TIGHT."""
-    assert isinstance(base.surface, Guide)
-    return next(AlongCuts(base.surface, *_ready(base, body)).loops([chord_error]))
-
-
-def _ready(base: Base, body: Body) -> tuple[Array, NDArray[np.intp], Array]:
-    """A body as vertices (n, 3) in the frame of the guide, triangles (m, 3), and how far along the guide (n,) mm each vertex
-    is, with edges so short that planes change little along each."""
-    guide = base.surface
-    assert isinstance(guide, Guide)
-    points, triangles = base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)
-    more = True
-    while more:
-        far = guide.distance(points)
-        _refuse_tight(base, guide, body.name, points, triangles, far)
-        along = guide.at(far)[1]
-
-        def bends(ends: Index, along: Array = along) -> NDArray[np.bool_]:
-            return np.asarray((along[ends[0]] * along[ends[1]]).sum(axis=1) < BENDS)
-
-        points, triangles, more = split(points, triangles, bends)
-    return points, triangles, far
 
 
 def _refuse_tight(
@@ -129,8 +110,10 @@ def _refuse_tight(
     )
 
 
-def _heights(borders: Sequence[Array], surface: AlongLayer) -> tuple[float, float, float]:
-    """The least, the mean and the largest height of a layer by the borders (n, 2) of its regions, mm."""
+def _heights(layer: Slice) -> tuple[float, float, float]:
+    """The least, the mean and the largest height of a layer by the borders of its regions, mm."""
+    surface, borders = layer.surface, layer.borders
+    assert isinstance(surface, AlongLayer)
     high = np.concatenate([surface.heights(border) for border in borders])
     area, moment = 0.0, np.zeros(2)
     for border in borders:
@@ -150,7 +133,7 @@ def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
         return
     worst = max(uneven, key=lambda one: max(height - one.heights[0], one.heights[2] - height) if one.heights else 0.0)
     assert isinstance(worst.surface, AlongLayer) and worst.heights
-    points = np.vstack([border for region in worst.regions for border in region.borders()])  # type: ignore[misc]
+    points = np.vstack(worst.borders)
     off = worst.surface.heights(points) - height
     point = points[int(np.abs(off).argmax())]
     need = float(np.abs(off).max()) / height
@@ -165,16 +148,17 @@ def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
     )
 
 
-def _refuse_outside(borders: Sequence[Array], surface: AlongLayer, base: Base, number: int) -> None:
-    """InputError GUIDE_OUTSIDE where the guide goes through a plane outside of what encloses the section there."""
+def _refuse_outside(layer: Slice) -> None:
+    """InputError GUIDE_OUTSIDE where the guide goes through a plane, at its origin, outside of what encloses the section
+    there."""
     from scipy.spatial import ConvexHull
 
-    points = np.vstack(borders)
+    points = np.vstack(layer.borders)
     hull = ConvexHull(points)
     away = float(hull.equations[:, 2].max())
     if away > BEYOND * float(np.ptp(points, axis=0).max()):
         raise InputError(
             "GUIDE_OUTSIDE", "strategy.guide", "the guide leaves the part: at layer {} it is {:.3g} mm beside it, at {}; "
-            "choose a guide in the part or along one of its edges, or guide: auto", number, away,
-            base.where(surface.pose[:3, 3]),
+            "choose a guide in the part or along one of its edges, or guide: auto", layer.number, away,
+            layer.where(np.zeros(2)),
         )

@@ -7,11 +7,11 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base
-from ...issues import InputError
+from ...geometry.regions.region import Region
+from ...issues import InputError, Issue
 from ...parameters.filled import SolidParameters
 from ...slicing.solids.plane_sections import PlaneCuts
 from ...types import Array
@@ -36,36 +36,34 @@ def count(top: float, strategy: SolidParameters) -> int:
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     """The layers of bodies upwards, on the planes 0, h, 2 h ... mm above that of the base; those without any region are left
     out. InputError TOO_LOW where no layer reaches into them."""
-    vertices = [base.inside(body.vertices) for body in bodies]
-    top = max(float(points[:, 2].max()) for points in vertices)
+    cuts = [PlaneCuts(base.inside(body.vertices), body.triangles) for body in bodies]
+    top = max(cut.top for cut in cuts)
     layers = count(top, strategy)
     if not layers:
-        points = np.vstack(vertices)
+        points = np.vstack([cut.vertices for cut in cuts])
         raise InputError(
             "TOO_LOW", "strategy.layer_height", "{:g} mm is too much for {}, {:.4g} mm high along strategy.direction (the "
             "highest place is at {}): no layer is cut in its {}; give at most {:.3g} mm", strategy.layer_height,
             ", ".join(body.name for body in bodies), top, base.where(points[points[:, 2].argmax()]), strategy.cut_at,
             0.99 * top / max(strategy.share_of_cut, 0.001),
         )
-    heights: Array = strategy.layer_height * (np.arange(layers, dtype=np.float64) + strategy.share_of_cut)
-    cuts = [
-        PlaneCuts(points, body.triangles).loops(off_faces(points, body.triangles, heights, strategy))
-        for points, body in zip(vertices, bodies, strict=True)
-    ]
-    for number, regions, issues in sections(cuts, strategy):
+    for number, regions, issues in cut_together(cuts, layers, strategy):
         yield Slice(number, base, PlaneLayer(number * strategy.layer_height), regions, issues)
 
 
-def footprint(base: Base, body: Body, chord_error: float) -> list[Array]:
-    """The loops (n, 2) in which a body stands on the plane of its base, cut a chord error above it."""
-    return next(PlaneCuts(base.inside(body.vertices), body.triangles).loops([chord_error]))
+def cut_together(
+    cuts: Sequence[PlaneCuts], layers: int, strategy: SolidParameters
+) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
+    """So many layers of bodies that have any region: number, regions, what was mended."""
+    heights: Array = strategy.layer_height * (np.arange(layers, dtype=np.float64) + strategy.share_of_cut)
+    return sections([cut.loops(_off_faces(cut, heights, strategy)) for cut in cuts], strategy)
 
 
-def off_faces(vertices: Array, triangles: NDArray[np.int64], heights: Array, strategy: SolidParameters) -> Array:
+def _off_faces(cut: PlaneCuts, heights: Array, strategy: SolidParameters) -> Array:
     """The heights, those moved up by a hair, or down where the top of a layer is cut, in whose plane facets lie: what a cut
     through such facets is, rounding decides."""
-    aside = max(ASIDE * strategy.chord_error, ROUNDING * float(np.abs(vertices).max(initial=0.0)))
-    corners = vertices[triangles]
+    aside = max(ASIDE * strategy.chord_error, ROUNDING * float(np.abs(cut.vertices).max(initial=0.0)))
+    corners = cut.vertices[cut.faces]
     low, high = corners[..., 2].min(axis=1), corners[..., 2].max(axis=1)
     size = np.ptp(corners[..., :2], axis=1).max(axis=1)
     lying = np.sort(0.5 * (low + high)[(high - low < aside) & (high - low <= FLAT * size)])

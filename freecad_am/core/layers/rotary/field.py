@@ -17,7 +17,8 @@ from ...geometry.regions.strip import Strip, strips
 from ...issues import InputError
 from ...parameters.filled import DevelopableParameters
 from ...slicing.solids.equidistant import Facets, Loop
-from ...slicing.solids.unrolled import count, cut, moved, opened
+from ...slicing.solids.unrolled import count, cut, opened
+from ...types import Array
 from ..margins import ARCS, regions_of, within_margin
 from ..over_and_under import under_and_over
 from ..surface import Slice
@@ -27,10 +28,8 @@ CUT = 0.25  # share of the chord error, of cuts
 
 
 def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[Slice]:
-    """The layers of a solid from the hub outwards, at 0, d, 2 d ... mm; those without any region are left out.
-
-    InputError APEX_INSIDE, TOO_FAR_ROUND.
-    """
+    """The layers of a solid from the hub outwards, at 0, d, 2 d ... mm; those without any region are left out. InputError
+    APEX_INSIDE, TOO_FAR_ROUND."""
     surface, azimuth = base.surface, middle_azimuth(base, body.vertices)
     assert isinstance(surface, Developable)
     facets = Facets(surface, base.inside(body.vertices), body.triangles, body.name)
@@ -44,14 +43,18 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
         loops = ahead.pop(0)
         where = f"{body.name} layer {number}"
         offset = surface.offset(number * height)
-        _refuse_apex(loops, offset, base, where)
+        if sum(loop.turns for loop in loops):
+            raise InputError(
+                "APEX_INSIDE", where, "the solid reaches over the end of the hub's axis, at {}, where equidistant surfaces "
+                "have an apex or an end; let it end beside the axis", base.where(_apex(loops, offset)),
+            )
         below.append(loops)
-        lots = within_margin(below, height, strategy.margin, lambda loops, up: [moved(surface, loop, up) for loop in loops])
+        lots = within_margin(below, height, strategy.margin, facets.moved)
         if any(loop.turns for _, loops in lots for loop in loops):
             buried = () if thick > min(number, layers - 1 - number) else None
             layer = Slice(number, base, RoundLayer(offset), _all_round(lots, offset, strategy), (), azimuth, buried)
         else:
-            neighbours = _neighbours(surface, below, ahead, height, thick)
+            neighbours = [facets.moved(loops, -k * height) for k, loops in _neighbours(below, ahead, thick)]
             flat = opened(offset, [loop for loops in (*(loops for _, loops in lots), *neighbours) for loop in loops],
                           azimuth, where)
             next_loop = iter(flat.loops)
@@ -67,26 +70,22 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
 
 
 def _neighbours(
-    surface: Developable, below: Sequence[list[Loop]], ahead: Sequence[list[Loop]], height: float, thick: int
-) -> list[list[Loop]]:
-    """The loops of so many layers under and over the last one below, moved to it: none of those that are not there, or that
-    go round the hub."""
+    below: Sequence[list[Loop]], ahead: Sequence[list[Loop]], thick: int
+) -> list[tuple[int, list[Loop]]]:
+    """So many layers under and over the last one below: how many layers over it, and loops, none of those that are not there
+    or that go round the hub."""
     here = len(below) - 1
     found = []
     for k in (k for step in range(1, thick + 1) for k in (-step, step)):
         there = below[here + k] if -here <= k < 0 else ahead[k - 1] if 0 < k <= len(ahead) else []
-        found.append([moved(surface, loop, -k * height) for loop in there if not loop.turns])
+        found.append((k, [loop for loop in there if not loop.turns]))
     return found
 
 
-def _refuse_apex(loops: Sequence[Loop], surface: Developable, base: Base, where: str) -> None:
-    if sum(loop.turns for loop in loops):
-        round_it = np.vstack([loop.points for loop in loops if loop.turns])
-        z = float(round_it[:, 2].mean()) if surface.is_cylinder else surface.height
-        raise InputError(
-            "APEX_INSIDE", where, "the solid reaches over the end of the hub's axis, at {}, where equidistant surfaces have "
-            "an apex or an end; let it end beside the axis", base.where(np.array([0.0, 0.0, z])),
-        )
+def _apex(loops: Sequence[Loop], surface: Developable) -> Array:
+    """About where (3,) the axis ends within loops that go round it."""
+    round_it = np.vstack([loop.points for loop in loops if loop.turns])
+    return np.array([0.0, 0.0, float(round_it[:, 2].mean()) if surface.is_cylinder else surface.height])
 
 
 def _all_round(

@@ -11,6 +11,7 @@ meets no edge. Within a facet the cut is a conic; it is followed to the chord er
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,7 +56,12 @@ class Facets:
         order = np.argsort(key, kind="stable")
         ranked = key[order]
         if len(ranked) % 2 or (ranked[::2] != ranked[1::2]).any() or (ranked[2::2] == ranked[1:-1:2]).any():
-            raise self._open(ranked, name)
+            edges, counts = np.unique(ranked, return_counts=True)
+            place = vertices[list(divmod(int(edges[counts != 2][0]), len(vertices)))].mean(axis=0)
+            raise InputError(
+                "OPEN_MESH", name, "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's base; "
+                "close the mesh", int((counts != 2).sum()), place[0], place[1], place[2],
+            )
         # per edge the vertices at its ends, and the sides of faces that it is: 3 face + side, doubled, and 1 where the face
         # goes along it; all in one place, for a cut touches edges all over the memory
         self.edges = np.empty((len(order) // 2, 4), dtype=np.int32)
@@ -84,14 +90,9 @@ class Facets:
                 loops.append(Loop(points, self._turns(points)))
         return loops
 
-    def _open(self, ranked: NDArray[np.int64], name: str) -> InputError:
-        """What is told of edges, as ranked numbers of those of all faces, of which some have not two."""
-        edges, counts = np.unique(ranked, return_counts=True)
-        place = self.vertices[list(divmod(int(edges[counts != 2][0]), len(self.vertices)))].mean(axis=0)
-        return InputError(
-            "OPEN_MESH", name, "{} edges have not two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub's base; close "
-            "the mesh", int((counts != 2).sum()), place[0], place[1], place[2],
-        )
+    def moved(self, loops: Sequence[Loop], distance: float) -> list[Loop]:
+        """Loops moved along the normals of the surface."""
+        return [Loop(loop.points + distance * self.surface.normals(loop.points), loop.turns) for loop in loops]
 
     def _least_on_edges(self) -> tuple[Index, Array]:
         """The edges (k,) that come nearest to the base between their ends, and how near (k,), mm."""

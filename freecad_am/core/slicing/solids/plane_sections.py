@@ -37,13 +37,14 @@ def _paired(key: Index, forward: NDArray[np.bool_]) -> Index:
 class PlaneCuts:
     """A mesh prepared for sections z = constant.
 
-    vertices (n, 3) mm; triangles (m, 3), every edge between as many triangles of one sense as of the other.
+    vertices (n, 3) mm; faces (m, 3), every edge between as many of one sense as of the other; triangles: those that planes
+    cross.
     """
 
-    def __init__(self, vertices: Array, triangles: Index) -> None:
-        z = vertices[:, 2][triangles]
+    def __init__(self, vertices: Array, faces: Index) -> None:
+        z = vertices[:, 2][faces]
         flat = z.min(axis=1) == z.max(axis=1)  # never crossed
-        self.vertices, self.triangles = vertices, triangles[~flat]
+        self.vertices, self.faces, self.triangles = vertices, faces, faces[~flat]
         following = self.triangles[:, [1, 2, 0]]
         low, high = np.minimum(self.triangles, following), np.maximum(self.triangles, following)
         key = _paired(low.astype(np.int64).ravel() * len(vertices) + high.ravel(), (self.triangles < following).ravel())
@@ -53,6 +54,11 @@ class PlaneCuts:
         turned = vertices[start, 2] > vertices[end, 2]
         self._lower: Index = np.where(turned, end, start)
         self._upper: Index = np.where(turned, start, end)
+
+    @property
+    def top(self) -> float:
+        """The largest height, mm."""
+        return float(self.vertices[:, 2].max())
 
     def loops(self, heights: Sequence[float] | Array) -> Iterator[list[Array]]:
         """For each of the rising heights (k,) mm its loops (n, 2), the first point of each not repeated, the solid to their

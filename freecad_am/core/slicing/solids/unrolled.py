@@ -55,12 +55,7 @@ def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
     gap = lowest - distance if distance < lowest < distance + REACH else 0.0
     aside = gap + ASIDE * chord_error if gap or lying.any() else -TOUCH * chord_error
     found = facets.cut(distance + aside, chord_error)
-    return [moved(facets.surface, loop, -aside) for loop in found]
-
-
-def moved(surface: Developable, loop: Loop, distance: float) -> Loop:
-    """The loop moved along the normals of the surface."""
-    return Loop(loop.points + distance * surface.normals(loop.points), loop.turns)
+    return facets.moved(found, -aside)
 
 
 def opened(surface: Developable, loops: Sequence[Loop], centre: float, where: str) -> Flat:

@@ -210,11 +210,9 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
     single = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]
     if not single:
         return []
-    borders = [border for region in layer.regions if isinstance(region, Region) for border in region.borders()]
-    borders += [border for region in layer.regions if isinstance(region, Strip) for border, _ in region.borders()]
     points = np.vstack([curve.points for curve in single])
     share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in single])
-    out = share * beads.inset - nearest_among([(border, True) for border in borders], points)[1]
+    out = share * beads.inset - nearest_among([(border, True) for border in layer.borders], points)[1]
     worst = int(np.argmax(out))
     if (share < 1.0).any() and out[worst] < 0.02 * beads.inset:
         return []
