@@ -44,15 +44,17 @@ def fill(
         raise InputError("PATTERN", "filling", "there is no pattern {!r}; use one of {}", pattern, ", ".join(PATTERNS))
     if pattern not in CURVED and math.isinf(walls):
         pattern, infill = "contours", WHOLE
-    inner = region.grown(-beads.inset, beads.chord_error)
     if isinstance(region, Strip):
-        if not inner:
+        space = region.grown(-beads.inset, beads.chord_error)
+        if not space:
             return tuple(single(region, beads))
         upright = abs(math.sin(angle)) > abs(math.cos(angle))
-        curves = strip_contours(region, inner, beads) if pattern in CURVED else (lines_along if upright else lines_round)(
-            region, inner, beads, int(walls), infill.density
+        curves = strip_contours(region, space, beads) if pattern in CURVED else (lines_along if upright else lines_round)(
+            region, space, beads, int(walls), infill.density
         )
-    elif pattern in CURVED and infill.density == 1.0:
+        return tuple(long_enough(curves, beads.shortest))
+    inner = region.grown(-beads.inset, beads.chord_error)
+    if pattern in CURVED and infill.density == 1.0:
         curves = {"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, inner, beads)
     else:
         link = (longest_link or LINK * beads.spacing) if pattern == "zigzag" else None

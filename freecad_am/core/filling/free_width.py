@@ -67,7 +67,11 @@ def shared(
     found = []
     for curve in curves:
         if curve.kind in CENTRES:
-            points = _denser(curve, PLACES * beads.spacing)
+            # an open one there and back is a ring, of which the way there is the first half
+            line = curve.points if curve.closed else np.vstack([curve.points, curve.points[-2:0:-1]])
+            points = dense(line, PLACES * beads.spacing)
+            if not curve.closed:
+                points = points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
             away = nearest_among([(other.points, other.closed) for other in others], points)[1]
             free = np.minimum(region.nearest(points)[1] / beads.inset, 2.0 * away / beads.spacing - 1.0)
             curve = replace(curve, points=points, share=np.clip(share * free, least, most))
@@ -75,14 +79,6 @@ def shared(
             curve = replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
         found.append(curve)
     return tuple(found)
-
-
-def _denser(curve: PlaneCurve, step: float) -> Array:
-    """The points of a curve and more, so dense as its width may change."""
-    if curve.closed:
-        return dense(curve.points, step)
-    points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)  # there and back is a ring: the first half of it
-    return points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
 
 
 def narrowed(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float) -> tuple[PlaneCurve, ...]:

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
 from ..geometry.on_hub import Base
 from ..geometry.regions.region import Region
 from ..geometry.regions.strip import Period, Strip
@@ -79,10 +81,18 @@ class Slice(NamedTuple):
     heights: tuple[float, float, float] | None = None
 
     @property
-    def borders(self) -> list[Array]:
-        """Those of its regions, (n, 2) on the plane, however often they go round."""
-        plane = [border for region in self.regions if isinstance(region, Region) for border in region.borders()]
-        return plane + [border for strip in self.regions if isinstance(strip, Strip) for border, _ in strip.borders()]
+    def borders(self) -> list[tuple[Array, bool]]:
+        """Those of its regions, (n, 2) on the plane, and whether each is closed; round the hub as often as anything near can
+        ask."""
+        found = []
+        for region in self.regions:
+            if isinstance(region, Region):
+                found += [(border, True) for border in region.borders()]
+                continue
+            for border, turns in region.borders():
+                moved = [region.period.moved(border, k) for k in (-1, 0, 1)]
+                found += [(border, True) for border in moved] if not turns else [(np.vstack(moved[::turns]), False)]
+        return found
 
     def where(self, point: Array) -> str:
         """A point (2,) of the plane in the part, as text."""

@@ -18,7 +18,7 @@ from ..toolpath import Toolpath
 from ..types import Array
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of
-from .solids.filling import Pictures, bead_width, naming, spaced
+from .solids.filling import Pictures, bead_width, spaced
 from .solids.notes import lean_notes, notes
 from .solids.volumes import of_layers, twice
 
@@ -47,8 +47,7 @@ def plan(
         at: Array | None = None
         for layer in slices(sheet, piece, strategy):
             progress((number + layer.number / strategy.layers) / len(found), f"layer {layer.number}")
-            with naming(given.label, layer.number):
-                filled = pictures.filled(layer)
+            filled = pictures.filled(layer, given.label)
             mended += filled.issues
             assert isinstance(layer.surface, FaceLayer)
             stretch = max(stretch, layer.surface.stretch)

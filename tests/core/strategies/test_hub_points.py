@@ -15,7 +15,7 @@ from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.strategies.solids.beads import CLOSE, dense, wrapped
+from freecad_am.core.strategies.solids.beads import CLOSE, bead_of, dense
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -47,7 +47,7 @@ def test_narrow_beads_have_no_move_of_less_than_a_tenth_of_a_millisecond(seed):
     line = np.vstack([[0.0, 0.0], np.cumsum(steps, axis=0)])
     share = rng.uniform(0.3, 1.0, len(line))
     process = ProcessParameters(travel_speed=20.0, acceleration=1e5, bead_width=1.0)
-    bead = wrapped(
+    bead = bead_of(
         PlaneCurve(line, False, "centre", 0, share=share), Slice(0, Base("flat", Plane(), np.eye(4)), PlaneLayer(0.5), ()),
         SolidParameters(chord_error=1e-3, bead_spacing=1.0, layer_height=0.5), BuildDirectionParameters(), process, None,
     ).bead

@@ -15,7 +15,7 @@ from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import DevelopableParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.strategies.solids.beads import wrapped
+from freecad_am.core.strategies.solids.beads import bead_of
 from freecad_am.core.strategies.solids.filling import Pictures
 
 CONE = Developable(60.0, 20.0)  # laid flat a turn is 342 deg
@@ -62,9 +62,9 @@ def test_beads_on_both_sides_of_a_hole_stay_out_of_it(fill, contour, at):
     strategy = DevelopableParameters(bead_spacing=SPACING, fill=fill, contour=contour, chord_error=0.2)
     base, process = Base("the hub", CONE, np.eye(4)), ProcessParameters()
     layer = Slice(0, base, RoundLayer(CONE), (ring(at),))
-    curves = Pictures(strategy, process).filled(layer).curves
+    curves = Pictures(strategy, process).filled(layer, "ring").curves
     points = np.vstack([
-        wrapped(curve, layer, strategy, BuildDirectionParameters(), process, None).bead.points
+        bead_of(curve, layer, strategy, BuildDirectionParameters(), process, None).bead.points
         for curve in curves
     ])
     way = np.hypot(points[:, 0], points[:, 1]) / math.sin(CONE.taper)

@@ -82,7 +82,7 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
     for number, regions, issues in planes.cut_together(cuts, layers, strategy):
         surface = between(guide, number * height, (number + 1) * height, strategy.share_of_cut)
         layer = Slice(number, base, surface, regions, issues)
-        if guide.way[0] <= (number + strategy.share_of_cut) * height <= guide.way[-1]:  # beyond, slanted ends may be beside it
+        if guide.way[0] <= (number + strategy.share_of_cut) * height <= guide.way[-1]:  # beyond, slanted ends may be aside
             _refuse_outside(layer)
         made.append(layer._replace(heights=_heights(layer)))
     _refuse_uneven(made, strategy)
@@ -112,7 +112,7 @@ def _refuse_tight(
 
 def _heights(layer: Slice) -> tuple[float, float, float]:
     """The least, the mean and the largest height of a layer by the borders of its regions, mm."""
-    surface, borders = layer.surface, layer.borders
+    surface, borders = layer.surface, [border for border, _ in layer.borders]
     assert isinstance(surface, AlongLayer)
     high = np.concatenate([surface.heights(border) for border in borders])
     area, moment = 0.0, np.zeros(2)
@@ -133,7 +133,7 @@ def _refuse_uneven(made: Sequence[Slice], strategy: SolidParameters) -> None:
         return
     worst = max(uneven, key=lambda one: max(height - one.heights[0], one.heights[2] - height) if one.heights else 0.0)
     assert isinstance(worst.surface, AlongLayer) and worst.heights
-    points = np.vstack(worst.borders)
+    points = np.vstack([border for border, _ in worst.borders])
     off = worst.surface.heights(points) - height
     point = points[int(np.abs(off).argmax())]
     need = float(np.abs(off).max()) / height
@@ -153,7 +153,7 @@ def _refuse_outside(layer: Slice) -> None:
     there."""
     from scipy.spatial import ConvexHull
 
-    points = np.vstack(layer.borders)
+    points = np.vstack([border for border, _ in layer.borders])
     hull = ConvexHull(points)
     away = float(hull.equations[:, 2].max())
     if away > BEYOND * float(np.ptp(points, axis=0).max()):

@@ -25,7 +25,7 @@ from ...toolpath import Bead
 from ...types import Array, Mask
 from .course import Course
 from .filling import bead_width
-from .lean import Lean, Turned, held
+from .lean import Turned, held
 from .outlines import leaning
 
 WRAP_SHARE = 0.5  # share of the chord error between a bead's chords and the surface
@@ -51,55 +51,49 @@ def bead_of(
     curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
     model: BeadModel | None,
 ) -> MadeBead:
-    """The bead of a curve of a layer as its class is laid, with the torch leaning as its class does. Where directions
-    alternate every other closed one runs the other way."""
-    if curve.closed and process.direction == "alternate" and (layer.number + curve.ring) % 2:
-        curve = curve.reversed()
-    name = classes.of_filled(curve.kind, layer.number)
+    """The bead of a curve of a layer, in part coordinates, laid as its class is, with the torch leaning as its class does;
+    its polynomial's variable is the arc length, 2 pi in all."""
+    surface, base, name = layer.surface, layer.base, classes.of_filled(curve.kind, layer.number)
     build, process = classes.leaning(build, process, name), process.for_class(name)
-    lean = leaning(curve, layer, strategy, build)
-    found = wrapped(curve, layer, strategy, build, process, model, lean)
-    return found._replace(bead=replace(found.bead, bead_class=name))
-
-
-def wrapped(
-    curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
-    model: BeadModel | None, lean: Lean | None = None,
-) -> MadeBead:
-    """The bead of a curve on the plane, in part coordinates; its polynomial's variable is the arc length, 2 pi in all.
-
-    lean: of the torch, by default that of the build direction. Points that come so soon after another that no controller can
-    be told of the move are left out.
-    """
-    surface, base = layer.surface, layer.base
-    start = curve.points[:1]
-    if curve.turns and surface.period is not None:
-        start = surface.period.moved(start, curve.turns)
-    line = np.vstack([curve.points, start]) if curve.closed else curve.points
-    share = np.r_[curve.share, curve.share[:1]] if curve.closed and curve.share is not None else curve.share
+    line, share = _ended(curve, surface)
     kept = None if share is None else telling(arcs(line), share, SHARES)
     flat = dense(line, surface, WRAP_SHARE * strategy.chord_error, kept)
     course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
-    lean = Lean(build.lead, build.tilt) if lean is None else lean
-    flat, local, normal, tool, turned = held(course, lean, build, strategy.chord_error)
+    flat, local, normal, tool, turned = held(course, leaning(curve, layer, strategy, build), build, strategy.chord_error)
     points = base.placed(local)
     if curve.closed:
         points[-1] = points[0]
     way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     bead = Bead(
         points, base.turned(normal), base.turned(tool), TURN * way / way[-1], np.full(len(way), process.travel_speed),
-        curve.closed, kind=curve.kind, ring=curve.ring,
+        curve.closed, kind=curve.kind, ring=curve.ring, bead_class=name,
     )
     if share is not None:
         arc, of_line = arcs(flat), arcs(line)
         share = np.interp(arc / arc[-1], of_line / of_line[-1], share)
     heights = surface.heights(flat) if model is None else None
-    found = _with_speed(bead, flat, curve.closed and not curve.turns, share, heights, strategy, process, model)
-    kept = _sparse(found.bead.points, found.bead.speed[1:], BRIEF)
+    made = _with_speed(bead, flat, curve.closed and not curve.turns, share, heights, strategy, process, model)
+    return _thinned(made)._replace(turned=turned)
+
+
+def _ended(curve: PlaneCurve, surface: LayerSurface) -> tuple[Array, Array | None]:
+    """The points of a curve and their shares of the usual width; of a closed one the first again at the end, a period on
+    where it goes round."""
+    if not curve.closed:
+        return curve.points, curve.share
+    start = curve.points[:1]
+    if curve.turns and surface.period is not None:
+        start = surface.period.moved(start, curve.turns)
+    return np.vstack([curve.points, start]), None if curve.share is None else np.r_[curve.share, curve.share[:1]]
+
+
+def _thinned(made: MadeBead) -> MadeBead:
+    """The bead without points that come so soon after another that no controller can be told of the move."""
+    kept = _sparse(made.bead.points, made.bead.speed[1:], BRIEF)
     if kept.all():
-        return found._replace(turned=turned)
-    clamped, tight = (None if mask is None else mask[kept] for mask in (found.clamped, found.tight))
-    return MadeBead(found.bead.thinned(np.flatnonzero(kept)), clamped, tight, turned)
+        return made
+    clamped, tight = (None if mask is None else mask[kept] for mask in (made.clamped, made.tight))
+    return MadeBead(made.bead.thinned(np.flatnonzero(kept)), clamped, tight)
 
 
 def _with_speed(

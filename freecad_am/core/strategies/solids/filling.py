@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple, TypeVar
 
@@ -76,23 +75,39 @@ class Pictures:
         self._width = width
         self._known: dict[tuple[float, ...], list[tuple[Region, _Asked, _Picture]]] = {}
 
-    def filled(self, layer: Slice) -> Filled:
-        """The beads of a layer. InfeasibleError THIN_REGION."""
-        strategy, asked = self._strategy, self._asked(layer)
+    def filled(self, layer: Slice, name: str) -> Filled:
+        """The beads of a layer of what messages call by a name; every other curve the other way round where directions of
+        closed ones alternate, or starts of open ones are spread. InfeasibleError THIN_REGION."""
+        asked = self._asked(layer)
         beads, _, _ = asked
         curves: list[PlaneCurve] = []
-        issues: list[Issue] = []
         gaps: list[tuple[Array, float]] = []
         islands: list[int] = []
         covers: list[Cover] = []
         for number, region in enumerate(layer.regions):
-            found, left, cover = self._picture(layer, region, asked)
+            try:
+                found, left, cover = self._picture(layer, region, asked)
+            except InfeasibleError as error:
+                raise InfeasibleError(
+                    error.code, f"{name} layer {layer.number}", error.message,
+                    issues=(Issue("error", error.code, Text("{}: {}", name, error.message), layer.number),)
+                ) from None
             covers.append(cover)
-            if beads.spread is not None and layer.number % 2:
-                found = tuple(curve if curve.closed else curve.reversed() for curve in found)
-            curves += [replace(curve, sheet=region.sheet) for curve in found] if isinstance(region, Region) else found
+            for curve in found:
+                if (layer.number + curve.ring if curve.closed else layer.number) % 2 and (
+                    self._process.direction == "alternate" if curve.closed else beads.spread is not None
+                ):
+                    curve = curve.reversed()
+                curves.append(replace(curve, sheet=region.sheet) if isinstance(region, Region) else curve)
             islands += [number] * len(found)
             gaps += left
+        return Filled(curves, self._issues(layer, curves, gaps, beads), islands, total(covers))
+
+    def _issues(
+        self, layer: Slice, curves: Sequence[PlaneCurve], gaps: list[tuple[Array, float]], beads: Beads
+    ) -> tuple[Issue, ...]:
+        """What is told of a layer: what beads leave open, single ones that stand out, a pattern that is another there."""
+        strategy, issues = self._strategy, []
         regions = [region for region in layer.regions if isinstance(region, Region)]
         if len(regions) == len(layer.regions) and strategy.fill_density == 1.0:
             at_slits = open_at_slits(regions, curves, beads)
@@ -109,7 +124,7 @@ class Pictures:
                 NOTE, "PATTERN_ROUND_HUB", Text("a layer all the way round the hub is filled with {}; strategy.fill = {} is "
                     "for regions with an end", INSTEAD[strategy.fill], strategy.fill), layer.number,
             ))
-        return Filled(curves, tuple(issues), islands, total(covers))
+        return tuple(issues)
 
     def _asked(self, layer: Slice) -> _Asked:
         """What a layer is filled with: the same picture wherever round the hub its solid is, turned from layer to layer."""
@@ -161,18 +176,6 @@ class Pictures:
         return _Picture(curves, gaps, cover)
 
 
-@contextlib.contextmanager
-def naming(name: str, number: int) -> Iterator[None]:
-    """What cannot be filled meanwhile is told with the name of the stack and the number of the layer."""
-    try:
-        yield
-    except InfeasibleError as error:
-        raise InfeasibleError(
-            error.code, f"{name} layer {number}", error.message,
-            issues=(Issue("error", error.code, Text("{}: {}", name, error.message), number),)
-        ) from None
-
-
 def _weighed(curve: PlaneCurve) -> float:
     """mm of usual bead that lays as much as a curve."""
     way = np.hypot(*steps(curve.points, curve.closed).T)
@@ -212,7 +215,7 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
         return []
     points = np.vstack([curve.points for curve in single])
     share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in single])
-    out = share * beads.inset - nearest_among([(border, True) for border in layer.borders], points)[1]
+    out = share * beads.inset - nearest_among(layer.borders, points)[1]
     worst = int(np.argmax(out))
     if (share < 1.0).any() and out[worst] < 0.02 * beads.inset:
         return []

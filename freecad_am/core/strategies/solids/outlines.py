@@ -9,11 +9,9 @@ import numpy as np
 
 from ...filling.curve import PlaneCurve
 from ...geometry.curves.plane_curve import nearest_among, steps
-from ...geometry.regions.region import Region
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
-from ...types import Array
 from .lean import Lean
 
 OUTLINE = 0.55  # of the bead spacing; beads along an outline are half a spacing inside of it, the next are farther
@@ -28,10 +26,9 @@ def leaning(
     plain = Lean(build.lead, build.tilt)
     if strategy.deflection == 0.0 or curve.kind not in ("contour", "spiral") or curve.ring > 0:
         return plain
-    borders = _borders(layer)
     count, until = len(curve.points), math.inf
     if not curve.closed:
-        adjacent = nearest_among(borders, curve.points)[1] < OUTLINE * strategy.bead_spacing
+        adjacent = nearest_among(layer.borders, curve.points)[1] < OUTLINE * strategy.bead_spacing
         count = len(adjacent) if adjacent.all() else int(np.argmin(adjacent))
         if count < 2:
             return plain
@@ -41,21 +38,8 @@ def leaning(
     size = np.hypot(*edge.T)
     longest = np.argsort(-size, kind="stable")[:PROBES]
     middle = curve.points[longest] + 0.5 * edge[longest]
-    out = nearest_among(borders, middle)[0] - middle
+    out = nearest_among(layer.borders, middle)[0] - middle
     left = edge[longest, 0] * out[:, 1] - edge[longest, 1] * out[:, 0]
     away = size[longest] * np.hypot(*out.T)
     side = -1.0 if float((left / np.maximum(away, 1e-300)).sum()) > 0.0 else 1.0
     return Lean(build.lead, build.tilt + side * strategy.deflection, build.tilt, until)
-
-
-def _borders(layer: Slice) -> list[tuple[Array, bool]]:
-    """The outlines of a layer on the plane and whether each is closed; round the hub as often as anything near can ask."""
-    found = []
-    for region in layer.regions:
-        if isinstance(region, Region):
-            found += [(border, True) for border in region.borders()]
-            continue
-        for border, turns in region.borders():
-            moved = [region.period.moved(border, k) for k in (-1, 0, 1)]
-            found += [(border, True) for border in moved] if not turns else [(np.vstack(moved[::turns]), False)]
-    return found

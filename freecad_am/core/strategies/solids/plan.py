@@ -23,7 +23,7 @@ from ...types import Array
 from .. import size
 from ..progress import Progress, silent
 from .beads import MadeBead, bead_of
-from .filling import Pictures, bead_width, naming, spaced
+from .filling import Pictures, bead_width, spaced
 from .notes import lean_notes, notes
 from .volumes import twice, volumes
 
@@ -39,12 +39,14 @@ def plan(
 
     model: sets the speeds, None for the travel speed everywhere. progress(fraction, text) may raise to cancel. Raises
     InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
-    THIN_REGION.
-    """
+    THIN_REGION."""
     planes, at = solids.on_planes(), None
     _refuse_mode(planes, strategy, build)
     strategy = spaced(strategy, process)
-    expected = _layers_of_a_stack(solids, strategy, process)
+    found = size.of_solids(solids, strategy, strategy.bead_spacing)
+    size.refuse_absurd(found, strategy, None if strategy.bead_overlap is None else process.bead_width)
+    together = sum(len(group.bodies) for group in solids.groups) if strategy.order == "feature" else 1
+    expected = max(1.0, found.layers / together)  # of a stack
     nominal = bead_width(strategy, process, model)
     pictures = Pictures(strategy, process, nominal)
     ranked: list[RankedBead] = []
@@ -52,17 +54,15 @@ def plan(
     mended: list[Issue] = []
     covers: list[Cover] = []
     heights: dict[int, list[float]] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
-    found = [(number, solid, stack) for number, group in enumerate(solids.groups)
+    lots = [(number, solid, stack) for number, group in enumerate(solids.groups)
              for solid, stack in enumerate(stacks(group, solids.surroundings, strategy))]
-    for done, (group, solid, stack) in enumerate(found):
+    for done, (group, solid, stack) in enumerate(lots):
         below: Array | None = None  # middles of the islands of the layer before
         before: Counter[int] = Counter()  # beads of the pieces that a curved layer has had
         for count, layer in enumerate(stack.slices):
-            mended += layer.issues
-            progress((done + min(1.0, count / expected)) / len(found), f"{stack.name} layer {layer.number}")
-            with naming(stack.name, layer.number):
-                filled = pictures.filled(layer)
-            mended += filled.issues
+            progress((done + min(1.0, count / expected)) / len(lots), f"{stack.name} layer {layer.number}")
+            filled = pictures.filled(layer, stack.name)
+            mended += [*layer.issues, *filled.issues]
             if layer.heights is not None:
                 heights.setdefault(layer.number, []).extend(layer.heights[::2])
             share = 1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
@@ -94,14 +94,6 @@ def plan(
         twice=twice(made, strategy, covers, nominal),
         uneven=np.array([(number, min(both), max(both)) for number, both in sorted(heights.items())]) if heights else None,
     )
-
-
-def _layers_of_a_stack(solids: SolidsOnHub, strategy: FilledParameters, process: ProcessParameters) -> float:
-    """About how many layers a stack has, at least one. InputError TOO_MANY."""
-    found = size.of_solids(solids, strategy, strategy.bead_spacing)
-    size.refuse_absurd(found, strategy, None if strategy.bead_overlap is None else process.bead_width)
-    together = sum(len(group.bodies) for group in solids.groups) if strategy.order == "feature" else 1
-    return max(1.0, found.layers / together)
 
 
 def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
