@@ -94,17 +94,17 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
 
 def outermost(
     region: Region, inner: tuple[Region, ...], beads: Beads
-) -> tuple[tuple[Region, ...], tuple[Region, ...]]:
-    """What of `inner`, where middles of beads may lie, the outermost bead goes round, and what is too thin for that: necks
-    of the region, or all of it. Places that are hardly wider than a bead, as where ribs meet, are left to the beads along
-    the middle of the ribs."""
+) -> tuple[tuple[Region, ...], list[PlaneCurve]]:
+    """What of `inner`, where middles of beads may lie, the outermost bead goes round, and beads in what is too thin for
+    that: necks of the region, or all of it. Places that are hardly wider than a bead, as where ribs meet, are left to the
+    beads along the middle of the ribs. InfeasibleError THIN_REGION where none are wanted there."""
     if beads.thin != "refuse":
         long = longer(inner, beads.shortest)
         inner = long if long or region.area > NETWORK * beads.inset**2 else inner
     if not inner:
-        return (), (region,)
+        return (), single_beads((region,), beads)
     reached = grown(inner, beads.inset, beads.chord_error)
-    return inner, tuple(part for part in region.without(reached) if _is_neck(part, reached, beads))
+    return inner, single_beads([part for part in region.without(reached) if _is_neck(part, reached, beads)], beads)
 
 
 def _is_neck(part: Region, reached: Sequence[Region], beads: Beads) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..geometry.regions.region import Region
 from ..geometry.regions.several import grown, longer, without
-from .centre import centre_beads, outermost, single_beads
+from .centre import centre_beads, outermost
 from .curve import Beads, PlaneCurve, begun, contours_of
 
 
@@ -18,7 +18,7 @@ class Levels:
 
     regions: tuple[tuple[Region, ...], ...]
     left: tuple[tuple[Region, ...], ...]
-    thin: tuple[Region, ...]  # the region, or necks of it, narrower than a bead
+    thin: list[PlaneCurve]  # beads in what is narrower than a bead
 
 
 def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
@@ -50,7 +50,7 @@ def rounds(found: Levels, beads: Beads) -> list[PlaneCurve]:
 
 def centres(found: Levels, beads: Beads) -> list[PlaneCurve]:
     """The beads in what contours leave open, and in thin places."""
-    curves = single_beads(found.thin, beads)
+    curves = list(found.thin)
     for k, left in enumerate(found.left):
         curves += [begun(curve, beads) for curve in centre_beads(left, beads, k + 1, found.regions[0])]
     return curves

@@ -11,7 +11,7 @@ from ..geometry.regions.region import Region, joined
 from ..geometry.regions.strip import Strip
 from ..issues import InputError
 from ..types import Array
-from .centre import closing, left_open, single_beads
+from .centre import closing, left_open
 from .connected import connected
 from .contours import contours
 from .curve import Beads, PlaneCurve, long_enough
@@ -20,7 +20,7 @@ from .sparse import Infill, sparse
 from .spiral import spiral
 from .strip_closing import open_windows
 from .strip_lines import lines_along, lines_round
-from .strips import single, strip_contours
+from .strips import strip_contours
 
 PATTERNS = ("contours", "connected", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
 CURVED = ("contours", "connected", "spiral")  # without walls: the border's parallel curves are all they have
@@ -46,12 +46,11 @@ def fill(
         pattern, infill = "contours", WHOLE
     if isinstance(region, Strip):
         space = region.grown(-beads.inset, beads.chord_error)
-        if not space:
-            return tuple(single(region, beads))
         upright = abs(math.sin(angle)) > abs(math.cos(angle))
-        curves = strip_contours(region, space, beads) if pattern in CURVED else (lines_along if upright else lines_round)(
-            region, space, beads, int(walls), infill.density
-        )
+        if pattern in CURVED or not space:
+            curves = strip_contours(region, space, beads)
+        else:
+            curves = (lines_along if upright else lines_round)(region, space, beads, int(walls), infill.density)
         return tuple(long_enough(curves, beads.shortest))
     inner = region.grown(-beads.inset, beads.chord_error)
     if pattern in CURVED and infill.density == 1.0:
@@ -60,7 +59,7 @@ def fill(
         link = (longest_link or LINK * beads.spacing) if pattern == "zigzag" else None
         rounds = 0 if math.isinf(walls) else int(walls)
         framed = frame(region, inner, beads, rounds)
-        curves = single_beads(framed.thin, beads) + framed.curves
+        curves = framed.thin + framed.curves
         if infill.density == 1.0:
             curves += lines(framed, beads, angle, rounds, link)
             curves += closing(inner, curves, beads, rounds)

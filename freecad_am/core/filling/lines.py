@@ -23,12 +23,12 @@ TOGETHER, APART = 0.01, 0.002  # of the spacing; lines are moved no more than th
 
 class Frame(NamedTuple):
     """curves: the contours round the lines, if any; regions: those between whose borders lines are spread; ends: those
-    that they run through, which reach onto the contour; thin: the region, or necks of it, narrower than a bead."""
+    that they run through, which reach onto the contour; thin: beads in what is narrower than a bead."""
 
     curves: list[PlaneCurve]
     regions: tuple[Region, ...]
     ends: tuple[Region, ...]
-    thin: tuple[Region, ...]
+    thin: list[PlaneCurve]
 
 
 def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -> Frame:

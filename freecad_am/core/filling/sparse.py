@@ -64,7 +64,7 @@ def _divided(
 def _whole(region: Region, beads: Beads, angle: float, ring: int, longest_link: float | None) -> list[PlaneCurve]:
     """Lines, or zigzags, over all of a region that lines end on the border of, and beads in what they leave open."""
     inner = region.grown(-0.5 * beads.spacing, beads.chord_error)
-    curves = in_rows(rows(Frame([], inner, (region,), ()), beads, angle), (region,), beads, ring, longest_link)
+    curves = in_rows(rows(Frame([], inner, (region,), []), beads, angle), (region,), beads, ring, longest_link)
     return curves + (closing(inner, curves, beads, ring) if inner and curves else [])
 
 

@@ -212,7 +212,7 @@ def test_unknown_patterns_are_refused():
 
 def test_no_lines_where_they_have_room_but_nothing_to_run_through():
     region, = regions(SHAPES["circle"])
-    assert rows(Frame([], (region,), (), ()), BEADS, 0.3) == []
+    assert rows(Frame([], (region,), (), []), BEADS, 0.3) == []
 
 
 @pytest.mark.parametrize(("loops", "closed"), [

@@ -8,6 +8,7 @@ where the edge runs between two walls and small where it runs into a corner.
 
 from __future__ import annotations
 
+import math
 from itertools import chain
 from typing import NamedTuple
 
@@ -18,7 +19,8 @@ from scipy.spatial import QhullError, Voronoi
 
 from ...types import Array, Index
 from ..curves.plane_curve import winding
-from .region import Region
+from .region import Region, simplified
+from .strip import Strip
 
 BETWEEN_WALLS, ANYWHERE = 0.75, 0.3  # least spread of an edge of the axis
 # places, beyond which they are moved by so much of the region's size: the diagram of many on parallel lines or a circle,
@@ -54,6 +56,26 @@ def spine(region: Region, least: float, step: float) -> tuple[Array, bool]:
         if spread == ANYWHERE or way > 2.0 * float(axis.clearance[path].max()):
             return axis.points[path], False
     return np.zeros((0, 2)), False
+
+
+def spine_round(strip: Strip, least: float, step: float, chord_error: float, aside: float) -> Array | None:
+    """The path (n, 2) once round in the middle of a strip, laid flat, from half a turn before 0 on; None where the strip is
+    somewhere thinner than 2 `least` mm. step: as of `spine`. chord_error: mm, of what is straight in (u, v) and an arc when
+    laid flat. aside: mm that are looked at beyond a turn, beside the breadth of the strip."""
+    half = 0.5 * strip.period.around
+    end = half + min(2.0 * (strip.levels[1] - strip.levels[0]) + aside, half)
+    points, _ = spine(max(strip.between(-end, end), key=lambda part: part.area), least, step)
+    points = points[::-1] if len(points) and points[0, 0] > points[-1, 0] else points
+    if not len(points) or points[0, 0] > -half or points[-1, 0] < half:
+        return None
+    points = simplified(points, 0.2 * chord_error)
+    v = np.interp(-half, points[:, 0], points[:, 1])
+    within = points[(points[:, 0] > -half) & (points[:, 0] < half)]
+    if not math.isinf(strip.period.apex):
+        count = strip.period.points_round(0.5 * sum(strip.levels), chord_error, aside)
+        u = np.union1d(within[:, 0], -half + strip.period.around / count * np.arange(1, count))
+        within = np.stack([u, np.interp(u, points[:, 0], points[:, 1])], axis=1)
+    return strip.period.unroll(np.vstack([[[-half, v]], within]))
 
 
 def _axis(region: Region, least: float, step: float) -> _Axis:
