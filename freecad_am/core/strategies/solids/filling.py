@@ -94,9 +94,8 @@ class Pictures:
                 ) from None
             covers.append(cover)
             for curve in found:
-                if (layer.number + curve.ring if curve.closed else layer.number) % 2 and (
-                    self._process.direction == "alternate" if curve.closed else beads.spread is not None
-                ):
+                odd = (layer.number + curve.ring) % 2 if curve.closed else layer.number % 2
+                if odd and (self._process.direction == "alternate" if curve.closed else beads.spread is not None):
                     curve = curve.reversed()
                 curves.append(replace(curve, sheet=region.sheet) if isinstance(region, Region) else curve)
             islands += [number] * len(found)
