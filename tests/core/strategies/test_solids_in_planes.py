@@ -432,6 +432,13 @@ def test_a_wall_thinner_than_a_bead_gets_one_bead_and_says_so():
     assert {issue.code for issue in made.issues} >= {"THIN_SINGLE"}
 
 
+@pytest.mark.parametrize("low", [0.0, 23.7, -0.3])
+def test_a_wall_as_thick_as_a_bead_is_wide_has_none_that_stands_out(low):
+    made = planned(box((0, low, 0), (60, low + 4.0, 8)))
+    assert all(len(layer.beads) == 1 for layer in made.layers)
+    assert not [issue.message for issue in made.issues if issue.code == "THIN_SINGLE"]
+
+
 @pytest.mark.parametrize("height, cut_at, layers", [
     (10.0, "middle", 5), (9.0, "middle", 4), (9.1, "middle", 5), (1.1, "middle", 1), (10.0, "bottom", 5), (10.0, "top", 5),
     (9.9, "top", 4), (8.1, "bottom", 5),

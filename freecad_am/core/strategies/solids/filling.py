@@ -216,7 +216,7 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
     share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in single])
     out = share * beads.inset - nearest_among(layer.borders, points)[1]
     worst = int(np.argmax(out))
-    if (share < 1.0).any() and out[worst] < 0.02 * beads.inset:
+    if out[worst] <= TOLERANCE_MM or ((share < 1.0).any() and out[worst] < 0.02 * beads.inset):
         return []
     return [Issue(
         NOTE, "THIN_SINGLE", Text("{} bead(s) alone in regions narrower than a bead of {:.3g} mm stand out of them, by up "
