@@ -59,7 +59,7 @@ from .macro.features import (
 )
 from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
-from .macro.suit import in_other_layers, on_platform, suit
+from .macro.suit import in_vain, on_platform, refuse_otherwise, suit
 from .objects import user_machines
 from .objects.cell import Cell
 from .objects.checks.controllers import post_of
@@ -170,23 +170,25 @@ def make_all(
     `am.make_all(doc, doc.Hub, then=[{"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}])`
     """
     chosen = read_cell(cell) if cell else cell_of(machine, user_machines.folders(), setup or OF_ROBOTS[0].setup)
+    refuse_otherwise(kind, layers_otherwise)
+    first = {"source": source, "kind": kind, "faces": faces, "substrate": substrate, "further": further,
+             "base_faces": base_faces, "mend": mend, "max_from_vertical": max_from_vertical}
+
+    def planned(layers: str) -> list[Any]:
+        own = make_cell(doc, parameters=chosen)
+        features = [_feature_of_job(doc, one) for one in ({**first, "layers": layers}, *then)]
+        toolpath = on_platform(own, lambda: make_toolpath(doc, features, own, **(process or {})))
+        path = [] if toolpath.Status == "infeasible" else [_suited_path(doc, toolpath, own, setup, bool(cell))]
+        return [own, *features, toolpath, *path]
+
     with one_step(doc, "New job"):
-        made = [make_cell(doc, parameters=chosen)]
-        first = {
-            "source": source, "kind": kind, "layers": layers, "faces": faces, "substrate": substrate, "further": further,
-            "base_faces": base_faces, "mend": mend, "max_from_vertical": max_from_vertical,
-        }
-        features = [_feature_of_job(doc, one) for one in (first, *then)]
-        toolpath = on_platform(made[0], lambda: make_toolpath(doc, features, made[0], **(process or {})))
-        made += [*features, toolpath]
-        in_other_layers(features[0], layers_otherwise, toolpath)
-        if toolpath.Status != "infeasible":
-            made.append(_suited_path(doc, toolpath, made[0], setup, bool(cell)))
-            in_other_layers(features[0], layers_otherwise, made[-1])
-            post, motion = post_of(chosen, post, user_machines.folders())
-            if made[-1].Status == "up to date" and post:
-                named = name or taken_name(source.Label, post)
-                made.append(make_program(doc, made[-1], name=named, post=post, motion=motion))
+        made = planned(layers)
+        if in_vain(made, layers_otherwise):
+            made = planned(layers_otherwise)
+        writer, motion = post_of(chosen, post, user_machines.folders())
+        if writer and made[-1].Proxy.kind == "joint path" and made[-1].Status == "up to date":
+            named = name or taken_name(source.Label, writer)
+            made.append(make_program(doc, made[-1], name=named, post=writer, motion=motion))
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
 

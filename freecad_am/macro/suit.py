@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import FreeCAD as App
 
 from ..core.issues import ERROR, InputError
+from ..core.parameters.filled import SolidParameters
 from ..core.strategies.support import ABOVE_PLATFORM
 from ..objects.fields import properties
 from ..objects.planned import suited_cell
@@ -45,10 +46,23 @@ def on_platform(cell: Any, make: Callable[[], Any]) -> Any:
     return toolpath
 
 
-def in_other_layers(feature: Any, layers: str, stage: Any) -> None:
-    """Give a feature object other layers, '' for none, where a stage of it is infeasible; what follows is renewed."""
-    if not layers or stage.Status != INFEASIBLE or feature.Layers == layers:
-        return
-    code = next((issue.code for issue in issues_of(stage) if issue.level == ERROR), "")
-    App.Console.PrintWarning(f"{feature.Label}: layers: {layers}, for {feature.Layers} ones end with {code}\n")
-    change(feature, layers=layers)
+def refuse_otherwise(kind: str, layers: str) -> None:
+    """InputError where a feature of this kind has no layers to choose, or these, '' for none, are none of them."""
+    if layers and kind != "solid":
+        raise InputError("BAD_VALUE", "layers_otherwise", "it is for kind: solid, not for {}; leave it out", kind)
+    if layers:
+        SolidParameters(layers=layers)
+
+
+def in_vain(stages: Sequence[Any], otherwise: str) -> bool:
+    """Whether the job of stages, a cell, a feature and what follows, is to be made anew with other layers, '' for none: it
+    cannot be carried out, which is told, and its objects go."""
+    failed = next((stage for stage in stages if stage.Status == INFEASIBLE), None)
+    feature = stages[1]
+    if failed is None or not otherwise or feature.Layers == otherwise:
+        return False
+    code = next((issue.code for issue in issues_of(failed) if issue.level == ERROR), "")
+    App.Console.PrintWarning(f"{feature.Label}: layers: {otherwise}, for {feature.Layers} ones end with {code}\n")
+    for stage in reversed(stages):
+        stage.Document.removeObject(stage.Name)
+    return True

@@ -9127,6 +9127,11 @@
         <translation>il est chiffré ; exportez des triangles simples</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/suit.py"/>
+        <source>it is for kind: solid, not for {0}; leave it out</source>
+        <translation>c’est pour kind: solid, pas pour {0} ; omettez-le</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>it is for plane layers, not for curved ones; use {0}, or layers: planes</source>
         <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>

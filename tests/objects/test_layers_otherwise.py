@@ -4,6 +4,7 @@
 import pytest
 
 from freecad_am import api
+from freecad_am.core.issues import InputError
 from tests.batch.test_auto_jobs import tee
 
 ROBOT, TOOL = "kuka-kr16-2", "tool-on-robot"  # which turns through its singularity along curved layers of the T
@@ -37,3 +38,27 @@ def test_curved_layers_that_can_be_carried_out_stay(doc, coarse_tee):
     made = api.make_all(
         doc, coarse_tee, kind="solid", layers="geodesic", process={"bead_width": 6.0}, layers_otherwise="planes")
     assert made[1].Layers == "geodesic" and made[3].Status == "up to date"
+
+
+def test_planes_have_the_cell_that_suits_them(doc, coarse_tee):
+    """Curved layers of the T lean more than 30 deg, so that a positioner is put under them; upright ones need none."""
+    asked = {
+        "kind": "solid", "machine": ROBOT, "setup": TOOL, "max_from_vertical": "30 deg",
+        "process": {"bead_width": 6.0, "travel_speed": 150.0},
+    }
+    curved = api.make_all(doc, coarse_tee, **asked, layers="geodesic")
+    assert curved[-1].Status == "infeasible" and curved[0].External != "none"
+    planes = api.make_all(doc, coarse_tee, **asked, layers="planes")
+    instead = api.make_all(doc, coarse_tee, **asked, layers="geodesic", layers_otherwise="planes")
+    assert [one.Status for one in instead] == ["up to date"] * 5 and instead[1].Layers == "planes"
+    assert api.result(instead[0]) == api.result(planes[0]) and instead[0].External == "none"
+    assert len(api.stages_of(doc)) == len(curved) + len(planes) + len(instead)
+
+
+@pytest.mark.parametrize(("kind", "layers", "where"), [
+    ("revolution", "planes", "layers_otherwise"), ("solid", "plane", "strategy.layers"),
+])
+def test_layers_that_are_none_are_refused_before_anything_is_made(doc, coarse_tee, kind, layers, where):
+    with pytest.raises(InputError) as error:
+        api.make_all(doc, coarse_tee, kind=kind, machine=ROBOT, layers_otherwise=layers)
+    assert error.value.where == where and doc.Objects == [coarse_tee]

@@ -23,7 +23,8 @@ STEPS = 7  # places on the way down at which a body is looked for
 ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is
 FLUSH = 1e-6  # mm
 OVER_PLATFORM, ABOVE_PLATFORM = "OVER_PLATFORM", "ABOVE_PLATFORM"
-BY_ITSELF = ("surface", "curves", "cladding")  # families whose first layer lies where it begins by its making
+CURVES = "curves"
+BY_ITSELF = ("surface", CURVES, "cladding")  # families whose first layer lies where it begins by its making
 
 
 def with_support(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]) -> Toolpath:
@@ -34,7 +35,7 @@ def with_support(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[B
     hub is known by its surface alone. The first layer of a wall lies by its making where the wall begins, and is carried.
     """
     ground = _Ground(toolpath, planes, bodies, bases)
-    open_, issues = support.carried(toolpath, ground, toolpath.family in BY_ITSELF)
+    open_, issues = support.carried(toolpath, ground, toolpath.family in BY_ITSELF, _lowest(toolpath, toolpath.family, 0))
     return replace(toolpath, unsupported=math.fsum(open_.values()), issues=(*toolpath.issues, *issues))
 
 
@@ -46,7 +47,15 @@ def of_feature(
     part, numbers = toolpath.parts[number]
     ground = _Ground(part, planes, bodies, bases)
     whole = replace(toolpath, layer_height=part.layer_height)
-    return support.carried(whole, ground, part.family in BY_ITSELF, numbers)
+    return support.carried(whole, ground, part.family in BY_ITSELF, _lowest(whole, part.family, int(numbers[0])), numbers)
+
+
+def _lowest(toolpath: Toolpath, family: str, first: int) -> Mask:
+    """Which layers (l,) are laid on ground, a layer height above it at most: the first one, those that begin another solid,
+    and of curves, several of which may be laid one after the other, all."""
+    found = np.array([layer.first or family == CURVES for layer in toolpath.layers], dtype=bool)
+    found[first] = True
+    return found
 
 
 def over_edge(

@@ -140,6 +140,22 @@ def test_beside_the_vertical_the_table_has_the_way_there_to_turn(machine, way):
     assert (rate <= cell.machine.max_speed[turning]).all()
 
 
+def test_a_tilting_axis_without_room_beyond_the_pole_stays_on_its_side():
+    """Straight on through the vertical it would come to -15 deg; the table turns beside it then, and the bead is slowed."""
+    x = np.linspace(0.0, 60.0, 61)
+    lean, aside = np.tan(np.radians(15.0 * (1.0 - x / 30.0))), np.full(len(x), np.tan(np.radians(0.15)))
+    asked = bead(
+        np.stack([x, 5.0 + 0.0 * x, 20.0 + 0.0 * x], axis=1), np.stack([lean, aside, np.ones(len(x))], axis=1), speed=2.5
+    )
+    cell = with_limits(resolved("table-xyzac"), 3, -5.0, 100.0)
+    path = plan_joints(toolpath(asked), cell, JointParameters())
+    assert path.feasible and len(path.beads) == 1
+    assert [issue.code for issue in path.issues] == ["SLOWED"]
+    check(cell, path)
+    free = plan_joints(toolpath(asked), resolved("table-xyzac"), JointParameters())
+    assert free.feasible and not free.issues and np.degrees(free.beads[0].joints[:, 3].min()) < -10.0
+
+
 def test_round_a_hub_on_the_turning_axis_only_the_table_turns():
     base = Developable(60.0, 200.0)
     cell = resolved()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Beads over nothing: against lengths that follow from how beads were put, and against every pair of places tried."""
 
+import dataclasses
 import math
 import re
 
@@ -73,6 +74,17 @@ def test_ground_a_layer_below_carries_the_first_layer_alone(ground):
     assert told(toolpath([rod(0, 100, 0.0, HEIGHT)], family="solid"), planes, bodies)[0] == 0.0
     half = toolpath([rod(0, 100)], [rod(0, 100, 20.0, 0.6 * HEIGHT)], family="solid")  # beside a slope there are such steps
     assert told(half, planes, bodies)[0] == 0.0
+
+
+def test_ground_a_layer_below_carries_what_begins_there():
+    """The first layer of another solid, and of a second object that a slicer lays after the first one."""
+    plate = disc(400.0, np.eye(4), "plate")
+    rods = [(rod(0, 100, aside, 0.9 * HEIGHT),) for aside in (0.0, 60.0)]
+    solids = toolpath(*rods, family="solid")
+    assert told(solids, (), (plate,))[0] == pytest.approx(100.0)
+    begun = dataclasses.replace(solids, layers=tuple(Layer(beads, first=True) for beads in rods))
+    assert told(begun, (), (plate,)) == (0.0, [])
+    assert told(dataclasses.replace(solids, family="curves"), (), (plate,)) == (0.0, [])
 
 
 def test_beside_is_not_below_and_neither_is_later_or_above():

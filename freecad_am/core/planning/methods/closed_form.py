@@ -99,14 +99,15 @@ def _within_stroke(task: Task, bead: Bead, before: Array) -> list[_Run]:
 def _run(task: Task, bead: Bead, before: Array) -> _Run:
     """The bead in the turns and the branch that suit best after axes (5,), past poles with the directions asked for where
     that can be run."""
-    runs: list[tuple[bool, float, _Run]] = []
+    runs: list[tuple[bool, bool, float, _Run]] = []
     for pole in POLES[:1] if task.lock is not None else POLES:
         run = _finer(task, bead, before, pole)
         race = _race(task, run)
-        if run.bent is None and race <= RACES:
+        # straight on through a pole a tilting axis changes its side, for which it may have no room
+        if run.bent is None and race <= RACES and (run.fits or not runs):
             return run
-        runs.append((run.bent is not None, race, run))
-    return min(runs, key=lambda one: one[:2])[2]
+        runs.append((run.bent is not None, not run.fits, race, run))
+    return min(runs, key=lambda one: one[:3])[3]
 
 
 def _race(task: Task, run: _Run) -> float:

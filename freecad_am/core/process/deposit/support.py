@@ -42,21 +42,21 @@ PAIRS = 2_000_000  # of pieces looked at together; bounds the memory
 
 
 def carried(
-    toolpath: Toolpath, ground: Ground, first: bool, numbers: Index | None = None
+    toolpath: Toolpath, ground: Ground, first: bool, lowest: Mask, numbers: Index | None = None
 ) -> tuple[dict[int, float], list[Issue]]:
     """How much of the layers of a toolpath lies over nothing, mm of those with such beads, and an issue for each of these,
     the longest ten.
 
     ground(points (n, 3), build (n, 3), lowest (n,)): whether something other than deposit carries them, which of them are of
-    the first of the layers asked about. first: something carries all of that layer. numbers: (k,) rising, of the layers
-    asked about, all where left out. Time grows little faster than the number of pieces, memory as it.
+    the layers that are laid on ground, `lowest` (l,) of all. numbers: (k,) rising, of the layers asked about, all where left
+    out. first: something carries all of the first of these. Time grows little faster than the number of pieces, memory as it.
     """
     pieces = cut(toolpath, PIECE)
     numbers = np.arange(len(toolpath.layers)) if numbers is None else numbers
     asked = np.flatnonzero(np.isin(pieces.layer, numbers[1:] if first else numbers))
 
     def held(points: Array, which: Index) -> Mask:
-        return ground(points, pieces.build[which], pieces.layer[which] == numbers[0])
+        return ground(points, pieces.build[which], lowest[pieces.layer[which]])
 
     open_ = _alone(pieces, toolpath, held, asked)
     open_ = _without_both(pieces, toolpath, held, open_)
@@ -66,7 +66,7 @@ def carried(
     open_by_layer: dict[int, float] = {}
     for run in runs:
         open_by_layer[run.layer] = open_by_layer.get(run.layer, 0.0) + run.length
-    return open_by_layer, _issues(runs, toolpath, int(numbers[0]))
+    return open_by_layer, _issues(runs, toolpath, lowest)
 
 
 def _without_both(pieces: Pieces, toolpath: Toolpath, held: Held, some: Index) -> Index:
@@ -194,7 +194,7 @@ def _runs(pieces: Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
                 yield _Run(int(pieces.layer[first]), number, int(pieces.point[first]), total)
 
 
-def _issues(runs: list[_Run], toolpath: Toolpath, first: int) -> list[Issue]:
+def _issues(runs: list[_Run], toolpath: Toolpath, lowest: Mask) -> list[Issue]:
     layers: dict[int, list[_Run]] = {}
     for run in runs:
         layers.setdefault(run.layer, []).append(run)
@@ -203,7 +203,7 @@ def _issues(runs: list[_Run], toolpath: Toolpath, first: int) -> list[Issue]:
     found = []
     for layer in worst:
         longest = max(layers[layer], key=lambda run: run.length)
-        reach = (REACH if layer == first else DOWN) * toolpath.layer_height
+        reach = (REACH if lowest[layer] else DOWN) * toolpath.layer_height
         found.append(Issue(
             WARNING, CODE, Text("{:.4g} mm of beads lie over nothing, {:.4g} mm of them in a row from here: what is below "
                 "is more than {:.4g} mm away, or they overhang it by more than half of their width; deposit what carries "
