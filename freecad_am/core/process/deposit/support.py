@@ -49,7 +49,7 @@ def carried(
 
     ground(points (n, 3), build (n, 3), lowest (n,)): whether something other than deposit carries them, which of them are of
     the layers that are laid on ground, `lowest` (l,) of all. numbers: (k,) rising, of the layers asked about, all where left
-    out. first: something carries all of the first of these. Time grows little faster than the number of pieces, memory as it.
+    out. first: something carries all of the first of these. Time grows little faster than pieces, memory as they do.
     """
     pieces = cut(toolpath, PIECE)
     numbers = np.arange(len(toolpath.layers)) if numbers is None else numbers
