@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
@@ -122,13 +121,15 @@ def trigger_refused(why: str) -> InputError:
 @dataclass(frozen=True)
 class Ahead:
     """A deposit that is switched `lead` s before the end of the last of moves, which takes `seconds`, or of which the corner
-    that is rounded before it leaves them; a lead may be longer by `slack` s, which the controller's numbers cannot tell."""
+    that is rounded before it leaves them; a lead may be longer by `slack` s, which the controller's numbers cannot tell.
+    steps: in a second, whole numbers of which are told as the largest lead."""
 
     moves: Moves
     lead: float
     seconds: float
     corner: bool = False
     slack: float = 0.0
+    steps: int = 1000
 
 
 def refuse_triggers(program: Program, no_trigger: str) -> None:
@@ -151,7 +152,7 @@ def refuse_leads(ahead: Sequence[Ahead]) -> None:
     least = min(ahead, key=lambda one: one.seconds + one.slack, default=None)
     if least is None or least.lead <= least.seconds + least.slack:
         return
-    most = _whole_milliseconds(least.seconds + least.slack)
+    most = _whole_steps(least.seconds + least.slack, least.steps)
     if least.corner:
         raise InputError(
             "TRIGGER_LEAD", place(least.moves),
@@ -167,10 +168,10 @@ def refuse_leads(ahead: Sequence[Ahead]) -> None:
     )
 
 
-def _whole_milliseconds(seconds: float) -> float:
-    """The largest number of s with three decimals that is no larger."""
-    count = math.floor(1000.0 * seconds)
-    return (count if count / 1000.0 <= seconds else count - 1) / 1000.0
+def _whole_steps(seconds: float, steps: int) -> float:
+    """The largest number of s that is no larger, of whole steps of which a second has so many."""
+    nearest = round(steps * seconds)
+    return (nearest if nearest / steps <= seconds else nearest - 1) / steps
 
 
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:

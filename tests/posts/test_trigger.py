@@ -18,6 +18,7 @@ from freecad_am.core.program import DepositOff, DepositOn, Moves, WaitBelow
 from freecad_am.core.read_moves import Event
 from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
+from freecad_am.posts.parts import switching
 from freecad_am.posts.refusals import refuse_triggers
 from freecad_am.read_back.events import _alike
 from freecad_am.verify import verify
@@ -111,8 +112,8 @@ def largest(error):
     ("kuka", "cartesian", 30), ("kuka", "cartesian", 0),
 ])
 @pytest.mark.parametrize("only", [None, DepositOn, DepositOff])
-def test_the_largest_lead_is_told_and_read_back_and_a_millisecond_more_is_refused(post, motion, blend, only):
-    """Of all that is switched, of starts of beads alone, and of ends."""
+def test_the_largest_lead_is_told_and_read_back_and_more_is_refused(post, motion, blend, only):
+    """Of all that is switched, of starts of beads alone, and of ends. More is a millisecond, or what is written as more."""
     cell, _, motion_ = planned(CELL[post])
     process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
     if post == "abb":
@@ -131,10 +132,16 @@ def test_the_largest_lead_is_told_and_read_back_and_a_millisecond_more_is_refuse
     most = largest(error)
     assert 0.0 < most < 0.499
     program = made(most)
-    read = verify(cell, motion_, program, catalogue.load(post).write(program), catalogue.load(post), CHORD_ERROR)
+    files = catalogue.load(post).write(program)
+    if post == "fanuc":  # it writes hundredths of a second: none is longer than its move, and one more would be
+        ends = [run.duration[-1] for run, block in switching(program) if block.ahead is not None]
+        written = [float(one) for text in files.values() for one in re.findall(rb"TB +([\d.]+)sec", text)]
+        assert len(written) == len(ends) and set(written) == {most} and most <= min(ends) < most + 0.01
+        assert catalogue.load(post).write(made(most + 0.004)) == files  # written the same
+    read = verify(cell, motion_, program, files, catalogue.load(post), CHORD_ERROR)
     assert not [issue for issue in read.issues if issue.level == ERROR]
     with pytest.raises(InputError) as error:
-        catalogue.load(post).write(made(most + 0.001))
+        catalogue.load(post).write(made(most + (0.006 if post == "fanuc" else 0.001)))
     assert largest(error) == most
 
 

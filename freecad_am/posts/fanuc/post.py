@@ -42,17 +42,17 @@ from ..refusals import (
     refuse_cooling,
     refuse_external,
     refuse_incomplete,
+    refuse_leads,
     refuse_named_track,
     refuse_no_process,
     refuse_schedules,
-    refuse_triggers,
     refuse_weave,
     refuse_wire,
 )
 from . import listing as text
 from . import numbers
 from .read import read
-from .switching import at_ends
+from .switching import as_written, at_ends
 
 __all__ = ["read", "write"]
 
@@ -161,7 +161,7 @@ def _refuse(program: Program) -> None:
     refuse_named_track(program, "E1 of the robot's own motion group")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
-    refuse_triggers(program, NO_TRIGGER)
+    refuse_leads(as_written(program))
     refuse_schedules(program, LAST_GROUP, LAST_SCHEDULE)
     refuse_weave(program, LAST_WEAVE)
     for block in program.blocks:

@@ -3,11 +3,16 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from ...core import digits
 from ...core.program import DepositOn, Program
 from ..parts import switching
+from ..refusals import Ahead, switched_ahead
+
+DECIMALS = 2  # of the seconds before the end
 
 
 def at_ends(program: Program) -> dict[int, str]:
@@ -21,6 +26,12 @@ def at_ends(program: Program) -> dict[int, str]:
     }
 
 
+def as_written(program: Program) -> list[Ahead]:
+    """All that is switched ahead, each as long before the end as the listing says: up to half a hundredth longer than asked."""
+    steps = 10**DECIMALS
+    return [dataclasses.replace(one, lead=round(one.lead, DECIMALS), steps=steps) for one in switched_ahead(program)]
+
+
 def _ahead(seconds: float) -> str:
     """How long before, to 0.01 s, as wide as controllers write it: TB    .05sec."""
-    return f"TB{digits.joined([digits.right_aligned(np.array([round(seconds, 2)]), 2, 7)], 1)}sec"
+    return f"TB{digits.joined([digits.right_aligned(np.array([round(seconds, DECIMALS)]), DECIMALS, 7)], 1)}sec"
