@@ -27,7 +27,7 @@ def at_ends(program: Program) -> dict[int, str]:
 
 
 def as_written(program: Program) -> list[Ahead]:
-    """All that is switched ahead, each as long before the end as the listing says: up to half a hundredth longer than asked."""
+    """All that is switched ahead, each as long before the end as the listing says: up to 5 ms longer than asked."""
     steps = 10**DECIMALS
     return [dataclasses.replace(one, lead=round(one.lead, DECIMALS), steps=steps) for one in switched_ahead(program)]
 
