@@ -25,12 +25,21 @@ def test_the_name_follows_the_machine_until_another_one_is_typed(person, hand, h
     person.until(note.isVisible, "that the controller refuses the name that was typed", 5)
     assert name.text() == "SECOND_STAGE_NOZZLE" and "more than 14 characters" in note.text()
     person.screenshot("new_job_name_refused")
-    person.press("Ok")
-    assert note.isVisible() and api.stages_of(doc) == []  # nothing was planned
+    fold = person.field(panel, "FoldInputs")
+    for folded in (False, True):
+        if folded:
+            fold.click()
+            assert not note.isVisible()
+        person.press("Ok")
+        assert note.isVisible() and fold.isChecked() and api.stages_of(doc) == []  # nothing was planned
     person.type(panel, "ProgramName", "STAGE_2")
     person.until(lambda: not note.isVisible(), "the note to go", 5)
     hand.enter(panel, "Machine", "fanuc-arcmate120ic")
     assert name.text() == "STAGE_2"
+    hand.enter(panel, "Machine", "no-such-machine")
+    fold.click()
+    person.press("Ok")
+    assert fold.isChecked() and person.field(panel, "MachineNote").isVisible()  # so is what is found out on the way
     person.press("Cancel")
     person.panel_closed()
 

@@ -237,6 +237,7 @@ class JobPanel:
         self.say("")
         self._entered_anew()
         if self.notes[self.name.place].text():
+            self.fold.heading.setChecked(True)  # the note is in it
             return False
         try:
             self._wait()
@@ -248,6 +249,7 @@ class JobPanel:
         except AmError as error:
             if error.where in self.notes:
                 self._tell(error.where, translated(error.message))
+                self.fold.heading.setChecked(True)
             else:
                 self.say(translated_error(error))
         except Cancelled:
