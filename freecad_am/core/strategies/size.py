@@ -181,24 +181,26 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
 
 
 def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
-    """A note LARGE where planning takes more than LARGE_SECONDS or LARGE_GIGABYTES. Raises InputError as `refuse_absurd`."""
+    """A note LARGE where planning takes more than LARGE_SECONDS or LARGE_GIGABYTES; one more where the grids of curved
+    layers take longer than all points, and these take LARGE_GIGABYTES. Raises InputError as `refuse_absurd`."""
     refuse_absurd(size, strategy)
     a_point = next(seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind))
     seconds = max(size.points * a_point, size.layers * SECONDS_A_LAYER, size.squares * SECONDS_A_SQUARE)
     gigabytes = size.points * GIGABYTES_A_POINT
+    grids: tuple[Issue, ...] = ()
     if size.nodes * SECONDS_A_NODE > max(seconds, LARGE_SECONDS):
         minutes = at_least(size.nodes * SECONDS_A_NODE / 60.0)
-        return (Issue(
+        grids = (Issue(
             NOTE, LARGE, Text("curved layers are looked for on a grid of about {} nodes, which takes about {:g} min of the "
                 "processor; a larger strategy.layer_height, or layers: planes, takes less", count(size.nodes), minutes),
         ),)
-    if seconds < LARGE_SECONDS and gigabytes < LARGE_GIGABYTES:
-        return ()
-    return (Issue(
+    if gigabytes < LARGE_GIGABYTES and (grids or seconds < LARGE_SECONDS):
+        return grids
+    return (*grids, Issue(
         NOTE, LARGE, Text("about {} points in {} layers are planned, which takes about {:g} min of the processor and {:g} "
             "GB of memory; a larger strategy.layer_height or strategy.chord_error makes them fewer", count(size.points),
             count(size.layers), at_least(seconds / 60.0), at_least(gigabytes)),
-    ),)
+    ))
 
 
 def of_tilting(points: int, times: int = 1) -> tuple[Issue, ...]:

@@ -225,3 +225,14 @@ def test_curved_layers_are_told_by_their_grid(height, told):
     assert [issue.code for issue in found] == ([] if told is None else ["LARGE"])
     assert told is None or (told in found[0].message and "layers: planes" in found[0].message)
     assert size.judged(size.of_solids(made, dataclasses.replace(strategy, layers="planes")), strategy) == ()
+
+
+@pytest.mark.parametrize(("points", "told"), [
+    (600_000, ["nodes"]), (700_000, ["nodes", "1.1 GB"]), (4_500_000, ["6.8 GB"]),
+])
+def test_curved_layers_that_take_much_memory_too_are_told_by_both(points, told):
+    """Of a grid that takes 1,000 s of the processor, and points that take 150 s, 175 s and 1,125 s."""
+    found = size.judged(size.Size(100.0, points, nodes=2e7), SolidParameters(layers="geodesic"))
+    assert len(found) == len(told)
+    for issue, word in zip(found, told, strict=True):
+        assert issue.code == "LARGE" and word in issue.message
