@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.issues import NOTE, AmError, InputError, Issue, Text
 from ..core.kinematics import cell as cells
-from ..core.kinematics.links.external_links import untold
+from ..core.kinematics.links.external_links import of_unknown_shape
 from ..core.kinematics.machines.machine import UNKNOWN_REMARK
 from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
@@ -191,7 +191,7 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
 
 def _not_known(cell: cells.Cell) -> list[Issue]:
     """A note on positioners and tracks of which nothing is kept clear, for no file tells what they are made of."""
-    if cell.external is None or not (lacking := ", ".join(untold(cell.external, cell.external_links))):
+    if cell.external is None or not (lacking := ", ".join(of_unknown_shape(cell.external, cell.external_links))):
         return []
     return [Issue(
         NOTE, "BODIES_NOT_KNOWN", Text("no file tells what {} is made of, so nozzle, torch and robot are not kept clear of "

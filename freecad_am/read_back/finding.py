@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.issues import Issue
+from ..core.issues import ERROR, Issue, Text
 from ..core.motion import Motion
 from ..core.read_moves import ReadMoves
 
@@ -24,3 +24,8 @@ class Finding(NamedTuple):
             return None
         # the first row of a bead repeats the end of the move before
         return read.lines.at(max(int(np.count_nonzero(motion.moves[: self.row + 1])) - 1, 0))
+
+
+def error_at(code: str, message: Text, motion: Motion, row: int) -> Finding:
+    """An error about a row of the motion."""
+    return Finding(Issue(ERROR, code, message, int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])), row)

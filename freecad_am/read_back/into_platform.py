@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..core.geometry import frames
-from ..core.issues import ERROR, Issue, Text
+from ..core.issues import Text
 from ..core.kinematics.cell import Cell
 from ..core.motion import Motion
-from .finding import Finding
+from .finding import Finding, error_at
 
 ROUNDED = 0.1  # mm that digits of a program, and joints between its points, may take
 
@@ -24,9 +24,7 @@ def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
     if not below.any():
         return []
     low = int(np.where(below, points[:, 2], np.inf).argmin())
-    row = int(rows[low])
-    return [Finding(Issue(
-        ERROR, "INTO_PLATFORM", Text("the nozzle deposits at {} points below the platform, here {:.3g} mm; correct their "
-            "heights, or the cell's platform", int(below.sum()), -points[low, 2]),
-        int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]),
-    ), row)]
+    return [error_at(
+        "INTO_PLATFORM", Text("the nozzle deposits at {} points below the platform, here {:.3g} mm; correct their "
+            "heights, or the cell's platform", int(below.sum()), -points[low, 2]), motion, int(rows[low]),
+    )]

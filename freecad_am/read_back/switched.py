@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from freecad_am.core.types import Array
 
-from ..core.issues import ERROR, Issue, Text
+from ..core.issues import Text
 from ..core.motion import Motion
 from ..core.read_moves import Event, ReadMoves
-from .finding import Finding
+from .finding import Finding, error_at
 from .leads import timed
 
 # s that a time in a text may be longer than that of its move: both are rounded to milliseconds
@@ -54,8 +54,7 @@ def _findings(motion: Motion, read: ReadMoves) -> Iterator[Finding]:
 
 def _finding(code: str, message: Text, motion: Motion, rows: NDArray[np.intp], move: int) -> Finding:
     """An error at a move; at the last one for what follows it."""
-    row = int(rows[min(move, len(rows) - 1)])
-    return Finding(Issue(ERROR, code, message, int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row])), row)
+    return error_at(code, message, motion, int(rows[min(move, len(rows) - 1)]))
 
 
 def _time_of_its_move(event: Event, seconds: Array) -> float | None:

@@ -76,7 +76,7 @@ def external_links(
     return tuple(found)
 
 
-def untold(external: ExternalAxes, links: Sequence[ExternalLink]) -> list[str]:
+def of_unknown_shape(external: ExternalAxes, links: Sequence[ExternalLink]) -> list[str]:
     """Titles of the mechanisms of which nothing is known to be kept clear; links: those that are known."""
     known = {one.mechanism for one in links}
     return [one.machine.title for number, one in enumerate(external.mechanisms) if number not in known]
