@@ -94,11 +94,12 @@ class Worker:
 
     def goes_on(self) -> bool:
         """Whether the thread may still do anything; a cancelled one is told again to end."""
+        alive = self._thread.is_alive()
         if self._cancelled:
             self._stop()
-            if self.ended.is_set():
+            if self.ended.is_set():  # as it is where it was not alive before
                 self._value = self._error = None  # of no use, and its traceback refers to this worker
-        return self._thread.is_alive()
+        return alive
 
 
 _going: list[Worker] = []
