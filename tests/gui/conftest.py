@@ -96,6 +96,14 @@ class Person:
             return found
         raise AssertionError(f"waited {seconds} s for {what}")
 
+    # ---- what is there
+
+    def present(self, kind, *name, below=None):
+        """Widgets of a kind below another, the main window; without those that PySide takes for deleted ones, which were at
+        their place in memory before (docs/versions.md)."""
+        found = (self.window if below is None else below).findChildren(kind, *name)
+        return [one for one in found if self.qt.isValid(one)]
+
     # ---- toolbar, panels, tree
 
     def open_workbench(self):
@@ -103,7 +111,7 @@ class Person:
         self.idle()
 
     def button(self, command):
-        for bar in self.window.findChildren(self.widgets.QToolBar):
+        for bar in self.present(self.widgets.QToolBar):
             for action in bar.actions():
                 widget = bar.widgetForAction(action)
                 if command in (action.objectName(), action.data()) and widget is not None and widget.isVisible():
@@ -130,7 +138,7 @@ class Person:
 
     def panel(self, name):
         def visible():
-            return [widget for widget in self.window.findChildren(self.widgets.QWidget, name) if widget.isVisible()]
+            return [widget for widget in self.present(self.widgets.QWidget, name) if widget.isVisible()]
 
         return self.until(visible, f"the panel {name}", 5)[0]
 
@@ -161,7 +169,7 @@ class Person:
 
     def press(self, standard_button):
         wanted = getattr(self.widgets.QDialogButtonBox, standard_button)
-        boxes = self.window.findChildren(self.widgets.QDialogButtonBox)
+        boxes = self.present(self.widgets.QDialogButtonBox)
         try:
             for box in boxes:
                 # one found earlier may be gone, and another one be at its place
@@ -359,7 +367,7 @@ def person(tmp_path, capfd, request):
         someone.gui.Control.closeDialog()
     for name in list(App.listDocuments()):
         App.closeDocument(name)
-    for dock in someone.window.findChildren(someone.widgets.QDockWidget):  # one that stays open goes on looking
+    for dock in someone.present(someone.widgets.QDockWidget):  # one that stays open goes on looking
         if dock.objectName().startswith("RoboticAM"):
             if dock.isFloating():
                 dock.show()  # Qt 6 takes one that is put back while it is hidden for a window of its own ever after

@@ -40,7 +40,7 @@ class Hand:
 
     def reveal(self, widget):
         """Turn the wheel over the margin of a panel until all of a widget is in sight, or as much of it as goes in."""
-        areas = [one for one in self.person.window.findChildren(self.person.widgets.QScrollArea)
+        areas = [one for one in self.person.present(self.person.widgets.QScrollArea)
                  if one.isVisible() and one.isAncestorOf(widget)]
         if not areas:
             return
@@ -83,7 +83,7 @@ class Hand:
 
     def _when_able(self, command):
         """Wait until a tool is lit: FreeCAD looks at them when it has nothing else to do, and takes no keys for others."""
-        bars = self.person.window.findChildren(self.person.widgets.QToolBar)
+        bars = self.person.present(self.person.widgets.QToolBar)
         tools = [tool for bar in bars for tool in bar.actions() if command in (tool.objectName(), tool.data())]
         assert tools, f"no toolbar has {command}"
         self.person.until(tools[0].isEnabled, f"{command} to be enabled", 5)
@@ -91,7 +91,7 @@ class Hand:
     def in_tree(self, label):
         """The place of an object of the tree on the screen, brought into sight."""
         def there():
-            trees = self.person.window.findChildren(self.person.widgets.QTreeWidget)
+            trees = self.person.present(self.person.widgets.QTreeWidget)
             return [tree for tree in trees if tree.isVisible() and tree.findItems(label, _anywhere(self.person.core))]
 
         tree = self.person.until(there, f"{label} in the tree", 5)[0]  # which follows the document a little later

@@ -317,7 +317,7 @@ def test_the_open_window_of_a_program_follows_it(person, hemisphere, coarse):
     doc.Feature.LayerHeight = 2
     assert "do not run it. Status: stale" in person.field(window, "state").text()
     person.double_click(program)
-    windows = person.window.findChildren(person.widgets.QDialog, "RoboticAM_ProgramText")
+    windows = person.present(person.widgets.QDialog, "RoboticAM_ProgramText")
     assert len([one for one in windows if one.isVisible()]) == 1
     person.gui.runCommand("Std_Undo")
     person.idle()

@@ -40,7 +40,7 @@ def still(person):
     seen = []
 
     def same():
-        docks = person.window.findChildren(person.widgets.QDockWidget)
+        docks = person.present(person.widgets.QDockWidget)
         seen.append([dock.geometry().getRect() for dock in docks if dock.isVisible()])
         return len(seen) > 18 and all(one == seen[-1] for one in seen[-18:])
 
@@ -68,7 +68,7 @@ def in_front(dock):
 def around(person):
     """FreeCAD's docks at the bottom that are seen, by name, with their heights."""
     bottom = person.core.Qt.BottomDockWidgetArea
-    docks = [dock for dock in person.window.findChildren(person.widgets.QDockWidget)
+    docks = [dock for dock in person.present(person.widgets.QDockWidget)
              if in_front(dock) and person.window.dockWidgetArea(dock) == bottom]
     return {dock.objectName(): dock.height() for dock in docks if not dock.objectName().startswith("RoboticAM")}
 
@@ -97,12 +97,12 @@ def test_a_window_of_1280_by_800_holds_them_as_tabs_with_the_newest_in_front(per
 
 
 def test_a_window_of_1280_pixels_shows_all_tools(person, path):
-    bar = next(bar for bar in person.window.findChildren(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM")
+    bar = next(bar for bar in person.present(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM")
     person.until(lambda: bar.width() >= bar.sizeHint().width(), "room for the toolbar", 5)
     for name in (name for group in GROUPS for name in group):
         button = person.button(f"RoboticAM_{name}")
         assert bar.rect().contains(button.geometry()) and button.mapTo(person.window, button.rect().topRight()).x() < WIDE
-    rows = {one.y() for one in person.window.findChildren(person.widgets.QToolBar) if one.isVisible() and one is not bar}
+    rows = {one.y() for one in person.present(person.widgets.QToolBar) if one.isVisible() and one is not bar}
     person.screenshot("toolbar-1280")
     # where it has room beside others it stays where the user puts it
     person.window.removeToolBarBreak(bar)
@@ -189,7 +189,7 @@ def test_a_click_on_the_map_leaves_it_in_front(person, hand, path):
     person.until(lambda: path.ViewObject.Proxy.shown is not None, "the path to follow", 5)
     assert in_front(dock) and not in_front(paths._dock.dock)
     # and the path's dock tells it when its tab is clicked
-    bar = next(bar for bar in person.window.findChildren(person.widgets.QTabBar)
+    bar = next(bar for bar in person.present(person.widgets.QTabBar)
                if bar.isVisible() and dock.windowTitle() in [bar.tabText(at) for at in range(bar.count())])
     number = next(at for at in range(bar.count()) if bar.tabText(at) == paths._dock.dock.windowTitle())
     middle = bar.mapToGlobal(bar.tabRect(number).center())

@@ -139,7 +139,7 @@ def test_a_report_is_cancelled_and_leaves_nothing(person, job, tmp_path, monkeyp
         raise AssertionError("seen to the end")
 
     def cancel():
-        for dialog in person.window.findChildren(person.widgets.QDialog, busy.NAME):
+        for dialog in person.present(person.widgets.QDialog, busy.NAME):
             if begun and dialog.isVisible():
                 timer.stop()
                 person.field(dialog, "cancel").click()

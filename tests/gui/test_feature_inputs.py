@@ -31,7 +31,7 @@ def scene(person):
     box.Placement.Base = V(-20, 0, -50)  # an edge of it is on the z axis
     doc.recompute()
     mesh.Placement.Base = V(-60, 60, 0)
-    for dock in person.window.findChildren(person.widgets.QDockWidget):
+    for dock in person.present(person.widgets.QDockWidget):
         if dock.objectName() in ("Combo View", "Model", "Tree view"):
             dock.show()
             dock.raise_()
@@ -64,7 +64,7 @@ def use(person, hand, panel, name):
 
 def turn_to(person, hand, title):
     """Click a tab beside the 3D view: FreeCAD shows the tree or the panel."""
-    for bar in person.window.findChildren(person.widgets.QTabBar):
+    for bar in person.present(person.widgets.QTabBar):
         for k in range(bar.count() if bar.isVisible() else 0):
             if bar.tabText(k) == title:
                 where = bar.mapToGlobal(bar.tabRect(k).center())

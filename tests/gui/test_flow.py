@@ -53,7 +53,7 @@ def cup(doc):
 
 
 def test_tools_stand_in_the_order_of_the_work(person, hemisphere):
-    bar = next(bar for bar in person.window.findChildren(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM")
+    bar = next(bar for bar in person.present(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM")
     actions = bar.actions()
     names = ["|" if action.isSeparator() else action.objectName() or action.data() for action in actions]
     there = [name.removeprefix("RoboticAM_") for name in names if name != "|"]

@@ -40,7 +40,7 @@ def rotor(person):
 @pytest.fixture
 def blades(person, rotor):
     """The same, in sight, beside the tree."""
-    for dock in person.window.findChildren(person.widgets.QDockWidget):
+    for dock in person.present(person.widgets.QDockWidget):
         if dock.objectName() in ("Combo View", "Model", "Tree view"):
             dock.show()
     person.idle(0.4)
@@ -80,9 +80,9 @@ def noted_for(person, panel, entry, as_wanted):
 
 def ok(person, hand, name="Ok"):
     wanted = getattr(person.widgets.QDialogButtonBox, name)
-    boxes = [box for box in person.window.findChildren(person.widgets.QDialogButtonBox) if box.isVisible()]
+    boxes = [box for box in person.present(person.widgets.QDialogButtonBox) if box.isVisible()]
     button = next(box.button(wanted) for box in boxes if box.button(wanted) is not None)
-    for area in person.window.findChildren(person.widgets.QScrollArea):
+    for area in person.present(person.widgets.QScrollArea):
         if area.isVisible() and area.isAncestorOf(button):
             area.ensureWidgetVisible(button)  # a long panel may be scrolled down
     hand.click(button)

@@ -33,7 +33,7 @@ def long_job(person, request, root):
 
 
 def dialogs(person):
-    found = person.window.findChildren(person.widgets.QDialog, busy.NAME)
+    found = person.present(person.widgets.QDialog, busy.NAME)
     return [dialog for dialog in found if dialog.isVisible()]
 
 

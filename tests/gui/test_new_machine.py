@@ -297,7 +297,7 @@ def test_what_a_pendant_shows_is_what_the_wizard_reads():
 
 def test_what_was_entered_is_not_lost_without_a_question(person, hand, wizard):
     hand.do("key", "Escape")
-    person.until(lambda: not person.window.findChildren(person.widgets.QWizard), "the empty wizard to close")
+    person.until(lambda: not person.present(person.widgets.QWizard), "the empty wizard to close")
     person.click("RoboticAM_NewMachine")
     wizard = person.panel(NAME)
     hand.click(person.field(wizard, "source"))
@@ -313,7 +313,7 @@ def test_what_was_entered_is_not_lost_without_a_question(person, hand, wizard):
     assert wizard.isVisible() and page(wizard) == "LimitsPage"
     asked = person.will_answer("Discard")
     hand.click(wizard.button(person.widgets.QWizard.CancelButton))
-    person.until(lambda: not person.window.findChildren(person.widgets.QWizard), "the wizard to close")
+    person.until(lambda: not person.present(person.widgets.QWizard), "the wizard to close")
     assert len(asked) == 1
 
 

@@ -137,7 +137,7 @@ def test_undo_shows_what_solids_claddings_and_curves_are_made_of(person):
 
 def applies(person):
     """The button Apply of the panel that is open."""
-    boxes = [one for one in person.window.findChildren(person.widgets.QDialogButtonBox) if one.isVisible()]
+    boxes = [one for one in person.present(person.widgets.QDialogButtonBox) if one.isVisible()]
     return next(filter(None, (one.button(person.widgets.QDialogButtonBox.Apply) for one in boxes)))
 
 
@@ -225,7 +225,7 @@ def test_every_field_has_help(person, hemisphere, command):
         api.make_joint_path(hemisphere.Document, api.make_toolpath(hemisphere.Document, feature, cell), cell)
     person.click(f"RoboticAM_{command}")
     panel = next(
-        one for one in person.window.findChildren(person.widgets.QWidget)
+        one for one in person.present(person.widgets.QWidget)
         if one.objectName().startswith("RoboticAM_") and one.isVisible()
     )
     kinds = (person.widgets.QLineEdit, person.widgets.QComboBox, person.widgets.QCheckBox, person.widgets.QAbstractSpinBox)
@@ -421,7 +421,7 @@ def test_what_an_empty_field_wants_is_read_whole_in_a_narrow_panel(person, hemis
             fold.click()
     person.idle(0.3)
     cut, seen = [], 0
-    for edit in person.window.findChildren(person.widgets.QLineEdit):
+    for edit in person.present(person.widgets.QLineEdit):
         text = edit.placeholderText()
         if edit.isVisible() and text and not edit.text():
             seen += 1

@@ -32,7 +32,7 @@ def statuses(doc):
 
 
 def docks(person):
-    return [dock for dock in person.window.findChildren(person.widgets.QDockWidget)
+    return [dock for dock in person.present(person.widgets.QDockWidget)
             if dock.objectName().startswith("RoboticAM") and dock.isVisible()]
 
 

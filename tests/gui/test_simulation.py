@@ -388,7 +388,7 @@ def test_it_ends_by_itself_when_what_it_plays_goes_or_changes(person, hemisphere
     else:
         person.gui.runCommand("Std_ViewCreate")
         person.idle(0.3)
-        windows = person.window.findChildren(person.widgets.QMdiSubWindow)
+        windows = person.present(person.widgets.QMdiSubWindow)
         window = next(window for window in windows if doc.Label in window.windowTitle())
         window.close()
         person.idle(0.3)
@@ -400,7 +400,7 @@ def test_it_ends_by_itself_when_what_it_plays_goes_or_changes(person, hemisphere
         person.idle(0.2)
     if what != "view":
         assert docks._open == []
-        docs = [dock for dock in person.window.findChildren(person.widgets.QDockWidget, docks.NAME) if dock.isVisible()]
+        docs = [dock for dock in person.present(person.widgets.QDockWidget, docks.NAME) if dock.isVisible()]
         assert docs == []
     for one in docks._open:
         one.close()

@@ -19,7 +19,7 @@ def job(person, hemisphere):
     toolpath = api.make_toolpath(doc, feature, cell)
     api.make_program(doc, api.make_joint_path(doc, toolpath, cell), name="CUP")
     grouped(doc, "Job of a cup", api.stages_of(doc))
-    for dock in person.window.findChildren(person.widgets.QDockWidget):
+    for dock in person.present(person.widgets.QDockWidget):
         if dock.objectName() in ("Combo View", "Model", "Tree view"):
             dock.show()
             dock.raise_()
@@ -32,7 +32,7 @@ def open_up(person, label):
     match = person.core.Qt.MatchExactly | person.core.Qt.MatchRecursive
 
     def found():
-        trees = [tree for tree in person.window.findChildren(person.widgets.QTreeWidget) if tree.isVisible()]
+        trees = [tree for tree in person.present(person.widgets.QTreeWidget) if tree.isVisible()]
         return [item for tree in trees for item in tree.findItems(label, match)]
 
     for item in person.until(found, f"{label} in the tree", 5):

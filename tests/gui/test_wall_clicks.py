@@ -25,7 +25,7 @@ def bend(person, root):
     parts = [api.open_part(document, str(root / "resources" / "examples" / "tube-on-pipe.step")), pipe]
     for part, label in zip(parts, ("Bend on it", "Old pipe"), strict=True):
         part.Label = label
-    for dock in person.window.findChildren(person.widgets.QDockWidget):
+    for dock in person.present(person.widgets.QDockWidget):
         if dock.objectName() in ("Combo View", "Model", "Tree view"):
             dock.show()
     person.idle(0.4)
@@ -55,7 +55,7 @@ def previewed(person, panel):
 
 def ok(person, hand, name="Ok"):
     wanted = getattr(person.widgets.QDialogButtonBox, name)
-    boxes = [box for box in person.window.findChildren(person.widgets.QDialogButtonBox) if box.isVisible()]
+    boxes = [box for box in person.present(person.widgets.QDialogButtonBox) if box.isVisible()]
     hand.click(next(box.button(wanted) for box in boxes if box.button(wanted) is not None))
     person.panel_closed()
 

@@ -12,7 +12,7 @@ def shown(person):
     """What the window for help shows: the first line of its page, and the note above."""
 
     def look():
-        windows = [one for one in person.window.findChildren(person.widgets.QDialog, whats_this.NAME) if one.isVisible()]
+        windows = [one for one in person.present(person.widgets.QDialog, whats_this.NAME) if one.isVisible()]
         if not windows:
             return None
         note = person.field(windows[0], "note")
@@ -69,7 +69,7 @@ def test_links_lead_on_and_the_menu_leads_to_all_tools(person, hemisphere, shown
 
 
 def test_what_is_not_ours_is_left_to_freecad(person):
-    docks = person.window.findChildren(person.widgets.QDockWidget)
+    docks = person.present(person.widgets.QDockWidget)
     combo = next(dock for dock in docks if not dock.objectName().startswith("RoboticAM"))
     assert whats_this._ours(combo) == ("", "")
 

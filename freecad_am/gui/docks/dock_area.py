@@ -9,6 +9,8 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
+from ..widgets.present import present
+
 _TOLERANCE_PX = 3  # pixels that layouts round away
 _STABLE_MS = 300  # ms in which docks that stand still do not change
 _SIDE_AREAS = (QtCore.Qt.LeftDockWidgetArea, QtCore.Qt.RightDockWidgetArea)
@@ -117,7 +119,7 @@ class DockArea:
     def _seen(self) -> list[Any]:
         """The docks that stand there, without those behind others: Qt keeps these outside of the window."""
         window = Gui.getMainWindow()
-        docks = window.findChildren(QtGui.QDockWidget)
+        docks = present(window, QtGui.QDockWidget)
         return [one for one in docks if self._stands(one) and one.geometry().intersects(window.rect())]
 
     def _extent(self, dock: Any) -> int:
@@ -125,7 +127,7 @@ class DockArea:
         if self.across == QtCore.Qt.Horizontal:
             return int(dock.width())
         window, place = Gui.getMainWindow(), dock.geometry()
-        bars = [bar.geometry() for bar in window.findChildren(QtGui.QTabBar) if bar.parent() is window and bar.isVisible()]
+        bars = [bar.geometry() for bar in present(window, QtGui.QTabBar) if bar.parent() is window and bar.isVisible()]
         tabs = [bar.height() for bar in bars if bar.left() <= place.center().x() <= bar.right()
                 and place.adjusted(0, -_TOLERANCE_PX, 0, _TOLERANCE_PX).intersects(bar)]
         return int(place.height() + sum(tabs[:1]))

@@ -20,6 +20,7 @@ from ..texts.translation import translated, translated_error
 from ..widgets import fields
 from ..widgets.fold import Fold
 from ..widgets.messages import Messages
+from ..widgets.present import present
 
 
 class Noted:
@@ -148,12 +149,12 @@ class Noted:
 
 def lines_of(widget: Any) -> list[Any]:
     """The line edits of a field: itself, or those in it."""
-    return [widget] if isinstance(widget, QtGui.QLineEdit) else list(widget.findChildren(QtGui.QLineEdit))
+    return [widget] if isinstance(widget, QtGui.QLineEdit) else present(widget, QtGui.QLineEdit)
 
 
 def _bring_into_sight(form: Any, widget: Any) -> None:
     """Scroll the task panel to something in it."""
     with contextlib.suppress(RuntimeError):  # the panel is gone by now
-        for area in Gui.getMainWindow().findChildren(QtGui.QScrollArea):
+        for area in present(Gui.getMainWindow(), QtGui.QScrollArea):
             if widget is not None and area.isVisible() and area.isAncestorOf(form):
                 area.ensureWidgetVisible(widget)

@@ -19,6 +19,7 @@ from ..signals import connect
 from ..texts.translation import tr, translated_error
 from ..widgets.feature_order import FeatureOrder
 from ..widgets.fit_plot import FitPlot, fits_text, speeds_text
+from ..widgets.present import present
 from .stage import StagePanel
 
 MODEL, WIDTH = "process_bead_model", "process_bead_width"
@@ -104,7 +105,7 @@ class ToolpathPanel(StagePanel):
 
     def _scroll(self) -> None:
         """Bring the fit into sight, once it has its place."""
-        for area in Gui.getMainWindow().findChildren(QtGui.QScrollArea):
+        for area in present(Gui.getMainWindow(), QtGui.QScrollArea):
             if area.isVisible() and area.isAncestorOf(self.form):
                 area.ensureWidgetVisible(self.fit)
 

@@ -8,13 +8,14 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ..picking import picking
+from ..widgets.present import present
 
 
 def show_tooltips(title: str) -> None:
     """Let the entries of the menu show their tooltips, once FreeCAD has made it."""
 
     def show() -> None:
-        for menu in Gui.getMainWindow().menuBar().findChildren(QtGui.QMenu):
+        for menu in present(Gui.getMainWindow().menuBar(), QtGui.QMenu):
             if menu.title().replace("&", "") == title:
                 menu.setToolTipsVisible(True)
 

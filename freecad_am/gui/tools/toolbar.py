@@ -9,6 +9,8 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
+from ..widgets.present import present
+
 
 class _BarWidth(QtCore.QObject):
     """Looks at the bar whenever its room changes, as with the width of the window."""
@@ -41,6 +43,6 @@ def keep_whole(title: str) -> None:
 
 def _watch(title: str) -> None:
     with contextlib.suppress(RuntimeError):
-        for bar in Gui.getMainWindow().findChildren(QtGui.QToolBar):
+        for bar in present(Gui.getMainWindow(), QtGui.QToolBar):
             if bar.windowTitle() == title and not bar.findChildren(_BarWidth):
                 _BarWidth(bar).give()

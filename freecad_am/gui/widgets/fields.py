@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import html
 import re
 from collections.abc import Callable
@@ -19,6 +18,7 @@ from ...objects.fields.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, split
 from ..texts.translation import tr, translated
 from . import choices
 from .pendant import PendantLine
+from .present import present
 from .quantity import PlainQuantity, QuantityField
 
 _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
@@ -83,9 +83,8 @@ def make(
     """The field of a row that shows an inner value, or the expression it follows; `suggestions`: texts to choose from, and
     what is shown of each. The section, of a job file, is for its help."""
     field = _make(row, value, suggestions, expression)
-    for widget in (field.widget, *field.widget.findChildren(QtGui.QWidget)):
-        with contextlib.suppress(RuntimeError):  # a dead one, found at the same place in memory (docs/versions.md)
-            widget.setWhatsThis(whats_this(row, section))
+    for widget in (field.widget, *present(field.widget, QtGui.QWidget)):
+        widget.setWhatsThis(whats_this(row, section))
     return field
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 from ..colours import WRONG
+from .present import present
 
 WIDEST_LABEL = 96  # pixels; longer ones go on below
 LONGEST_ROW = 2  # fields beside a label; more go below it
@@ -83,11 +84,9 @@ class Fold:
         """A row of the form. Returns the note under the widget, hidden, for what is wrong with it."""
         name = QtGui.QLabel(label)
         name.setToolTip(widget.toolTip())
-        for one in (widget, *widget.findChildren(QtGui.QWidget), name):
-            # PySide takes a new child now and then for one that was deleted at its address; Qt then asks its parent for help
-            with contextlib.suppress(RuntimeError):
-                if not one.whatsThis():
-                    one.setWhatsThis(widget.whatsThis() or one.toolTip() or widget.toolTip())
+        for one in (widget, *present(widget, QtGui.QWidget), name):
+            if not one.whatsThis():  # of one that is not, Qt asks its parent for help
+                one.setWhatsThis(widget.whatsThis() or one.toolTip() or widget.toolTip())
         note = Note()
         note.setObjectName(f"{widget.objectName()}Note")
         note.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")

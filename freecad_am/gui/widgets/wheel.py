@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-import contextlib
 from typing import Any
 
 from PySide import QtCore, QtGui
+
+from .present import present
 
 
 class _Guard(QtCore.QObject):
@@ -27,9 +28,8 @@ _guard = _Guard()
 def scrolls(form: Any) -> None:
     """Let the wheel scroll over all fields of a panel; by default it would give them the focus, and turn their values."""
     for kind in (QtGui.QAbstractSpinBox, QtGui.QComboBox, QtGui.QAbstractSlider):
-        for field in form.findChildren(kind):
-            with contextlib.suppress(RuntimeError):  # a dead one, found at the same place in memory (docs/versions.md)
-                _scrolls(field)
+        for field in present(form, kind):
+            _scrolls(field)
 
 
 def _scrolls(field: Any) -> None:

@@ -267,7 +267,7 @@ class Lesson:
     def ok(self, name="Ok"):
         """A button at the top of a task panel."""
         wanted = getattr(self.person.widgets.QDialogButtonBox, name)
-        boxes = self.person.window.findChildren(self.person.widgets.QDialogButtonBox)
+        boxes = self.person.present(self.person.widgets.QDialogButtonBox)
         button = next(box.button(wanted) for box in boxes if box.isVisible() and box.button(wanted) is not None)
         self.hand.click(button)
         for box in boxes:  # what Python keeps of them would stand for whatever comes to be at their place later
@@ -293,7 +293,7 @@ class Lesson:
         self.hand.click(dock.findChild(self.person.widgets.QAbstractButton, "qt_dockwidget_closebutton"))
 
         def gone():
-            docks = self.person.window.findChildren(self.person.widgets.QDockWidget, name)
+            docks = self.person.present(self.person.widgets.QDockWidget, name)
             return not any(one.isVisible() for one in docks)
 
         self.person.until(gone, f"{name} to close", 5)
@@ -349,7 +349,7 @@ def lesson(person, hand, request):
     view.SetUnsigned("BackgroundColor", GROUND)
     for name, value in PLAIN.items():
         view.SetBool(name, value)
-    docks = person.window.findChildren(person.widgets.QDockWidget)
+    docks = person.present(person.widgets.QDockWidget)
     hidden = [dock for dock in docks if dock.objectName() in NOISY and dock.isVisible()]
     for dock in hidden:
         dock.hide()
