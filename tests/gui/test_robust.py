@@ -64,7 +64,7 @@ def use_everything(person, doc, renewed=None):
     person.gui.runCommand("RoboticAM_Path")
     person.idle()
     for name in ("RoboticAM_PathDock", "RoboticAM_ProgramText", "RoboticAM_Simulation"):
-        for widget in person.window.findChildren(person.widgets.QWidget, name):
+        for widget in person.present(person.widgets.QWidget, name):
             widget.close()
     person.idle()
 
@@ -212,7 +212,9 @@ def test_closed_panels_leave_nothing_behind(person, job, coarse):
         return [obj for obj in gc.get_objects() if wraps[type(obj)]]
 
     def dead():
-        return [obj for obj in [*(one() for one in old), *wrappers()] if obj is not None and not person.qt.isValid(obj)]
+        """Their types: who has them has the rest of their panel."""
+        held = [*(one() for one in old), *wrappers()]
+        return [type(obj).__name__ for obj in held if obj is not None and not person.qt.isValid(obj)]
 
     def press(name):
         """Not by what the main window finds, which it keeps."""
@@ -246,8 +248,7 @@ def test_closed_panels_leave_nothing_behind(person, job, coarse):
                         break
                     person.idle(0.2)
                     left = dead()
-                assert len(left) <= before, (command, standard_button, {type(obj).__name__ for obj in left[before:]})
-                del left
+                assert len(left) <= before, (command, standard_button, set(left[before:]))
     finally:
         gc.unfreeze()
         gc.enable()
