@@ -300,7 +300,9 @@ def in_window(freecad: str, arguments: list[str]) -> tuple[int, str, list[str]]:
         env["PYTEST_ARGUMENTS"] = shlex.join(arguments)
         env["FAILED_TESTS"], env["LAST_TEST"] = str(noted), str(last)
         env.pop("VIRTUAL_ENV", None)
-        window = ["xvfb-run", "-a", "-s", SCREEN, "timeout", "-k", "5", str(WINDOW_TIMEOUT)]
+        # with a folder of its own it would end with a status of its own where it cannot remove that
+        screen = ["xvfb-run", "-a", "-f", str(Path(folder) / "Xauthority"), "-s", SCREEN]
+        window = [*screen, "timeout", "-k", "5", str(WINDOW_TIMEOUT)]
         status, text = watched([*window, freecad, str(ROOT / "tests" / "gui_runner.py")], env)
         failed = list(dict.fromkeys(noted.read_text(encoding="utf-8").splitlines())) if noted.exists() else []
         if status and not any(counts(text).values()):
