@@ -11,7 +11,7 @@ from ..core.issues import AmError
 from ..objects import stage as stages
 from ..objects.fields.settings import given
 from ..objects.program import Program
-from ..objects.shapes.chosen_faces import FaceStage
+from ..objects.shapes.chosen import FeatureStage
 from ..objects.staleness import UP_TO_DATE
 from .steps import checked_stage, in_order, one_step, renew, with_faces
 
@@ -43,8 +43,9 @@ def change(obj: Any, **values: Any) -> Any:
         given(obj, proxy, [], values)
         for property_name, value in chosen.items():
             setattr(obj, property_name, value)
-        if "Source" in chosen and isinstance(proxy, FaceStage):
-            proxy.confirm(obj)
+        for link in proxy.chosen if isinstance(proxy, FeatureStage) else ():
+            if link in chosen:
+                proxy.confirm(obj, link)
         renew(obj)
         for follower in in_order(obj.InListRecursive):
             with contextlib.suppress(AmError):

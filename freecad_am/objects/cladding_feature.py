@@ -16,11 +16,11 @@ from ..core.parameters.filled import CladdingParameters
 from ..core.strategies import size
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
-from .shapes.chosen_faces import FaceStage, source_of
+from .shapes.chosen import FeatureStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
 
-class CladdingFeature(FaceStage):
+class CladdingFeature(FeatureStage):
     """Result: core.geometry.walls.clad_faces.CladFaces, in the coordinates of the document."""
 
     kind = "feature"

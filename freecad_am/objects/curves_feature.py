@@ -12,12 +12,12 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import CurvesParameters
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
-from .stage import Stage
+from .shapes.chosen import FeatureStage, names_of
 from .stage_parts import Link, Outcome, Section, Work
 from .table_part import points_of
 
 
-class CurvesFeature(Stage):
+class CurvesFeature(FeatureStage):
     """Result: core.geometry.curves.bead_curves.Curves, in the coordinates of the document."""
 
     kind = "feature"
@@ -71,5 +71,4 @@ def _source(obj: Any) -> tuple[Any, tuple[str, ...]]:
     """The object of Source and the names of the edges and faces chosen. InputError NO_INPUT."""
     if not obj.Source:
         raise InputError("NO_INPUT", obj.Label, "Source is missing; choose edges, a wire, a sketch or a table of points")
-    source, names = obj.Source
-    return source, tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name)
+    return obj.Source[0], names_of(obj.Source)

@@ -21,11 +21,11 @@ from ..core.slicing.solids.standing import hub_among, on_hub
 from ..core.strategies import size
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, Taken, bodies, fixtures_of, taken
-from .shapes.chosen_faces import FaceStage, source_of
+from .shapes.chosen import FeatureStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
 
-class DevelopableFeature(FaceStage):
+class DevelopableFeature(FeatureStage):
     """Result: core.geometry.on_hub.SolidsOnHub, in the coordinates of the document."""
 
     kind = "feature"

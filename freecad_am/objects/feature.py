@@ -16,11 +16,11 @@ from ..core.parameters.strategy import RevolutionParameters
 from ..core.strategies import size
 from .results.fingerprints import digits, fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape
-from .shapes.chosen_faces import FaceStage, source_of
+from .shapes.chosen import FeatureStage, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
 
-class RevolutionFeature(FaceStage):
+class RevolutionFeature(FeatureStage):
     """Result: core.geometry.curves.profile.RevolvedWall, in the coordinates of the document."""
 
     kind = "feature"

@@ -18,12 +18,11 @@ from ..core.parameters.filled import SolidParameters
 from ..core.strategies import size
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, taken
-from .shapes.chosen_faces import source_of
-from .stage import Stage
+from .shapes.chosen import FeatureStage, names_of, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
 
-class SolidFeature(Stage):
+class SolidFeature(FeatureStage):
     """Result: core.geometry.on_hub.SolidsOnHub with a plane as its base, in the coordinates of the document."""
 
     kind = "feature"
@@ -113,8 +112,8 @@ def _picked(
         return None
     if strategy.layers not in layers:
         raise InputError("NOT_FOR_FAMILY", f"{obj.Label}.{name}", refusal)
-    owner, names = getattr(obj, name)
+    owner = getattr(obj, name)[0]
     if getattr(owner, "Mesh", None) is not None:
         raise InputError("NO_SHAPE", f"{obj.Label}.{name}", "{} is a mesh, which has no edges or faces; choose a shape",
                          owner.Label)
-    return global_shape(owner), tuple(one.rsplit(".", maxsplit=1)[-1] for one in names if one), owner.Label
+    return global_shape(owner), names_of(getattr(obj, name)), owner.Label

@@ -15,11 +15,11 @@ from ..core.parameters.strategy import FRONTS, SurfaceParameters
 from ..core.strategies import size
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, taken
-from .shapes.chosen_faces import FaceStage, source_of
+from .shapes.chosen import FeatureStage, names_of, source_of
 from .stage_parts import Link, Outcome, Section, Work
 
 
-class SurfaceFeature(FaceStage):
+class SurfaceFeature(FeatureStage):
     """Result: SurfaceWall or PatchWall of core.geometry, in the coordinates of the document."""
 
     kind = "feature"
@@ -82,8 +82,7 @@ def _start_edges(obj: Any) -> tuple[str, ...]:
     """Names of the edges chosen. InputError 'BAD_EDGES' for those of another object, and for what is not an edge."""
     if not obj.StartEdges:
         return ()
-    owner, names = obj.StartEdges
-    names = tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name)
+    owner, names = obj.StartEdges[0], names_of(obj.StartEdges)
     wrong = [name for name in names if not name.startswith("Edge")]
     if wrong or not names or owner != obj.Source[0]:
         text = ", ".join(wrong) or owner.Label

@@ -5192,7 +5192,7 @@
         <translation>Source manque ; choisissez des arêtes, un fil, une esquisse ou un tableau de points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>Source is missing; choose the shape to deposit, or some of its faces</source>
         <translation>Source manque ; choisissez la forme à déposer, ou certaines de ses faces</translation>
     </message>
@@ -6812,7 +6812,12 @@
         <translation>une couche courbe ne se met pas à plat sans distorsion : des cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que le pas des cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>a free-form curve</source>
+        <translation>une courbe de forme libre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>a free-form surface</source>
         <translation>une surface de forme libre</translation>
     </message>
@@ -7072,6 +7077,11 @@
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>a straight line</source>
+        <translation>une droite</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>a temperature is waited for otherwise</source>
         <translation>une température est attendue autrement</translation>
@@ -7320,6 +7330,11 @@
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>an element of {0} is longer than {1} MB</source>
         <translation>un élément de {0} dépasse {1} Mo</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>an ellipse</source>
+        <translation>une ellipse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -14042,7 +14057,7 @@
         <translation>{0} n&apos;est pas une face de {1} ; choisissez des faces du moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>{0} is not a face; choose faces or the whole shape</source>
         <translation>{0} n&apos;est pas une face ; choisissez des faces ou toute la forme</translation>
     </message>
@@ -14417,7 +14432,12 @@
         <translation>{0} n&apos;est pas le nom du fichier, {1} ; renommez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>{0} is not there any more since the part changed; choose the edges again</source>
+        <translation>{0} n’existe plus depuis que la pièce a changé ; choisissez les arêtes à nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>{0} is not there any more since the part changed; choose the faces again</source>
         <translation>{0} n’existe plus depuis que la pièce a changé ; choisissez les faces à nouveau</translation>
     </message>
@@ -14817,7 +14837,12 @@
         <translation>{0} de {1} est choisie, sur laquelle se dresse le reste</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>{0} of {1} is not the edge that was chosen: that edge is {2} now, as FreeCAD numbers edges anew when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
+        <translation>{0} de {1} n’est pas l’arête choisie : celle-ci est maintenant {2}, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>{0} of {1} is not the face that was chosen: that face is {2} now, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} n’est pas la face choisie : celle-ci est maintenant {2}, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
@@ -14832,7 +14857,12 @@
         <translation>{0} couches sur {1} ne sont pas partout de la hauteur demandée : la couche {2} a {3} à {4} mm, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, et il faudrait {8} % : augmentez-le, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>{0} of {1} lies another way than when it was chosen, so it may be another edge, as FreeCAD numbers edges anew when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
+        <translation>{0} de {1} est orientée autrement que lorsqu’elle a été choisie, c’est donc peut-être une autre arête, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>{0} of {1} lies another way than when it was chosen, so it may be another face, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} est orientée autrement que lorsqu’elle a été choisie, c’est donc peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
@@ -14857,7 +14887,12 @@
         <translation>{0} de {1} solides ou groupes de solides ne reçoivent qu&apos;une couche, sur le moyeu : ils ne sont pas plus hauts que strategy.layer_height, {2} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/chosen_faces.py"/>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>{0} of {1} was {2} when it was chosen and is {3} now, so it may be another edge, as FreeCAD numbers edges anew when a part changes; choose the edges again, or confirm them: OK in the panel with nothing else entered</source>
+        <translation>{0} de {1} était {2} quand elle a été choisie et est maintenant {3}, c’est donc peut-être une autre arête, car FreeCAD renumérote les arêtes quand une pièce change ; choisissez les arêtes à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>{0} of {1} was {2} when it was chosen and is {3} now, so it may be another face, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} était {2} quand elle a été choisie et est maintenant {3}, c’est donc peut-être une autre face, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>

@@ -17,7 +17,7 @@ from ...core.issues import AmError, InputError
 from ...objects.fields import expressions, preferences
 from ...objects.fields.link_targets import is_there
 from ...objects.fields.rows import group_of, rows
-from ...objects.shapes.chosen_faces import is_warned
+from ...objects.shapes.chosen import is_warned
 from ...objects.stage import Stage
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
@@ -218,7 +218,7 @@ class StagePanel(Noted):
                 function = self.function or f"make_{self.proxy.kind.replace(' ', '_')}"
                 recorded.make(self.document, function, {**chosen, **changed})
             elif changed or chosen != self.first_inputs or is_warned(self.obj):
-                # faces that are no longer those that were chosen are confirmed by OK, where nothing else was entered
+                # what is no longer what was chosen is confirmed by OK, where nothing else was entered
                 inputs = chosen if chosen != self.first_inputs or not changed else {}
                 recorded.change(self.obj, {**inputs, **changed})
         except AmError as error:
