@@ -61,6 +61,14 @@ def test_all_texts_are_collected(collected, french):
         assert now == shipped, f"{context}: new {sorted(now - shipped)}, gone {sorted(shipped - now)}; {UPDATE}"
 
 
+def test_texts_that_are_whole_where_they_are_made_are_there(french):
+    """Of one word too, such as `a plane` in what is told of a face."""
+    made = {text: str(path.name) for path in (ROOT / "freecad_am").rglob("*.py")
+            for text in re.findall(r'\bText\("([^"{}]*[a-z]{2}[^"{}]*)"\)', path.read_text(encoding="utf-8"))}
+    assert "a plane" in made and len(made) > 10
+    assert {text: where for text, where in made.items() if text not in french["RoboticAM"]} == {}
+
+
 def test_french_is_complete(french):
     missing = [source for texts in french.values() for source, told in texts.items() if not told]
     assert not missing, f"{UPDATE}: {missing}"

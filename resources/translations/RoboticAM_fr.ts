@@ -6787,9 +6787,19 @@
         <translation>une cellule avec {0} n&apos;a pas de {1} qui place la pièce ; utilisez {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>a circle</source>
+        <translation>un cercle</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>a comment that may be carried out, or a line that is too long</source>
         <translation>un commentaire qui peut être exécuté, ou une ligne trop longue</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>a cone</source>
+        <translation>un cône</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
@@ -6810,6 +6820,11 @@
         <location filename="../../freecad_am/core/layers/curved/field.py"/>
         <source>a curved layer cannot be laid flat without distortion: beads are up to {0} % nearer together or farther apart than the bead spacing</source>
         <translation>une couche courbe ne se met pas à plat sans distorsion : des cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que le pas des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>a cylinder</source>
+        <translation>un cylindre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
@@ -6947,6 +6962,11 @@
         <translation>un pourcentage comme 20 %</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>a plane</source>
+        <translation>un plan</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli/moves.py"/>
         <source>a point of {0} asks for another configuration of the arm</source>
         <translation>un point de {0} demande une autre configuration du bras</translation>
@@ -7067,6 +7087,11 @@
         <translation>une vitesse comme 6 mm/s ou 360 mm/min</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>a sphere</source>
+        <translation>une sphère</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>a spiral has no layers to wait between; use path: layers, a slower process.travel_speed, or leave it out</source>
         <translation>une spirale n&apos;a pas de couches entre lesquelles attendre ; utilisez path: layers, une process.travel_speed plus lente, ou retirez cette clé</translation>
@@ -7095,6 +7120,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>a toolpath has no joints yet; choose a joint path</source>
         <translation>une trajectoire d&apos;outil n&apos;a pas encore d&apos;articulations ; choisissez une trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/chosen.py"/>
+        <source>a torus</source>
+        <translation>un tore</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -11515,6 +11545,16 @@
         <location filename="../../freecad_am/core/planning/program/linear_approach.py"/>
         <source>the deposit begins with a linear move onto the bead, which would leave the way that was looked at by {0} mm; give a shorter retract distance, or another {1}</source>
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, qui s&apos;écarterait de {0} mm du chemin examiné ; donnez une distance de retrait plus courte, ou un autre {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/switched.py"/>
+        <source>the deposit is still on where the program ends</source>
+        <translation>le dépôt est encore en marche là où le programme se termine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/switched.py"/>
+        <source>the deposit is switched on where it is on already</source>
+        <translation>le dépôt est mis en marche là où il l’est déjà</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>

@@ -191,7 +191,7 @@ class Templates:
         texts = call.args[2:] if called(call) in ERRORS else call.args if called(call) == "Text" else []
         if called(call) == "joined" and isinstance(call.args[0], ast.Constant):
             return [[None, call.args[0].value, None]]
-        first = texts[:1] if len(texts) > 1 else []
+        first = texts[:1] if len(texts) > 1 or called(call) == "Text" else []
         return [
             case for text in ast.walk(first[0]) if isinstance(text, ast.Constant) and isinstance(text.value, str)
             for case in self._cases(text.value, texts[1:], module.around[id(call)])
@@ -238,7 +238,7 @@ class Templates:
 
 def _is_made(call: ast.Call) -> bool:
     """Whether a call makes a Text of a template that is written there."""
-    return called(call) == "Text" and len(call.args) > 1 and isinstance(call.args[0], ast.Constant)
+    return called(call) == "Text" and call.args != [] and isinstance(call.args[0], ast.Constant)
 
 
 @cache
