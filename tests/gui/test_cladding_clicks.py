@@ -64,35 +64,3 @@ def test_a_bent_face_is_tinted_by_the_triangles_that_are_on_screen(person):
     assert {tuple(sorted(map(tuple, np.round(one, 3)))) for one in points[corners]} <= seen
     area = 0.5 * np.linalg.norm(np.cross(*np.diff(points[corners], axis=1).transpose(1, 0, 2)), axis=1).sum()
     assert math.isclose(area, part.Shape.Faces[face].Area, rel_tol=0.02)  # all of it
-
-
-def test_faces_that_are_numbered_anew_are_confirmed_by_ok(person):
-    doc = App.newDocument("Cladding")
-    block = doc.addObject("Part::Feature", "Block")
-    shape = Part.makeBox(40, 30, 20)
-    block.Shape = shape
-    doc.recompute()
-    feature = api.make_cladding_feature(doc, block, ["Face6"], layers=1, layer_height=2.0, bead_spacing=6.0)
-    block.Shape = Part.Solid(Part.Shell([shape.Faces[k] for k in (5, 0, 1, 2, 3, 4)]))
-    api.recompute(doc)
-
-    def warned():
-        return "FACES_CHANGED" in feature.Issues
-
-    assert warned() and feature.Status == "up to date"
-    person.double_click(feature)
-    panel = person.panel("RoboticAM_CladdingFeature")
-    person.until(lambda: "is not the face that was chosen" in person.field(panel, "findings").text(), "the warning")
-    person.screenshot("faces_changed")
-    person.type(panel, "Layers", "2")
-    person.press("Ok")
-    person.panel_closed()
-    assert feature.Layers == 2 and warned()  # something else was changed
-    person.double_click(feature)
-    person.panel("RoboticAM_CladdingFeature")
-    person.press("Ok")
-    person.panel_closed()
-    assert not warned()
-    person.gui.runCommand("Std_Undo")
-    person.idle()
-    assert warned()
