@@ -25,7 +25,6 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .core.geometry.curves.bead_curves import POINT_FILES
 from .core.issues import InputError, Issue
 from .core.kinematics.arrangement import OF_ROBOTS
 from .core.kinematics.proposed_cell import cell_of
@@ -38,6 +37,7 @@ from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
 from .core.parameters.scan import ScanParameters
+from .macro.arguments import checked_document, checked_path
 from .macro.changes import change, recompute
 from .macro.export import (
     export,
@@ -57,6 +57,7 @@ from .macro.features import (
     make_solid_feature,
     make_surface_feature,
 )
+from .macro.parts import open_part
 from .macro.scan import make_scan
 from .macro.steps import checked_stage, in_order, make_stage, one_step
 from .macro.suit import in_vain, on_platform, refuse_otherwise, suit
@@ -143,7 +144,8 @@ def inspect(
     """
     from .objects.inspection import Inspection
 
-    return make_stage(doc, Inspection, "Inspection", label, {"Planned": planned, "File": file}, [inspection], values)
+    links = {"Planned": planned, "File": checked_path(file, "file")}
+    return make_stage(doc, Inspection, "Inspection", label, links, [inspection], values)
 
 
 @one_thread()
@@ -210,7 +212,7 @@ def read_cell(file: str) -> CellParameters:
     """
     from .sections import cell as saved
 
-    return saved.of_file(os.path.abspath(file).strip())
+    return saved.of_file(os.path.abspath(checked_path(file, "cell")).strip())
 
 
 def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
@@ -267,34 +269,5 @@ def stages_of(doc: Any, kind: str = "") -> list[Any]:
 
     Those that a FreeCAD without the workbench has saved as plain objects are stages again.
     """
-    revive(doc)
+    revive(checked_document(doc))
     return [obj for obj in in_order(doc.Objects) if kind in ("", obj.Proxy.kind)]
-
-
-def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
-    """A part file as an object of the document: STEP, IGES, BREP, an object (Name or Label) of an FCStd file; or a mesh
-    (STL, OBJ, 3MF): solids on a hub, or what a wall grows on or is kept clear of; or a table of points (CSV), G-code of a
-    slicer or a toolpath of AdaOne (.ada3dp), which are laid as beads.
-
-    scale: mm of one unit of an STL or OBJ file, which do not tell it. `am.open_part(doc, "cup.step")`
-    """
-    if path.lower().endswith(tuple(POINT_FILES)):
-        from .objects.table_part import open_points
-
-        with one_step(doc, "Open part"):
-            table = open_points(doc, path)
-            table.purgeTouched()
-        return table
-    from .objects.shapes.part_file import part_shape
-
-    shape, label = part_shape(path, object, scale)
-    with one_step(doc, "Open part"):
-        is_mesh = hasattr(shape, "Topology")
-        part = doc.addObject("Mesh::Feature" if is_mesh else "Part::Feature", "Part")
-        part.Label = label
-        setattr(part, "Mesh" if is_mesh else "Shape", shape)
-        if is_mesh:
-            part.addProperty("App::PropertyLength", "FileScale", "Part", "How long one unit of the file is.", 1)
-            part.FileScale = scale
-        part.purgeTouched()
-    return part

@@ -13,6 +13,7 @@ from ..objects.fields.settings import given
 from ..objects.program import Program
 from ..objects.shapes.chosen import FeatureStage
 from ..objects.staleness import UP_TO_DATE
+from .arguments import checked_document
 from .steps import checked_stage, in_order, one_step, renew, with_faces
 
 
@@ -70,7 +71,7 @@ def recompute(target: Any, force: bool = False) -> None:
 
     force: compute even what fits its inputs. `am.recompute(doc)`
     """
-    document = target if hasattr(target, "Objects") else target.Document
+    document = checked_document(getattr(target, "Document", target), "target")
     with one_step(document, "Recompute"):
         with stages.deferred():
             document.recompute()

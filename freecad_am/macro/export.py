@@ -9,6 +9,7 @@ from typing import Any
 from ..core.issues import InputError, Text
 from ..core.one_thread import one_thread
 from ..posts import written
+from .arguments import checked_path
 from .steps import checked_stage, one_step
 
 
@@ -18,6 +19,7 @@ def export(program: Any, folder: str) -> list[str]:
 
     Parts that an earlier, longer program of this name has left there are removed. `am.export(doc.Program, "out")`
     """
+    folder = checked_path(folder, "folder")
     if checked_stage(program).kind == "inspection":
         from ..objects.inspection import files_of_figures as files_of
     else:
@@ -38,7 +40,7 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
     """
     from ..interop import export as interop
 
-    return interop.write_wires(obj, path, rapids)
+    return interop.write_wires(obj, checked_path(path, "path"), rapids)
 
 
 def export_cell(cell: Any, path: str) -> str:
@@ -48,7 +50,7 @@ def export_cell(cell: Any, path: str) -> str:
     """
     from ..interop import export as interop
 
-    return interop.write_cell(cell, path)
+    return interop.write_cell(cell, checked_path(path, "path"))
 
 
 def export_waypoints(obj: Any, path: str) -> str:
@@ -58,7 +60,7 @@ def export_waypoints(obj: Any, path: str) -> str:
     """
     from ..interop import export as interop
 
-    return interop.write_waypoints(obj, path)
+    return interop.write_waypoints(obj, checked_path(path, "path"))
 
 
 @one_thread()
@@ -70,6 +72,7 @@ def export_report(obj: Any, path: str) -> str:
     from ..interop import export as interop
     from ..report.of_document import reported
 
+    path = checked_path(path, "path")
     return interop.write_page(path, reported(obj), obj.Label)
 
 

@@ -10,6 +10,7 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters, DevelopableParameters, SolidParameters
 from ..core.parameters.strategy import CurvesParameters, RevolutionParameters, SurfaceParameters
 from ..objects.planned.feature_kinds import proxy_of
+from .arguments import checked_document
 from .steps import make_stage, with_faces
 
 
@@ -34,6 +35,7 @@ def make_feature_of(
 ) -> Any:
     """A feature of any family, by its kind. links: by property name, of which those count that the family has; `StartEdges`
     and `BaseFaces` are names alone. parameters: dataclasses of its sections; values: single ones by key."""
+    checked_document(doc)
     proxy = proxy_of(kind)
     known = {link.name for link in proxy.links}
     given_links = {"Source": with_faces(source, faces), **(links or {})}

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..core.issues import InputError
 from ..core.parameters.inspection import AUTO, BEST, NONE
+from .arguments import checked_document, checked_path
 from .steps import make_stage, one_step
 
 
@@ -25,6 +26,8 @@ def make_scan(
     from ..objects.inspection import Inspection
     from ..objects.shapes.bodies import taken
 
+    checked_document(doc)
+    file = checked_path(file, "file")
     body = taken(substrate).body()
     measured = point_file.read(file, unit)
     scan_checks.refuse_size(measured.points, measured.label, body)

@@ -12,6 +12,7 @@ import FreeCAD as App
 from ..core.issues import InputError
 from ..objects import stage as stages
 from ..objects.fields.settings import given
+from .arguments import checked_document
 
 
 def make_stage(
@@ -63,7 +64,11 @@ def in_order(objects: Sequence[Any]) -> list[Any]:
 
 @contextlib.contextmanager
 def one_step(doc: Any, name: str) -> Iterator[None]:
-    """One step of undo, taken back whole when it fails; part of the step that is open, if there is one."""
+    """One step of undo, taken back whole when it fails; part of the step that is open, if there is one.
+
+    InputError BAD_INPUT for what is not a document.
+    """
+    checked_document(doc)
     if App.getActiveTransaction() or not doc.UndoMode:
         yield
         return

@@ -364,7 +364,7 @@
         <translation>Combien de temps a pris le calcul.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/api.py"/>
+        <location filename="../../freecad_am/macro/parts.py"/>
         <source>How long one unit of the file is.</source>
         <translation>Longueur d&apos;une unité du fichier.</translation>
     </message>
@@ -14092,6 +14092,11 @@
         <translation>{0} n&apos;est pas une direction ; {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} is not a document; give one, such as FreeCAD.ActiveDocument</source>
+        <translation>{0} n’est pas un document ; donnez-en un, tel que FreeCAD.ActiveDocument</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
         <source>{0} is not a face of {1}; choose faces of the hub</source>
         <translation>{0} n&apos;est pas une face de {1} ; choisissez des faces du moyeu</translation>
@@ -14185,6 +14190,11 @@
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>{0} is not a pair of points; give x y z &gt; x y z in mm</source>
         <translation>{0} n&apos;est pas une paire de points ; donnez x y z &gt; x y z en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} is not a path; give one as a text, such as &quot;cup.step&quot;</source>
+        <translation>{0} n’est pas un chemin ; donnez-en un sous forme de texte, tel que &quot;cup.step&quot;</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/cell.py"/>

@@ -106,6 +106,31 @@ def test_missing_inputs_are_told(doc, part):
         api.result(part)
 
 
+def test_what_is_not_a_document_or_a_path_is_refused_by_name(doc, part):
+    for call, where in (
+        (lambda: api.open_part("a.step", doc), "doc"), (lambda: api.open_part(doc, part), "path"),
+        (lambda: api.open_part(None, "a.csv"), "doc"), (lambda: api.make_cell(part), "doc"),
+        (lambda: api.make_surface_feature(part, ["Face1"], part), "doc"), (lambda: api.make_toolpath(part, doc), "doc"),
+        (lambda: api.make_all(part, doc), "doc"), (lambda: api.make_all(doc, part, cell=part), "cell"),
+        (lambda: api.make_scan(part, doc, "a.ply"), "doc"), (lambda: api.make_scan(doc, "a.ply", part), "file"),
+        (lambda: api.inspect(doc, "a.csv", part), "file"), (lambda: api.read_cell(part), "cell"),
+        (lambda: api.stages_of(part), "doc"), (lambda: api.recompute("Feature"), "target"),
+        (lambda: api.export("out", part), "folder"), (lambda: api.export_cell("a.yaml", part), "path"),
+        (lambda: api.export_wires("a.dxf", part), "path"), (lambda: api.export_waypoints("a.csv", part), "path"),
+        (lambda: api.export_report("a.html", part), "path"),
+    ):
+        with pytest.raises(InputError) as caught:
+            call()
+        assert (caught.value.code, caught.value.where) == ("BAD_INPUT", where)
+    with pytest.raises(InputError) as caught:
+        api.open_part("cup.step", doc)
+    assert caught.value.line() == (
+        "error[BAD_INPUT] doc: 'cup.step' is not a document; give one, such as FreeCAD.ActiveDocument")
+    with pytest.raises(InputError, match=f"path: {part.Label} is not a path; give one as a text"):
+        api.open_part(doc, part)
+    assert [obj.Name for obj in doc.Objects] == [part.Name]
+
+
 def test_stale_inputs_are_renewed_by_what_is_made_from_them(doc, part):
     feature = api.make_feature(doc, part, layer_height=10)
     feature.LayerHeight = 20

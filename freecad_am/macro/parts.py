@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Part files as objects of a document."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..core.geometry.curves.bead_curves import POINT_FILES
+from .arguments import checked_document, checked_path
+from .steps import one_step
+
+
+def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
+    """A part file as an object of the document: STEP, IGES, BREP, an object (Name or Label) of an FCStd file; or a mesh
+    (STL, OBJ, 3MF): solids on a hub, or what a wall grows on or is kept clear of; or a table of points (CSV), G-code of a
+    slicer or a toolpath of AdaOne (.ada3dp), which are laid as beads.
+
+    scale: mm of one unit of an STL or OBJ file, which do not tell it. `am.open_part(doc, "cup.step")`
+    """
+    checked_document(doc)
+    path = checked_path(path, "path")
+    if path.lower().endswith(tuple(POINT_FILES)):
+        from ..objects.table_part import open_points
+
+        with one_step(doc, "Open part"):
+            table = open_points(doc, path)
+            table.purgeTouched()
+        return table
+    from ..objects.shapes.part_file import part_shape
+
+    shape, label = part_shape(path, object, scale)
+    with one_step(doc, "Open part"):
+        is_mesh = hasattr(shape, "Topology")
+        part = doc.addObject("Mesh::Feature" if is_mesh else "Part::Feature", "Part")
+        part.Label = label
+        setattr(part, "Mesh" if is_mesh else "Shape", shape)
+        if is_mesh:
+            part.addProperty("App::PropertyLength", "FileScale", "Part", "How long one unit of the file is.", 1)
+            part.FileScale = scale
+        part.purgeTouched()
+    return part
