@@ -23,8 +23,10 @@ def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
     below = (points[:, 2] < -ROUNDED) & (np.hypot(points[:, 0], points[:, 1]) < 0.5 * cell.platform_diameter)
     if not below.any():
         return []
-    low = int(np.where(below, points[:, 2], np.inf).argmin())
-    return [error_at(
-        "INTO_PLATFORM", Text("the nozzle deposits at {} points below the platform, here {:.3g} mm; correct their "
-            "heights, or the cell's platform", int(below.sum()), -points[low, 2]), motion, int(rows[low]),
-    )]
+    low, count = int(np.where(below, points[:, 2], np.inf).argmin()), int(below.sum())
+    text = Text(
+        "the nozzle deposits at 1 point below the platform, by {1:.3g} mm; correct its height, or the cell's platform"
+        if count == 1 else "the nozzle deposits at {0} points below the platform, here {1:.3g} mm; correct their heights, "
+        "or the cell's platform", count, -points[low, 2],
+    )
+    return [error_at("INTO_PLATFORM", text, motion, int(rows[low]))]

@@ -6,6 +6,7 @@ from __future__ import annotations
 from html import escape
 from typing import Any
 
+from ..core.preflight.promise import amount
 from .tables import figure_text
 from .turned.columns import Shown
 
@@ -44,9 +45,9 @@ def preflight(promises: list[dict[str, Any]], shown: Shown) -> str:
     for one in promises:
         mark, word = _MARKS[one["ok"]]
         where = "" if one["place"] is None else place_of(one["place"], shown)
-        worst = "" if one["worst"] is None else f"{figure_text(one['worst'])} {one['unit']}".strip()
+        worst = "" if one["worst"] is None else amount(one["worst"], one["unit"], figure_text)
         sign = "\u2265" if one["at_least"] else "\u2264"
-        bound = "" if one["bound"] is None else f"{sign} {figure_text(one['bound'])} {one['unit']}".strip()
+        bound = "" if one["bound"] is None else f"{sign} {amount(one['bound'], one['unit'], figure_text)}"
         rows.append(
             f'<tr><td class="{mark}">{word}</td><td class="text">{escape(one["promise"])}</td><td>{worst}</td>'
             f'<td>{bound}</td><td class="place">{where}</td><td class="text">{escape(one["how"])}</td></tr>'

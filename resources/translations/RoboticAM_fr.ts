@@ -1402,6 +1402,16 @@
         <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez `scale: {3} mm` avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/promise.py"/>
+        <source>0 points</source>
+        <translation>0 point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/promise.py"/>
+        <source>0 rapids</source>
+        <translation>0 rapide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>0, or 1 where the joint slides along z: a machine with rotary axes has three of them</source>
         <translation>0, ou 1 si l&apos;articulation glisse le long de z : une machine à axes rotatifs en a trois</translation>
@@ -1410,6 +1420,16 @@
         <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
         <source>1 face</source>
         <translation>1 face</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/promise.py"/>
+        <source>1 point</source>
+        <translation>1 point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/promise.py"/>
+        <source>1 rapid</source>
+        <translation>1 rapide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/features/hub.py"/>
@@ -11998,6 +12018,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/into_platform.py"/>
+        <source>the nozzle deposits at 1 point below the platform, by {0} mm; correct its height, or the cell&apos;s platform</source>
+        <translation>la buse dépose à 1 point sous le plateau, de {0} mm ; corrigez sa hauteur, ou le plateau de la cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/into_platform.py"/>
         <source>the nozzle deposits at {0} points below the platform, here {1} mm; correct their heights, or the cell&apos;s platform</source>
         <translation>la buse dépose à {0} points sous le plateau, ici de {1} mm ; corrigez leurs hauteurs, ou le plateau de la cellule</translation>
     </message>
@@ -14977,6 +15002,11 @@
         <translation>{0} point(s) ne disent pas où se trouve une pièce ; palpez-en {1} ou plus, éloignés les uns des autres et pas sur une droite</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/promise.py"/>
+        <source>{0} points</source>
+        <translation>{0} points</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
         <source>{0} points do not hold a part; measure {1} or more all over</source>
         <translation>{0} points ne tiennent pas une pièce ; mesurez-en {1} ou plus partout</translation>
@@ -15015,6 +15045,11 @@
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>{0} programs are called by none of the others, expected one</source>
         <translation>{0} programmes ne sont appelés par aucun autre, un seul attendu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/promise.py"/>
+        <source>{0} rapids</source>
+        <translation>{0} rapides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>

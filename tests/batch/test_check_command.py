@@ -10,7 +10,9 @@ import re
 import numpy as np
 import pytest
 
+from freecad_am.core.kinematics import cell as cells
 from freecad_am.interop import cell_file
+from freecad_am.read_back.into_platform import into_platform
 from tests.posts.planned_jobs import SETUPS, WAYS, written
 
 WAY = WAYS[0]  # of a FANUC, in joints
@@ -140,6 +142,19 @@ def test_a_nozzle_that_deposits_below_the_platform_is_told(workshop, sound, dept
         depth_said = float(re.search(r"here ([\d.]+) mm", done.err)[1])
         assert done.status == 3 and depth_said == pytest.approx(depth, abs=0.02)
         assert re.match(r" *\d+:[JL] P\[", told_line(workshop, done, "INTO_PLATFORM"))
+
+
+@pytest.mark.parametrize(("below", "words"), [(1, "at 1 point below the platform, by 2 mm; correct its height,"),
+                                              (2, "at 2 points below the platform, here 2 mm; correct their heights,")])
+def test_one_point_below_the_platform_is_not_called_points(sound, below, words):
+    _, motion = sound
+    settings = SETUPS[WAY[3]].cell
+    cell = cells.resolve(dataclasses.replace(settings, platform=-1e3), np.eye(4))  # of which all of the job is clear
+    position, up = motion.position.copy(), cell.mount[:3, 2]
+    rows = np.flatnonzero(motion.deposit)[:below]
+    position[rows] = cell.mount[:3, 3] - 2.0 * up
+    (found,) = into_platform(dataclasses.replace(motion, position=position), cell)
+    assert words in found.issue.message and found.row == rows[0]
 
 
 @pytest.mark.parametrize("controller", ["abb", "kuka", "linuxcnc", "siemens", "ur", "val3", "yaskawa"])

@@ -4,14 +4,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from ..issues import ERROR, Issue
+from ..issues import ERROR, Issue, Text
 from ..motion import Motion
 
 PERCENT = 100.0
+
+
+def number(value: float) -> str:
+    """A figure with four digits; what rounding leaves is 0."""
+    if not math.isfinite(value):
+        return "∞" if value > 0.0 else "-∞"
+    return "0" if abs(value) < 1e-12 else f"{value:.4g}"
 
 
 class Place(NamedTuple):
@@ -53,15 +60,17 @@ class Promise:
         """The worst value with its unit and its bound, '' without one."""
         if self.worst is None:
             return ""
-        value = " ".join(filter(None, (number(self.worst), self.unit)))
-        return value if self.bound is None else f"{value} ({'≥' if self.at_least else '≤'} {number(self.bound)})"
+        value, sign = amount(self.worst, self.unit), "≥" if self.at_least else "≤"
+        return value if self.bound is None else Text("{} ({} {})", value, sign, number(self.bound))
 
 
-def number(value: float) -> str:
-    """A figure with four digits; what rounding leaves is 0."""
-    if not math.isfinite(value):
-        return "∞" if value > 0.0 else "-∞"
-    return "0" if abs(value) < 1e-12 else f"{value:.4g}"
+def amount(value: float, unit: str, shown: Callable[[float], str] = number) -> str:
+    """A value with its unit; what is counted in the singular or plural of the language, of which some have one for 0."""
+    if unit == "points":
+        return Text("0 points" if value == 0.0 else "1 point" if value == 1.0 else "{} points", shown(value))
+    if unit == "rapids":
+        return Text("0 rapids" if value == 0.0 else "1 rapid" if value == 1.0 else "{} rapids", shown(value))
+    return " ".join(filter(None, (shown(value), unit)))
 
 
 def row_place(motion: Motion, row: int) -> Place:

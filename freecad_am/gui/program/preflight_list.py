@@ -53,7 +53,7 @@ def summary(promises: Sequence[Promise]) -> str:
 def _row(one: Promise) -> Any:
     """Two lines: what is promised, and how far it is kept and where. How it was checked is the tip."""
     mark, colour = {True: ("✓", GOOD), False: ("✗", WRONG), None: ("?", UNKNOWN)}[one.ok]
-    further = [one.figure, "" if one.place is None else _where(one.place)]
+    further = [translated(one.figure), "" if one.place is None else _where(one.place)]
     item = QtGui.QListWidgetItem("\n".join(filter(None, (
         f"{mark} {translated(one.promise)}", "    ".join(["", *filter(None, further)]) if any(further) else "",
     ))))
