@@ -7102,6 +7102,11 @@
         <translation>un solide était à l’envers et a été retourné</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>a spacing range of {0} to {1}</source>
+        <translation>une plage d’écartement de {0} à {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>a speed such as 6 mm/s or 360 mm/min</source>
         <translation>une vitesse comme 6 mm/s ou 360 mm/min</translation>
@@ -15440,6 +15445,11 @@
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>{0}; export the part again</source>
         <translation>{0} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>{0}; for one speed give {1}</source>
+        <translation>{0} ; pour une seule vitesse, donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>

@@ -86,6 +86,24 @@ def bend_of(points, straight=15.0):
     return np.arctan2(off[:, 2], -off[:, 0]), np.hypot(off[:, 0], off[:, 2])
 
 
+def test_beads_of_layers_along_a_guide_have_one_speed_in_planes(workshop, planned):
+    """Where a note on their speeds says so."""
+    _, report, rows = planned(elbow(spine(30, 5.0)), band="35 %")
+    (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "SPEED_VARIES"]
+    assert "as high as their layer" in told
+    assert told.endswith("; for one speed give strategy.layers: planes and strategy.narrowest: 100 %")
+    assert len(set(column(rows, "speed_mm_s").ravel())) > 1
+    text = workshop.job.read_text(encoding="utf-8")
+    text = text.replace("layers: along, guide: auto,", "layers: planes, narrowest: 100 %,").replace("band: 35 %, ", "")
+    workshop.run("plan", workshop.write_job(text).name, "-o", "again", "--no-page")
+    again = workshop.folder / "again"
+    issues = json.loads(next(again.rglob("report.json")).read_text(encoding="utf-8"))["issues"]
+    assert "SPEED_VARIES" not in [issue["code"] for issue in issues]
+    with open(next(again.rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    assert len(set(column(rows, "speed_mm_s").ravel())) == 1
+
+
 @pytest.mark.parametrize(("make", "guide", "spare"), [
     pytest.param(elbow, "{file: spine.brep}", 1e-4, marks=pytest.mark.long), (beam, "auto", 0.15),
 ])

@@ -224,7 +224,7 @@ def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
     beads = [bead for _, _, bead in made]
     others = [bead for bead in beads if np.abs(bead.speed[1:] / 20.0 - 1.0).max() > 0.01]
     count, every, slow, fast, usual, thin, wide = (
-        float(number) for number in re.findall(r"(?<![a-z])\d+\.?\d*", told.message))
+        float(number) for number in re.findall(r"(?<![a-z])\d+\.?\d*", told.message.split("; for one speed")[0]))
     assert (count, every, usual) == (len(others), len(beads), 20.0)
     for said, exact in ((slow, min(bead.speed[1:].min() for bead in others)),
                         (fast, max(bead.speed[1:].max() for bead in others)),
@@ -234,6 +234,27 @@ def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
     full = planned(part, fill=fill, process=process, narrowest=1.0)
     assert laid(full) > 1.03 * volume and not [issue for issue in full.issues if issue.code == "SPEED_VARIES"]
     assert [bead.closed for _, _, bead in full] == [bead.closed for _, _, bead in made]
+
+
+@pytest.mark.parametrize(("asked", "remedy"), [
+    ({"fill": "contours"}, "strategy.narrowest: 100 %"),
+    ({"fill": "zigzag"}, "strategy.narrowest: 100 %"),
+    ({"fill": "connected"}, "strategy.fill: contours and strategy.narrowest: 100 %"),
+    ({"fill": "connected", "narrowest": 1.0}, "strategy.fill: contours"),
+    ({"fill": "lines", "spacing_range": (0.7, 1.4)}, "a spacing range of 100 % to 100 % and strategy.narrowest: 100 %"),
+    ({"fill": "spiral", "spacing_range": (0.7, 1.4), "narrowest": 1.0}, "a spacing range of 100 % to 100 %"),
+])
+def test_what_is_told_to_give_one_speed_does(asked, remedy):
+    part = box((0, 0, 0), (60, 9.6, 4))
+    (told,) = [issue for issue in planned(part, **asked).issues if issue.code == "SPEED_VARIES"]
+    assert told.message.endswith(f"; for one speed give {remedy}")
+    meant = {"strategy.narrowest: 100 %": {"narrowest": 1.0}, "strategy.fill: contours": {"fill": "contours"},
+             "a spacing range of 100 % to 100 %": {"spacing_range": (1.0, 1.0)}}
+    changed = {key: value for words, setting in meant.items() if words in remedy for key, value in setting.items()}
+    made = planned(part, **{**asked, **changed})
+    assert not [issue for issue in made.issues if issue.code == "SPEED_VARIES"]
+    speeds = np.concatenate([bead.speed[1:] for _, _, bead in made])
+    assert speeds == pytest.approx(ProcessParameters().travel_speed, abs=1e-12)
 
 
 def test_where_beads_do_not_crowd_all_are_as_wide_as_ever():

@@ -19,6 +19,7 @@ from ...toolpath import Layer
 from ...types import Array
 from .beads import MadeBead
 from .course import LEAST_DEPARTURE
+from .filling import EVERY
 from .lean import Turned
 
 SLIGHTLY = 0.01  # of the travel speed, by which one may differ and nothing is told
@@ -39,7 +40,7 @@ def notes(
     if model is not None:
         found += of_model(made, strategy.layer_height, process, model)
     else:
-        found += _speeds(layers, process)
+        found += _speeds(layers, strategy, process)
     found += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
     if waits and strategy.min_layer_time > 0.0:
@@ -57,7 +58,7 @@ def notes(
     return found
 
 
-def _speeds(layers: Sequence[Layer], process: ProcessParameters) -> list[Issue]:
+def _speeds(layers: Sequence[Layer], strategy: FilledParameters, process: ProcessParameters) -> list[Issue]:
     """At which speeds one wire feed makes beads as wide as their room and as high as their layer, where these are others
     than usual; at the bead that departs most from its travel speed."""
     classes = {bead.bead_class for layer in layers for bead in layer.beads}
@@ -77,11 +78,25 @@ def _speeds(layers: Sequence[Layer], process: ProcessParameters) -> list[Issue]:
     high = [bead.height for bead in beads if bead.height is not None]
     sizes = [Text(text, *_ends(found)) for text, found in ((WIDE, wide), (HIGH, high)) if found]
     _, layer, number = max(some, key=lambda place: place[0])
-    return [Issue(
-        NOTE, "SPEED_VARIES", Text("{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, for one wire feed to make them "
-            "{}; the speed follows that along them", len(some), len(places), speed.min(), speed.max(), Word(instead),
-            Text.joined(" and ", sizes)), layer, number,
-    )]
+    text = Text(
+        "{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, for one wire feed to make them {}; the speed follows that "
+        "along them", len(some), len(places), speed.min(), speed.max(), Word(instead), Text.joined(" and ", sizes),
+    )
+    remedy = _for_one_speed(strategy, bool(high))
+    message = Text("{}; for one speed give {}", text, remedy) if remedy else text
+    return [Issue(NOTE, "SPEED_VARIES", message, layer, number)]
+
+
+def _for_one_speed(strategy: FilledParameters, high: bool) -> str:
+    """What gives all beads the same width and height, and so one speed; '' where nothing is left to give. high: heights
+    differ, which layers along a guide have."""
+    settings = [
+        *(["strategy.layers: planes"] if high else []),
+        *(["strategy.fill: contours"] if strategy.fill == "connected" else []),
+        *([Text("a spacing range of {0} to {0}", "100 %")] if strategy.spacing_range != EVERY else []),
+        *(["strategy.narrowest: 100 %"] if strategy.narrowest < 1.0 else []),
+    ]
+    return Text.joined(" and ", settings)
 
 
 def _ends(columns: Sequence[Array]) -> tuple[float, float]:
