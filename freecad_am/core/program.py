@@ -203,6 +203,7 @@ class Program:
     part is on the last mechanism, and station is the program's origin on its face; a linear one is a track that carries the
     robot. unit: what the controller calls the mechanism of the part, or a track alone; first_external: the number there of
     the first of these axes, from 1. schedule_output: what the numbers of schedules are set on.
+    axis_machines: title of the machine or mechanism that each axis belongs to, whose file tells about it.
     """
 
     name: str
@@ -230,6 +231,7 @@ class Program:
     unit: str = ""
     first_external: int = 1
     schedule_output: int = 2
+    axis_machines: tuple[str, ...] = ()
 
     @property
     def holds_part(self) -> bool:

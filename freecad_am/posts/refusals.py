@@ -225,13 +225,17 @@ def refuse_continuous(program: Program) -> None:
 
 
 def refuse_without_speeds(program: Program, axes: int) -> None:
-    """Raises InputError NO_JOINT_SPEED where the machine file does not tell what percents of joint speeds are of."""
-    if len(program.max_speed) != axes or not np.isfinite(program.max_speed).all():
-        raise InputError(
-            "NO_JOINT_SPEED", "cell.machine",
-            "this controller is told the speed of joint moves in percent of the axes' largest speeds, and the machine file"
-            " does not give them; add max_speed to its joints",
-        )
+    """Raises InputError NO_JOINT_SPEED where a machine file, the robot's or that of axes beside it, does not tell what
+    percents of joint speeds are of."""
+    known = np.isfinite(program.max_speed)
+    if len(known) == axes and known.all():
+        return
+    first = int(known.argmin()) if len(known) == axes else 0
+    raise InputError(
+        "NO_JOINT_SPEED", "cell.machine" if first < program.own_axes else "cell.external",
+        "this controller is told the speed of joint moves in percent of the axes' largest speeds, and the machine file of {}"
+        " does not give them; add max_speed to its joints", (program.axis_machines or (program.machine,) * axes)[first],
+    )
 
 
 def refuse_without_positions(program: Program, straight: bool = False) -> None:

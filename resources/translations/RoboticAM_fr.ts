@@ -12958,8 +12958,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>this controller is told the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file does not give them; add max_speed to its joints</source>
-        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
+        <source>this controller is told the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file of {0} does not give them; add max_speed to its joints</source>
+        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine de {0} ne les donne pas ; ajoutez max_speed à ses articulations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>

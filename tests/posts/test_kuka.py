@@ -3,6 +3,7 @@
 modules by hand."""
 
 import dataclasses
+import json
 import math
 import re
 
@@ -11,6 +12,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics.external import MECHANISMS
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.planning.program.build import without_moves
 from freecad_am.core.program import (
     Call,
     DepositOff,
@@ -351,6 +357,27 @@ def test_axes_beside_the_robot():
     for unit in ("", "1", "STN1", "17"):
         refusal(beside(JOB, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
     refusal(dataclasses.replace(beside(JOB), external_kinds=()), code="UNSUPPORTED_AXES", where="program.post")
+
+
+def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
+    """That of the robot, or of the positioner or track beside it."""
+    slow, told = (*NOMINAL[:5], math.inf), json.loads((MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8"))
+    assert "file of a robot does not" in refusal(
+        dataclasses.replace(JOB, machine="a robot", max_speed=slow), code="NO_JOINT_SPEED", where="cell.machine")
+    for lacking, where in ((0, "cell.machine"), (1, "cell.external")):
+        speeds = (*slow, 1.0, 1.0) if lacking == 0 else (*NOMINAL, 1.0, math.inf)
+        message = refusal(beside(JOB, max_speed=speeds, axis_machines=("a robot",) * 6 + ("a table",) * 2),
+                          code="NO_JOINT_SPEED", where=where)
+        assert f"file of {('a robot', 'a table')[lacking]} does not" in message
+    del told["joints"][1]["max_speed"]
+    (tmp_path / "mine.json").write_text(json.dumps({**told, "id": "mine"}), encoding="utf-8")
+    cell = cells.resolve(CellParameters(
+        machine="kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot", branch="auto",
+        external=f"{tmp_path / 'mine.json'} at 1400 0 0 0 0 0 carries part",
+    ), np.eye(4))
+    made = without_moves(cell, ProgramParameters(post="kuka", motion="cartesian"), catalogue.controller("kuka"), "dome")
+    message = refusal(dataclasses.replace(made, blocks=beside(JOB).blocks), code="NO_JOINT_SPEED", where="cell.external")
+    assert f"the machine file of {told['title']} does not give them" in message
 
 
 def test_the_deposit_is_switched_on_the_moves_themselves():

@@ -99,7 +99,14 @@ def without_moves(cell: Cell, parameters: ProgramParameters, controller: Control
         unit=_unit(cell, parameters, controller),
         first_external=parameters.axes.first,
         schedule_output=parameters.schedule.output,
+        axis_machines=_axis_machines(cell),
     )
+
+
+def _axis_machines(cell: Cell) -> tuple[str, ...]:
+    """What each axis belongs to: the robot, or a mechanism beside it."""
+    owners = [cell.robot, *(one.machine for one in cell.external.mechanisms)] if cell.external else [cell.robot]
+    return tuple(owner.title for owner in owners for _ in range(owner.chain.axes))
 
 
 def external_kinds(cell: Cell) -> tuple[str, ...]:
