@@ -179,7 +179,7 @@ def make_all(
     def planned(layers: str) -> list[Any]:
         own = make_cell(doc, parameters=chosen)
         features = [_feature_of_job(doc, one) for one in ({**first, "layers": layers}, *then)]
-        toolpath = on_platform(own, lambda: make_toolpath(doc, features, own, **(process or {})))
+        toolpath = on_platform(own, features, lambda: make_toolpath(doc, features, own, **(process or {})))
         path = [] if toolpath.Status == "infeasible" else [_suited_path(doc, toolpath, own, setup, bool(cell))]
         return [own, *features, toolpath, *path]
 

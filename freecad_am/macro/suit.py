@@ -10,10 +10,11 @@ import FreeCAD as App
 
 from ..core.issues import ERROR, InputError
 from ..core.parameters.filled import SolidParameters
-from ..core.strategies.support import ABOVE_PLATFORM
+from ..core.strategies.support import ABOVE_PLATFORM, surely_above
 from ..objects.fields import properties
 from ..objects.planned import suited_cell
 from ..objects.results.findings import issues_of
+from ..objects.solid_feature import SolidFeature
 from ..objects.staleness import INFEASIBLE
 from .changes import change
 from .steps import one_step, renew
@@ -31,9 +32,11 @@ def suit(cell: Any, *stages: Any) -> None:
                 renew(stage)
 
 
-def on_platform(cell: Any, make: Callable[[], Any]) -> Any:
-    """The toolpath object that is made; what reaches below the platform, or begins above it, over nothing, is put on it
-    where `mount` does so."""
+def on_platform(cell: Any, features: Sequence[Any], make: Callable[[], Any]) -> Any:
+    """The toolpath object that is made of features; what reaches below the platform, or begins above it, over nothing, is
+    put on it where `mount` does so: before, where that is known beforehand, as layers may take minutes."""
+    if _is_above(cell, features):
+        change(cell, mount="feature")
     try:
         toolpath = make()
         if any(issue.code == ABOVE_PLATFORM for issue in issues_of(toolpath)):
@@ -44,6 +47,15 @@ def on_platform(cell: Any, make: Callable[[], Any]) -> Any:
         change(cell, **error.mended_by)
         toolpath = make()
     return toolpath
+
+
+def _is_above(cell: Any, features: Sequence[Any]) -> bool:
+    """Whether a feature will surely be told to begin above the platform."""
+    settings, proxy = cell.Proxy.value(cell), features[0].Proxy
+    if len(features) > 1 or not isinstance(proxy, SolidFeature) or settings.platform_diameter <= 0.0:
+        return False
+    height = proxy.parameters(features[0], SolidParameters).layer_height
+    return settings.mount != "feature" and surely_above(proxy.value(features[0]), height)
 
 
 def refuse_otherwise(kind: str, layers: str) -> None:

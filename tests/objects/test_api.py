@@ -17,6 +17,8 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.strategies import size
+from freecad_am.core.strategies.solids import plan as solids_plan
+from freecad_am.macro import suit
 from freecad_am.objects.checks import controllers
 from freecad_am.objects.program import files_of
 from freecad_am.objects.work import progress
@@ -319,6 +321,23 @@ def test_a_solid_drawn_above_the_platform_is_put_on_it_by_a_new_job(doc):
     assert {"ABOVE_PLATFORM", "UNSUPPORTED"} <= set(found) and "20 mm above" in found["ABOVE_PLATFORM"].message
     api.change(cell, platform_diameter=0)  # nobody knows what stands there
     assert not {"ABOVE_PLATFORM", "UNSUPPORTED"} & {one.code for one in api.issues(toolpath)}
+
+
+@pytest.mark.parametrize(("layers", "low"), [("", 0.0), ("", 4.0), ("", 20.0), ("", -4.0), ("offset", 9.0)])
+def test_a_new_job_plans_its_layers_once_wherever_the_part_is(doc, monkeypatch, layers, low):
+    """Layers may take minutes. What comes of it is what comes where the toolpath is asked whether it lies over nothing."""
+    box = doc.addObject("Part::Box", "Box")
+    box.Length, box.Width, box.Height = 16, 12, 4
+    box.Placement = App.Placement(App.Vector(40, 10, low), App.Rotation(App.Vector(0, 0, 1), 30))
+    doc.recompute()
+    planned, plan = [], solids_plan.plan
+    monkeypatch.setattr(solids_plan, "plan", lambda *given: planned.append(given) or plan(*given))
+    cell, _, toolpath, *_ = api.make_all(doc, box, kind="solid", layers=layers)
+    assert len(planned) == 1
+    monkeypatch.setattr(suit, "_is_above", lambda cell, features: False)
+    other, _, asked, *_ = api.make_all(doc, box, kind="solid", layers=layers)
+    assert (cell.Mount, toolpath.Status, toolpath.Issues) == (other.Mount, asked.Status, asked.Issues)
+    assert toolpath.ResultData == asked.ResultData
 
 
 def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypatch, root):

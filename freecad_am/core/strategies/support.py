@@ -9,10 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..geometry.curves.guide import Guide
 from ..geometry.mesh.facets import doubled_areas
 from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.obstacles import Body
-from ..geometry.on_hub import Base
+from ..geometry.on_hub import Base, SolidsOnHub
+from ..geometry.plane import Plane
 from ..issues import WARNING, Issue, Text, Word
 from ..process.deposit import support
 from ..process.deposit.pieces import Pieces, cut
@@ -115,6 +117,20 @@ def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issu
             math.fsum(first.length[up]), height[highest]),
         0, int(first.bead[highest]), int(first.point[highest]),
     )]
+
+
+def surely_above(solids: SolidsOnHub, layer_height: float) -> bool:
+    """Whether `above` warns of the toolpath of solids on the plane z = 0, whatever its layers are: they stand on planes and
+    on no body, and all of them lies too far above that one."""
+    if solids.surroundings or not on_planes([group.base for group in solids.groups]):
+        return False
+    low = min(float(body.vertices[:, 2].min()) for group in solids.groups for body in group.bodies)
+    return low > support.REACH * layer_height
+
+
+def on_planes(bases: Sequence[Base]) -> bool:
+    """Whether solids stand on planes alone, those of guides among them."""
+    return bool(bases) and all(isinstance(base.surface, (Plane, Guide)) for base in bases)
 
 
 class _Ground:

@@ -15,9 +15,7 @@ import numpy as np
 
 from freecad_am.core.types import Array
 
-from ...core.geometry.curves.guide import Guide
 from ...core.geometry.obstacles import Body
-from ...core.geometry.plane import Plane
 from ...core.issues import InputError, Issue
 from ...core.kinematics.cell import mounted
 from ...core.parameters.build_direction import BuildDirectionParameters
@@ -94,10 +92,7 @@ def over_edge(made: CoreToolpath, of: Given) -> CoreToolpath:
 
 def above_platform(made: CoreToolpath, of: Given) -> list[Issue]:
     """A warning where a solid that stands on a plane begins above the platform: that plane carries nothing then."""
-    bases = bases_of(of)
-    if of.cell is None or of.cell.platform_diameter <= 0.0 or not bases:
-        return []
-    if not all(isinstance(base.surface, (Plane, Guide)) for base in bases):
+    if of.cell is None or of.cell.platform_diameter <= 0.0 or not support.on_planes(bases_of(of)):
         return []
     return support.above(made, _stands(made, of, of.cell), made.surroundings)
 
