@@ -11,7 +11,6 @@ done in another thread while the window stays alive, and be dropped at any momen
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import time
 from collections.abc import Iterator
 from typing import Any, ClassVar
@@ -24,14 +23,14 @@ from . import staleness
 from .fields import expressions, properties
 from .fields.link_targets import broken_link, is_there
 from .fields.properties import HIDDEN, OUTPUT, READ_ONLY
-from .results import store
+from .results import keys, store
 from .results.findings import first_message, issues_of, reason_of, say, store_issues
+from .results.keys import SCHEMA_VERSION
 from .results.stored import Stored
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
 from .work import faults, hooks, progress
 
-SCHEMA_VERSION = 2
 CLASS_PROPERTY = "StageClass"
 _RESULT, _deferred = "Result", 0
 
@@ -171,12 +170,7 @@ class Stage(Stored):
 
     def key(self, obj: Any) -> str:
         """Fingerprint of all inputs. Raises InputError for a missing or failed one."""
-        texts = [type(self).__name__, str(SCHEMA_VERSION)]
-        for section in self.sections:
-            texts += properties.fingerprint(obj, section.cls)
-        for linked in self.linked(obj).values():
-            texts += [one.Key for one in (linked if isinstance(linked, list) else [linked]) if one is not None]
-        return hashlib.sha256("\n".join(texts + self.further_inputs(obj)).encode()).hexdigest()[:32]
+        return keys.of_inputs(self, obj, keys.of_all)
 
     def linked(self, obj: Any) -> dict[str, Any]:
         """The linked stages by property name, lists of them where a link has many, checked: of the right kind, and

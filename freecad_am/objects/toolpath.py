@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.issues import InputError, Text
 from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import OF_FEATURE, ProcessParameters
 from ..core.parameters.scan import ScanParameters
 from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
@@ -20,8 +21,9 @@ from ..core.toolpath import Toolpath as CoreToolpath
 from .checks.on_its_part import looked_at
 from .fields import rows
 from .planned.in_sequence import member, planned_in_sequence
-from .planned.toolpaths import Given, planned
+from .planned.toolpaths import Given, planned, seen_of
 from .planned.upright import with_remedy
+from .results import keys
 from .shapes.bodies import taken
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
@@ -66,6 +68,12 @@ class Toolpath(Stage):
                             "Several features: what of the process differs for each, as JSON.")
         super().complete(obj)
 
+    def key(self, obj: Any) -> str:
+        """As of any stage, but of its cell what `seen_of` leaves is all: where a part stands, and which machine deposits it,
+        is for joint paths. In a document from before, which fits yet, as of any stage."""
+        whole = super().key(obj)
+        return whole if obj.Key == whole else keys.of_inputs(self, obj, _input_key)
+
     def prepare(self, obj: Any) -> Work:
         for following in obj.InList:
             stage = stage_of(following)
@@ -73,7 +81,7 @@ class Toolpath(Stage):
                 following.Proxy.look_ahead(following)
         linked = self.linked(obj)
         features = [linked["Feature"], *linked["Further"]]
-        cell = None if linked["Cell"] is None else linked["Cell"].Proxy.value(linked["Cell"])
+        cell = _cell(obj)
         given = [
             _given(feature, process, cell) for feature, process in zip(features, self.processes(obj), strict=True)
         ]
@@ -102,7 +110,7 @@ class Toolpath(Stage):
     def targets(self, obj: Any) -> list[Target]:
         """What each of its features is to deposit, for work that does not touch the document. InputError."""
         features = features_of(obj)
-        cell = None if obj.Cell is None else obj.Cell.Proxy.value(obj.Cell)
+        cell = _cell(obj)
         from .checks.predicted_shape import Target
 
         return [
@@ -163,7 +171,7 @@ class Toolpath(Stage):
         if not any(turned):
             return None
         process = self.parameters(obj, ProcessParameters)
-        carried = None if obj.Cell is None else obj.Cell.Proxy.value(obj.Cell)
+        carried = _cell(obj)
         if len(features) > 1:
             made = [_given(one, own, carried) for one, own in zip(features, self.processes(obj), strict=True)]
             made = [_upright(one) if turn else one for one, turn in zip(made, turned, strict=True)]
@@ -225,7 +233,16 @@ def _sources(feature: Any) -> tuple[Any, ...]:
     return (feature.Source[0], *getattr(feature, "Further", ()))
 
 
-def _given(feature: Any, process: ProcessParameters, cell: Any) -> Given:
+def _input_key(link: str, linked: Any) -> str:
+    return repr(seen_of(linked.Proxy.value(linked))) if link == "Cell" else keys.of_all(link, linked)
+
+
+def _cell(obj: Any) -> CellParameters | None:
+    """What a toolpath is planned by of its cell."""
+    return None if obj.Cell is None else seen_of(obj.Cell.Proxy.value(obj.Cell))
+
+
+def _given(feature: Any, process: ProcessParameters, cell: CellParameters | None) -> Given:
     shape = stage_of(feature)
     assert shape is not None
     strategy, build = shape.parameters(feature, strategy_of(shape)), shape.parameters(feature, BuildDirectionParameters)

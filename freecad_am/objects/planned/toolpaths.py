@@ -42,8 +42,9 @@ CHECKED = 0.92  # and what is left into last looks
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """What a feature is planned of: its wall or its solids, which the feature object has found, and parameters. stands:
-    (4, 4) in part coordinates, the frame that sits on the platform where an earlier feature says which; else None."""
+    """What a feature is planned of: its wall or its solids, which the feature object has found, and parameters. cell: as
+    `seen_of` leaves it. stands: (4, 4) in part coordinates, the frame that sits on the platform where an earlier feature
+    says which; else None."""
 
     wall: Any
     strategy: Any
@@ -61,6 +62,12 @@ class Given:
     def model(self) -> BeadModel | None:
         """The bead model of the process."""
         return bead_table.of_process(self.process)
+
+
+def seen_of(cell: CellParameters) -> CellParameters:
+    """What a toolpath is planned by of a cell: nozzle, platform and which frame sits on that. All else is left as it usually
+    is, so that nothing of a toolpath can depend on it, and a change of it leaves layers as they are."""
+    return CellParameters(nozzle=cell.nozzle, platform_diameter=cell.platform_diameter, mount=cell.mount)
 
 
 def planned(of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made: made) -> CoreToolpath:
