@@ -62,7 +62,7 @@ def test_what_makes_a_program_impossible_is_told_before_anything_is_planned(job,
         return planned(*inputs)
 
     monkeypatch.setattr(toolpaths, "planned", watched)
-    for name, value in cell.items():
+    for name, value in {**cell, "NozzleDiameter": 1.5}.items():  # which layers are planned anew for
         setattr(job.cell, name, value)
     FreeCAD.ActiveDocument.recompute()
     early = told[0]  # what would help an infeasible plan is tried by planning again
