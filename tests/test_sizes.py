@@ -29,7 +29,7 @@ LONG_FUNCTIONS = {
     "core/strategies/solids/lean.py _spread": 46,
     "core/strategies/solids/plan.py plan": 63,
     "gui/redundancy_map/controls.py __init__": 50,
-    "gui/tools/export_path.py __init__": 47,
+    "gui/tools/export_path.py __init__": 46,
     "objects/planned/proposed_family.py proposed": 66,
     "posts/staubli/moves.py moves_of": 47,
     "read_back/times.py time_issues": 44,

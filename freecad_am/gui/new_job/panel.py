@@ -27,6 +27,7 @@ from ..signals import connect
 from ..texts.translation import sentence, tr, translated, translated_error
 from ..widgets import choices, suggestions
 from ..widgets.fold import Fold
+from ..widgets.upright import upright
 from ..widgets.wheel import scrolls
 from . import after, before, proposal
 from .as_macro import arguments
@@ -93,6 +94,7 @@ class JobPanel:
             column.addWidget(widget)
         column.addStretch(1)
         scrolls(self.form)
+        upright(self.form)
         self._entered_anew()
 
     def _kinds(self) -> Any:

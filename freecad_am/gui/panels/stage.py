@@ -29,6 +29,7 @@ from ..texts.translation import marked, tr, translated
 from ..widgets import fields, suggestions
 from ..widgets.fold import Fold
 from ..widgets.messages import Messages
+from ..widgets.upright import upright
 from ..widgets.wheel import scrolls
 from . import closing, present, standing
 from .noted import Noted, lines_of
@@ -82,9 +83,9 @@ class StagePanel(Noted):
         if obj is not None:
             self.messages.hold(self.findings)
         self._watch_entries()
-        # what the document had when it was shown last
-        self.known = {} if obj is None else self._entries()
+        self.known = {} if obj is None else self._entries()  # what the document had when it was shown last
         scrolls(self.form)
+        upright(self.form)
         missing = [choice.missing for choice in choices if choice.missing]
         if obj is None and missing:
             self.say(missing[0])

@@ -21,6 +21,7 @@ from ..picking.selection import meant
 from ..signals import connect
 from ..texts.translation import tr, translated, translated_error
 from ..widgets.quantity import QuantityField
+from ..widgets.upright import upright
 from ..widgets.wheel import scrolls
 
 STEP, DXF, CSV, REPORT, CAM, TRAJECTORY = "step", "dxf", "csv", "report", "cam", "trajectory"
@@ -74,7 +75,6 @@ class ExportPanel:
         self.turn.box.setObjectName("Turn")
         self._help(self.turn.box, tr("Points are left out as long as the tool axis stays within this angle"))
         self._lay_out()
-        scrolls(self.form)
         self._follow()
         self.kind.currentIndexChanged.connect(self._follow)
         self.path.currentIndexChanged.connect(self._follow)
@@ -116,6 +116,8 @@ class ExportPanel:
         column.addWidget(self.error)
         column.addLayout(self.grid)
         column.addStretch(1)
+        scrolls(self.form)
+        upright(self.form)
 
     def _follow(self, *_: Any) -> None:
         """Show the fields of the kind that is chosen, and a file name that fits."""

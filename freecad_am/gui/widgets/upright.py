@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A panel is scrolled up and down alone. Qt scrolls sideways too where it brings something into sight, a note or the next
+field, that is above or below: FreeCAD's task view, which then shows no bar to go back with, cuts off the beginning of it."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+from .present import present
+
+
+class _Upright(QtCore.QObject):
+    """Takes what a panel is scrolled in back to its left edge, from when it is shown as long as it is there."""
+
+    def eventFilter(self, widget: Any, event: Any) -> bool:
+        """Called by Qt, of the panel and of the contents of what scrolls it."""
+        # PySide may take an event for what lay at its address before
+        if isinstance(event, QtCore.QEvent):
+            with contextlib.suppress(RuntimeError):  # what scrolls it is gone
+                if event.type() == QtCore.QEvent.Show and widget is self.parent():
+                    for area in _around(widget):
+                        area.widget().installEventFilter(self)
+                elif event.type() == QtCore.QEvent.Move and widget is not self.parent() and widget.x() < 0:
+                    for area in _around(self.parent()):
+                        area.horizontalScrollBar().setValue(0)
+        return False
+
+
+def upright(form: Any) -> None:
+    """Let a panel be scrolled up and down alone, wherever it is shown."""
+    form.installEventFilter(_Upright(form))
+
+
+def _around(form: Any) -> list[Any]:
+    """What scrolls a panel."""
+    return [area for area in present(Gui.getMainWindow(), QtGui.QScrollArea) if area.isAncestorOf(form)]
