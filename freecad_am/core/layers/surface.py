@@ -69,7 +69,7 @@ class Slice(NamedTuple):
     """One layer of a part: its number, the base in whose frame it is, its surface, its regions laid flat, and findings.
     azimuth: rad about the axis of the base, of the middle of the solid. buried: what of the plane is near to neither a top
     nor a bottom (`over_and_under`); None where nobody asks. heights: its least, mean and largest height, mm; None
-    where it has the layer height everywhere."""
+    where it has the layer height everywhere. before: the share of all layers that come before it, where that is known."""
 
     number: int
     base: Base
@@ -79,6 +79,7 @@ class Slice(NamedTuple):
     azimuth: float = 0.0
     buried: tuple[Region, ...] | None = None
     heights: tuple[float, float, float] | None = None
+    before: float | None = None
 
     @property
     def borders(self) -> list[tuple[Array, bool]]:

@@ -25,7 +25,18 @@ from ..checks.on_its_part import looked_at
 from ..shapes.bodies import Taken, bodies, taken
 from ..shapes.platforms import platforms
 from ..work import progress
-from .toolpaths import CHECKED, STRATEGY, Given, above_platform, bases_of, kept_clear, layers_of, over_edge, with_wire
+from .toolpaths import (
+    CHECKED,
+    CLEARING,
+    STRATEGY,
+    Given,
+    above_platform,
+    bases_of,
+    kept_clear,
+    layers_of,
+    over_edge,
+    with_wire,
+)
 
 OVERLAP = 0.01  # of the smaller part
 MM3 = 1000.0  # in a cm3
@@ -82,10 +93,11 @@ def planned_in_sequence(
     cell = members[0].given.cell
     made: list[CoreToolpath] = []
     stands = None
-    for one in members:
+    for number, one in enumerate(members):
         given = dataclasses.replace(one.given, stands=stands if cell is not None else None)
         try:
-            layers = with_wire(layers_of(given), given)
+            with progress.one_of(number, len(members), 0.0, STRATEGY):
+                layers = with_wire(layers_of(given), given)
         except InputError as error:
             raise InputError(error.code, f"{one.label}: {error.where}", error.message) from None
         made.append(dataclasses.replace(layers, feature_label=one.label))
@@ -95,10 +107,11 @@ def planned_in_sequence(
     around = _distinct([body for one in members for body in one.around()])
     toolpath = sequence.joined(made, order, stands[:3, 2], around)
     plates = platforms(cell, toolpath)
-    progress.report(STRATEGY, "keeping the nozzle clear")
+    progress.report(STRATEGY, CLEARING)
     for number, one in enumerate(members):
         if one.given.build.clearance != "none":
-            toolpath = kept_clear(toolpath, one.given, (*around, *plates), number)
+            with progress.one_of(number, len(members), STRATEGY, CHECKED):
+                toolpath = kept_clear(toolpath, one.given, (*around, *plates), number)
     progress.report(CHECKED, "looking for beads over nothing")
     for number, one in enumerate(members):
         toolpath = _judged(toolpath, number, one, plates, stands)

@@ -38,6 +38,7 @@ from ..work import progress
 
 STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping the nozzle clear
 CHECKED = 0.92  # and what is left into last looks
+CLEARING = "keeping the nozzle clear"
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +75,7 @@ def planned(of: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda made
     """The toolpath of a feature that is deposited alone, layers changed by `fit`; what of it lies over nothing is told."""
     made = fit(layers_of(of))
     if of.build.clearance != "none":
-        progress.report(STRATEGY, "keeping the nozzle clear")
+        progress.report(STRATEGY, CLEARING)
         made = kept_clear(made, of, (*of.wall.surroundings, *platforms(of.cell, made)))
     made = with_wire(made, of)
     progress.report(CHECKED, "looking for beads over nothing")
@@ -216,15 +217,18 @@ def _of_cladding(of: Given) -> CoreToolpath:
 
 def _cladding_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     """The machine turns the part so that its faces look up: no vertical bounds the tool axes."""
-    from ...core.strategies.clearance import tilt_back as wall_clearance
-
     free = dataclasses.replace(of.build, max_tilt=np.pi)
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature, _tell_tilting())
+    return _tilted_clear(toolpath, of, bodies, feature, free)
 
 
-def _tell_tilting() -> Callable[[int, int], None]:
-    """What tells, once, where tilts are searched for at so many points, so many times, that it takes long."""
+def _tilted_clear(
+    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None,
+    build: BuildDirectionParameters | None = None, plane: Array | None = None,
+) -> CoreToolpath:
+    """As `tilt_back.kept_clear`; how far it is is told, and once that it takes long. build: in place of the feature's."""
     from ...core.strategies import size
+    from ...core.strategies.clearance import tilt_back
+    from ...core.strategies.progress import Watch
 
     issues: list[Issue] = []
 
@@ -233,13 +237,14 @@ def _tell_tilting() -> Callable[[int, int], None]:
             issues.append(issue)
             progress.tell(issue)
 
-    return tell
+    def share(done: float) -> None:
+        progress.report(STRATEGY + done * (CHECKED - STRATEGY), CLEARING)
+
+    return tilt_back.kept_clear(toolpath, bodies, of.nozzle, build or of.build, plane, feature, Watch(tell, share))
 
 
 def _curves_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
-    from ...core.strategies.clearance import tilt_back as wall_clearance
-
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting())
+    return _tilted_clear(toolpath, of, bodies, feature)
 
 
 def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
@@ -253,31 +258,24 @@ def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body
     among = clearance_look.looked_at(toolpath, bodies, of.nozzle, count, feature)
     if among.touched <= alone.touched:
         return toolpath
-    from ...core.strategies.clearance import tilt_back as wall_clearance
-
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting())
+    return _tilted_clear(toolpath, of, bodies, feature)
 
 
 def _wall_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
-    from ...core.strategies.clearance import tilt_back as wall_clearance
     from ...core.strategies.walls.directions import symmetry_plane
 
-    plane = symmetry_plane(of.wall, of.build)
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, plane, feature, _tell_tilting())
+    return _tilted_clear(toolpath, of, bodies, feature, plane=symmetry_plane(of.wall, of.build))
 
 
 def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     """On a hub the machine turns them, so that no vertical bounds the tool axes."""
-    from ...core.strategies.clearance import tilt_back as wall_clearance
     from ...core.strategies.solids import plan as solids_plan
 
     if not of.wall.on_planes():
-        free = solids_plan.without_axis_limits(of.build)
-        return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature, _tell_tilting())
+        return _tilted_clear(toolpath, of, bodies, feature, solids_plan.without_axis_limits(of.build))
     if feature is None and solids_plan.clear_by_itself(toolpath, of.wall):
         return toolpath
-
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting())
+    return _tilted_clear(toolpath, of, bodies, feature)
 
 
 @dataclass(frozen=True)

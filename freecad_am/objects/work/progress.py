@@ -50,3 +50,20 @@ def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[No
         yield
     finally:
         _listeners.stack.pop()
+
+
+@contextlib.contextmanager
+def one_of(number: int, count: int, begin: float, end: float) -> Iterator[None]:
+    """Within it works alike, each of which tells of itself from `begin` to `end`, are told as one: this is that of a number,
+    from 0 on, of so many."""
+    if not _listeners.stack:
+        yield
+        return
+    listener, findings = _listeners.stack[-1]
+    low = begin + (end - begin) * number / count
+
+    def as_one(fraction: float, text: str) -> None:
+        listener(low + (fraction - begin) / count, text)
+
+    with told_to(as_one, findings):
+        yield

@@ -30,6 +30,7 @@ from freecad_am.core.strategies.clearance import (
 )
 from freecad_am.core.strategies.clearance.look import touched_at
 from freecad_am.core.strategies.clearance.tilt_back import kept_clear
+from freecad_am.core.strategies.progress import Watch
 from freecad_am.core.strategies.walls import plan as surface
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
@@ -167,7 +168,7 @@ def test_beside_a_tall_face_the_tilt_is_the_least_that_clears_it():
     path = toolpath(bead(np.stack([np.zeros(41), np.linspace(0, 80, 41), np.zeros(41)], axis=1)))
     face = box([10, -200, -50], [30, 300, 150])
     told = []
-    found = kept_clear(path, [face], NOZZLE, LOCAL, report=lambda *work: told.append(work))
+    found = kept_clear(path, [face], NOZZLE, LOCAL, watch=Watch(lambda *work: told.append(work)))
     assert told == [(41, 1)]  # before the work, which may be long
     slope = np.tan(NOZZLE.half_angle)
     needed = brentq(lambda e: (0.5 + 60 * slope) * np.cos(e) - 60 * np.sin(e) - 10.0, 0.0, 1.0)
@@ -232,7 +233,7 @@ def test_what_is_clear_stays_as_it_is_to_the_bit():
     path = toolpath(bead([[0, 0, 0], [5, 0, 0]]), bead([[0, 0, 1], [5, 0, 1]]))
     told = []
     clear = box([40, 40, 0], [50, 50, 50])
-    assert kept_clear(path, [clear], NOZZLE, LOCAL, report=lambda *work: told.append(work)) is path and told == []
+    assert kept_clear(path, [clear], NOZZLE, LOCAL, watch=Watch(lambda *work: told.append(work))) is path and told == []
     flat = box([-100, -100, -10], [100, 100, 0])
     assert kept_clear(path, [flat], NOZZLE, LOCAL) is path
 
@@ -308,7 +309,7 @@ def test_tools_that_turn_as_fast_as_they_may_stay_below_that_where_they_are_tilt
 
     def fastest(build):
         work.clear()
-        found = kept_clear(path, [post], NOZZLE, build, report=lambda *some: work.append(some))
+        found = kept_clear(path, [post], NOZZLE, build, watch=Watch(lambda *some: work.append(some)))
         axes = found.layers[0].beads[0].tool
         solid = sampled(NOZZLE, left_out(NOZZLE) + ABOVE_FACES, points, axes)
         assert not ((solid > [46, 6, -20]) & (solid < [50, 12, 90])).all(axis=2).any()
@@ -358,7 +359,9 @@ def test_a_bead_of_many_points_is_tilted_at_some_and_is_clear_at_all(monkeypatch
     monkeypatch.setattr(clearance_knots, "MAX_POINTS", 41)
     searched = []
     cones = tilt_search.TiltSearch.coarse
-    monkeypatch.setattr(tilt_search.TiltSearch, "coarse", lambda self: searched.append(len(self.flat)) or cones(self))
+    monkeypatch.setattr(
+        tilt_search.TiltSearch, "coarse", lambda self, watch: searched.append(len(self.flat)) or cones(self, watch)
+    )
     found = kept_clear(asked, [], NOZZLE, LOCAL)
     assert codes(found) == ["TILT_BACK"] and set(searched) == {41}
     assert deepest_in_wall(asked, 40, 8.0) > 2.0 and deepest_in_wall(found, 40, 8.0) < 0.3

@@ -49,7 +49,8 @@ def slices(group: Group, substrate: Sequence[Body], strategy: SolidParameters) -
                         "or farther apart than the bead spacing", 100.0 * worst), number,
                 ),)
             regions = tuple(region.simple(BORDER * found.grid.step) for region in piece.regions)
-            yield Slice(number, base, ChartLayer(piece.chart, found, number * height), regions, issues)
+            surface = ChartLayer(piece.chart, found, number * height)
+            yield Slice(number, base, surface, regions, issues, before=number / layers)
 
 
 def _refuse(strategy: SolidParameters) -> None:

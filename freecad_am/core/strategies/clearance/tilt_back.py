@@ -14,7 +14,7 @@ tilted anew, it alone.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -27,31 +27,33 @@ from ...parameters.cell import NozzleParameters
 from ...slicing.directions.wall import limited, turn_rates
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
+from ..progress import Watch
 from . import knots as clearance_knots
 from .notes import tilt_issues, turn_issues
 from .places import Space, beads_of, halved, space_of, touched_between
 from .tilt_search import SPREAD, TiltSearch
 
 SLOWER = 6  # times that a bead is tilted anew where it turns too fast
+SEARCHED = 0.7  # of the search when that begins
 ROUNDING = 1e-9
 HALVINGS = 3  # of a segment halfway on which the nozzle touches
 
 
 def kept_clear(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None = None, feature: int | None = None, report: Callable[[int, int], None] = lambda *_: None,
+    plane: Array | None = None, feature: int | None = None, watch: Watch | None = None,
 ) -> Toolpath:
     """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
 
     bodies: all that counts, the platform too. plane: unit normal (3,) of the plane that the tool must stay in. Where no
     tilt of up to 90 deg helps, the axes stay as they come, with an issue CLEARANCE. Beads get points halfway between
     those that are clear where the nozzle would touch there. feature: of several features, the one whose beads are kept
-    clear, of what is deposited of the others by then too. told(points, times): before tilts are searched for, at how many
-    points, and how many times at most.
+    clear, of what is deposited of the others by then too. watch: is told where tilts are searched for.
     """
     known: list[_Way | None] = [None for _ in toolpath]
-    for last in (False,) * HALVINGS + (True,):
-        found, between, ways = _tilted(toolpath, bodies, nozzle, build, plane, feature, last, report, known)
+    for turn in range(HALVINGS + 1):
+        part = (watch or Watch()).within(turn / (HALVINGS + 1), (turn + 1) / (HALVINGS + 1))
+        found, between, ways = _tilted(toolpath, bodies, nozzle, build, plane, feature, turn == HALVINGS, part, known)
         if not between.any():
             break
         marks = np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1])
@@ -70,7 +72,7 @@ class _Way(NamedTuple):
 
 def _tilted(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None, feature: int | None, last: bool, report: Callable[[int, int], None], known: list[_Way | None],
+    plane: Array | None, feature: int | None, last: bool, watch: Watch, known: list[_Way | None],
 ) -> tuple[Toolpath, Mask, list[_Way | None]]:
     """The toolpath tilted clear at its points, the points (n,) after which the nozzle touches halfway to the next, none at
     the `last` try, where an issue says so, and what was found bead by bead. Where it touches with the axes asked for,
@@ -88,7 +90,7 @@ def _tilted(
     blocked = [k for k in range(len(beads)) if not (free & ~between)[begin[k] : begin[k + 1]].all()]
     if not blocked:
         return toolpath, between, known
-    (tool, tilt, lost), turned = _ways(space, beads, begin, blocked, asked, plane, free, build.turn(), report, known)
+    (tool, tilt, lost), turned = _ways(space, beads, begin, blocked, asked, plane, free, build.turn(), watch, known)
     ways: list[_Way | None] = [None for _ in beads]
     for k in blocked:
         row = slice(begin[k], begin[k + 1])
@@ -118,7 +120,7 @@ def _with_tools(toolpath: Toolpath, tools: Sequence[Array], issues: tuple[Issue,
 
 def _ways(
     space: Space, beads: Sequence[Bead], begin: Index, blocked: list[int], asked: Array, plane: Array | None, free: Mask,
-    most: float, report: Callable[[int, int], None], known: list[_Way | None],
+    most: float, watch: Watch, known: list[_Way | None],
 ) -> tuple[_Way, float]:
     """Axes, tilts and points that touch even so, of all points, and the fastest turn (rad/mm) that is left of beads that
     turn faster than `most` with their tilts though what was asked does not. What is known of a bead stays while clear."""
@@ -136,18 +138,21 @@ def _ways(
         return _Way(tool, tilt, lost), turned
     rows = [row for row, _ in anew]
     flat = np.concatenate(rows)
-    report(len(flat), 1)
-    found, leant, stuck = _cleared(space, rows, np.array([loop for _, loop in anew]), asked, plane, free)
+    watch.points(len(flat), 1)
+    loops = np.array([loop for _, loop in anew])
+    found, leant, stuck = _cleared(space, rows, loops, asked, plane, free, watch.within(0.0, SEARCHED))
     tool[flat], tilt[flat] = found[flat], leant[flat]
     lost[stuck] = True
     fast = _too_fast(space, rows, asked, most, tool, lost)
     if fast:
-        report(sum(len(rows[k]) for k in fast), SLOWER)
-    return _Way(tool, tilt, lost), max(turned, _slowed(space, [anew[k] for k in fast], asked, plane, most, tool, tilt))
+        watch.points(sum(len(rows[k]) for k in fast), SLOWER)
+    left = _slowed(space, [anew[k] for k in fast], asked, plane, most, tool, tilt, watch.within(SEARCHED, 1.0))
+    return _Way(tool, tilt, lost), max(turned, left)
 
 
 def _cleared(
-    space: Space, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask, spread: float = SPREAD
+    space: Space, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask, watch: Watch,
+    spread: float = SPREAD,
 ) -> tuple[Array, Array, Index]:
     """Axes (n, 3) of all points, those of the beads with the rows tilted clear; tilts (n,) rad; the points that touch even
     so."""
@@ -157,7 +162,7 @@ def _cleared(
             free = free.copy()
             free[some] = clearance_knots.free_about(row, some, free)
     search = TiltSearch(space, knots, closed, asked, plane, free, spread)
-    offset, stuck = search.found()
+    offset, stuck = search.found(watch)
     tool, tilt = asked.copy(), np.zeros(len(asked))
     flat = np.concatenate(knots)
     tool[flat], tilt[flat] = search.axes(flat, offset), np.linalg.norm(offset, axis=1)
@@ -187,7 +192,8 @@ def _too_fast(space: Space, rows: list[Index], asked: Array, most: float, tool: 
 
 
 def _slowed(
-    space: Space, fast: list[tuple[Index, bool]], asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array
+    space: Space, fast: list[tuple[Index, bool]], asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array,
+    watch: Watch,
 ) -> float:
     """Find axes anew, in place, for beads that turn faster than `most` rad/mm, given by their points and whether they are
     closed; comes back with the fastest turn that is left of them, 0 where none is.
@@ -195,9 +201,11 @@ def _slowed(
     Each time what is asked turns slower, by as much as is too much, and tilts come and go over a longer way.
     """
     worst = 0.0
-    for row, loop in fast:
+    for number, (row, loop) in enumerate(fast):
         rate, spread, now = most, SPREAD, _fastest(space, row, tool)
-        for _ in range(SLOWER):
+        for turn in range(SLOWER):
+            done = (number * SLOWER + turn) / (len(fast) * SLOWER)
+            part = watch.within(done, done + 1.0 / (len(fast) * SLOWER))
             rate, spread = 0.98 * rate * most / now, 1.5 * spread
             slower = asked.copy()
             try:
@@ -208,7 +216,7 @@ def _slowed(
             free[row] = space.clear(row, slower[row])
             found, stuck = slower, row[:0]
             if not free[row].all():
-                found, _, stuck = _cleared(space, [row], np.array([loop]), slower, plane, free, spread)
+                found, _, stuck = _cleared(space, [row], np.array([loop]), slower, plane, free, part, spread)
             now = _fastest(space, row, found)
             if not len(stuck) and now < _fastest(space, row, tool):
                 cross = np.linalg.norm(np.cross(asked[row], found[row]), axis=1)

@@ -14,6 +14,7 @@ import numpy as np
 from ...geometry import frames
 from ...geometry.ties import first_least
 from ...types import Array, Index, Mask
+from ..progress import Watch
 from .least_turn import least
 from .places import CAP, Space
 
@@ -21,6 +22,7 @@ RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and can
 LARGEST = np.radians(90.0)  # tilt that is tried
 PROBED, PROBES = 7, 16  # before which cone, and at how many points of a bead, all larger ones are tried
 LEVELS = 4  # of finer candidates, each of half the distance
+COARSE = 0.6  # of the time, before these
 SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
 RELEASED = 4.0  # times SPREAD, beyond which nothing is left of a tilt
 
@@ -68,14 +70,15 @@ class TiltSearch:
         spread = np.repeat(place, s)
         return self.space.clear(self.flat[spread], self._tilted(spread, offsets.reshape(-1, 2))).reshape(-1, s)
 
-    def found(self) -> tuple[Array, Mask]:
+    def found(self, watch: Watch) -> tuple[Array, Mask]:
         """Tilts (m, 2) of all points, and the points (m,) that have none that is clear."""
-        offset, stuck = self.coarse()
+        offset, stuck = self.coarse(watch.within(0.0, COARSE))
         for level in range(1, LEVELS + 1):
+            watch.share(COARSE + (1.0 - COARSE) * (level - 1) / LEVELS)
             offset = self.finer(offset, RING / 2.0**level, level)
         return offset, stuck
 
-    def coarse(self) -> tuple[Array, Mask]:
+    def coarse(self, watch: Watch) -> tuple[Array, Mask]:
         """Tilts (m, 2) on the cones, and the points (m,) that have none that is clear; those hinder no one."""
         states = np.zeros((1, 2))
         allowed = self._clear(np.arange(len(self.flat)), states) | ~self.near[:, None]
@@ -83,6 +86,7 @@ class TiltSearch:
         pending = np.ones(len(self.counts), dtype=bool)
         last = round(LARGEST / RING)
         for number in range(1, last + 1):
+            watch.share(number / (last + 1))
             if number == PROBED:
                 # where nothing frees some of a bead's points there is no way, however many candidates the others have
                 self.lost[self._hopeless(allowed, pending, range(number, last + 1))] = True

@@ -12,7 +12,7 @@ from ...filling.cover import Cover
 from ...geometry.beyond_hub import solids_beyond
 from ...geometry.on_hub import SolidsOnHub
 from ...issues import InputError, Issue
-from ...layers.field import stacks
+from ...layers.field import Stack, stacks
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
@@ -54,13 +54,13 @@ def plan(
     mended: list[Issue] = []
     covers: list[Cover] = []
     heights: dict[int, list[float]] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
-    lots = [(number, solid, stack) for number, group in enumerate(solids.groups)
-             for solid, stack in enumerate(stacks(group, solids.surroundings, strategy))]
+    lots = _lots(solids, strategy)
     for done, (group, solid, stack) in enumerate(lots):
         below: Array | None = None  # middles of the islands of the layer before
         before: Counter[int] = Counter()  # beads of the pieces that a curved layer has had
         for count, layer in enumerate(stack.slices):
-            progress((done + min(1.0, count / expected)) / len(lots), f"{stack.name} layer {layer.number}")
+            through = min(1.0, count / expected) if layer.before is None else layer.before
+            progress((done + through) / len(lots), f"{stack.name} layer {layer.number}")
             filled = pictures.filled(layer, stack.name)
             mended += [*layer.issues, *filled.issues]
             if layer.heights is not None:
@@ -94,6 +94,12 @@ def plan(
         twice=twice(made, strategy, covers, nominal),
         uneven=np.array([(number, min(both), max(both)) for number, both in sorted(heights.items())]) if heights else None,
     )
+
+
+def _lots(solids: SolidsOnHub, strategy: FilledParameters) -> list[tuple[int, int, Stack]]:
+    """The stacks of all groups, each with the number of its group, and its own in that."""
+    return [(number, solid, stack) for number, group in enumerate(solids.groups)
+            for solid, stack in enumerate(stacks(group, solids.surroundings, strategy))]
 
 
 def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
