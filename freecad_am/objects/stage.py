@@ -114,7 +114,8 @@ class Stage(Stored):
         try:
             with one_thread(), faults.kernel(obj):
                 key = self.key(obj)
-                outdated = (force or key != obj.Key) and self._compute(obj, key)
+                refused = obj.Status != INFEASIBLE and has_errors(issues_of(obj))  # what is told is of other inputs
+                outdated = (force or refused or key != obj.Key) and self._compute(obj, key)
             found = issues_of(obj)
             with self._own_changes():
                 if outdated:

@@ -181,6 +181,25 @@ def test_an_infeasible_path_is_kept_and_stops_the_program(job, no_remedies):
     assert len(api.stages_of(job.doc, "program")) == 1
 
 
+def test_what_could_not_be_carried_out_is_up_to_date_once_its_inputs_are_as_they_were(doc):
+    box = doc.addObject("Part::Box", "Box")
+    box.Length, box.Width, box.Height = 16, 12, 4
+    doc.recompute()
+    feature = api.make_solid_feature(doc, box, layer_height=2, thin="refuse")
+    toolpath = api.make_toolpath(doc, feature, api.make_cell(doc))
+    path = api.make_joint_path(doc, toolpath, doc.Cell)
+    keys, spacing = [obj.Key for obj in (toolpath, path)], feature.BeadSpacing
+    for _ in range(2):
+        feature.BeadSpacing = 30
+        doc.recompute()
+        assert toolpath.Status == path.Status == "infeasible" and "less than a bead" in toolpath.Message
+        feature.BeadSpacing = spacing
+        doc.recompute()
+        assert [obj.Status for obj in (feature, toolpath, path)] == [OK] * 3 and toolpath.Message == ""
+        assert [obj.Key for obj in (toolpath, path)] == keys
+        assert not [issue for obj in (toolpath, path) for issue in api.issues(obj) if issue.level == "error"]
+
+
 def test_a_link_to_the_wrong_kind_is_told(job):
     job.toolpath.Feature = job.cell
     job.doc.recompute()
