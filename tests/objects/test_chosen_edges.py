@@ -7,6 +7,7 @@ import random
 import FreeCAD as App
 import Part
 import pytest
+import Sketcher
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
@@ -176,9 +177,94 @@ def test_a_straight_edge_that_became_a_circle_and_one_that_turned_are_told(doc):
     assert code == "EDGES_CHANGED" and "Edge1 of Block was a straight line when it was chosen and is a circle now" in said
     put(part, Part.makePolygon(ends[::-1]))
     assert warnings(feature) == []  # it has no sense
-    put(part, Part.makePolygon((ends[0], App.Vector(40, 2, 5))))
+    put(part, Part.makePolygon((App.Vector(0, 9, 5), App.Vector(40, 11, 5))))
+    assert warnings(feature) == []  # there is no other
+    put(part, Part.makePolygon((App.Vector(0, 9, 5), App.Vector(40, 19, 5), App.Vector(40, 30, 5))))
     (code, said), = warnings(feature)
     assert code == "EDGES_CHANGED" and "Edge1 of Block lies another way than when it was chosen" in said
+
+
+def test_a_line_of_a_sketch_that_is_drawn_by_an_end_is_the_one_that_was_chosen(doc):
+    sketch = doc.addObject("Sketcher::SketchObject", "Sketch")
+    sketch.Placement = App.Placement(App.Vector(3, 0, 10), App.Rotation(App.Vector(1, 0, 0), 90))
+    corners = [App.Vector(*at, 0) for at in ((0, 0), (40, 0), (60, 20), (60, 50))]
+    for start, end in zip(corners, corners[1:]):
+        sketch.addGeometry(Part.LineSegment(start, end), False)
+    for k in range(2):
+        sketch.addConstraint(Sketcher.Constraint("Coincident", k, 2, k + 1, 1))
+    doc.recompute()
+    feature = api.make_curves_feature(doc, sketch, ["Edge2"], **CURVES)
+    for line, end, to in ((1, 2, (70, 33)), (0, 2, (30, -9)), (0, 1, (-10, 0)), (2, 2, (60, 70))):
+        sketch.movePoint(line, end, App.Vector(*to, 0), 0)
+        api.recompute(doc)
+        assert feature.Status == "up to date" and warnings(feature) == [], (line, end, to)
+    sketch.delGeometry(0)
+    sketch.addGeometry(Part.LineSegment(App.Vector(90, 0, 0), App.Vector(90, 40, 0)), False)
+    api.recompute(doc)
+    assert len(warnings(feature)) == 1 or feature.Source[1] == ["Edge1"]  # the next one has its number
+
+
+def test_an_edge_that_a_fillet_beside_it_makes_shorter_and_gives_another_number_is_told(doc):
+    box = Part.makeBox(40, 30, 20)
+    part = block(doc, box)
+    told = 0
+    for k in range(1, 13):
+        put_quietly(part, box)
+        feature = api.make_curves_feature(doc, part, [f"Edge{k}"], **CURVES)
+        chosen = box.Edges[k - 1]
+        middle, way = chosen.CenterOfMass, chosen.Curve.Direction
+        for n in range(1, 13):
+            if n == k:
+                continue
+            put_quietly(part, box.makeFillet(3, [box.Edges[n - 1]]))
+            shape = part.Shape.copy()
+            shape.Placement = App.Placement()
+            lies = [one for one, edge in enumerate(shape.Edges, 1) if edge.Curve.TypeId == "Part::GeomLine"
+                    and ((edge.CenterOfMass - middle).cross(way)).Length < 1e-6]
+            named = int(feature.Source[1][0].lstrip("?")[4:])
+            right = named in lies or feature.Source[1][0].startswith("?")
+            assert len(warnings(feature)) == (not right), (k, n, lies)
+            told += not right
+            put_quietly(part, box)
+            feature.Source = (part, [f"Edge{k}"])
+            api.recompute(doc)
+        doc.removeObject(feature.Name)
+    assert told > 0 or App.Version()[0] != "0"
+
+
+def test_the_same_names_of_another_part_are_chosen_anew(doc):
+    shape = Part.makeBox(40, 30, 20)
+    again = numbered(shape, [3, 5, 1, 0, 2, 4])
+    pairs = enumerate(zip(shape.Edges, again.Edges), 1)
+    name = next(f"Edge{k}" for k, (one, another) in pairs if one.Curve.Direction.cross(another.Curve.Direction).Length > 0.1)
+    part, other = block(doc, shape), block(doc, again)
+    feature = api.make_curves_feature(doc, part, [name], **CURVES)
+    feature.Source = (other, [name])
+    api.recompute(doc)
+    assert feature.Status == "up to date" and warnings(feature) == []
+    feature.Source = None
+    with pytest.raises(InputError):
+        api.recompute(doc)
+    feature.Source = (part, [name])
+    api.recompute(doc)
+    assert feature.Status == "up to date" and warnings(feature) == []
+
+
+def test_a_copy_knows_what_was_chosen(doc):
+    shape = Part.makeBox(40, 30, 20)
+    part = block(doc, shape)
+    feature = api.make_curves_feature(doc, part, ["Edge1"], **CURVES)
+    put(part, numbered(shape, [3, 5, 1, 0, 2, 4]))
+    if feature.Source[1] != ["Edge1"]:
+        return  # FreeCAD 1.0 and later may have followed it
+    assert len(warnings(feature)) == 1
+    copies = App.newDocument("Copies")
+    try:
+        copies.copyObject(feature, True)
+        api.recompute(copies, force=True)
+        assert [warnings(one) for one in api.stages_of(copies, "feature")] == [warnings(feature)]
+    finally:
+        App.closeDocument(copies.Name)
 
 
 def test_documents_from_before_know_their_edges_once_they_are_opened(doc, tmp_path):

@@ -32,9 +32,12 @@ FREE_FORM = {FACE: Text("a free-form surface"), EDGE: Text("a free-form curve")}
 class FeatureStage(Stage):
     """Base of the features: what is deposited, and the faces and edges that say where and how, as links to parts."""
 
+    _owners: dict[str, Any] | None = None  # the names of the objects that links have, by link, once that is known
+
     def complete(self, obj: Any) -> None:
         """With the marks of the faces and edges as they were when they were chosen."""
         super().complete(obj)
+        self._owners = {link: _owner(obj, link) for link in self.chosen}
         if "ChosenFaces" not in obj.PropertiesList:
             help = "The faces and edges as they were chosen."
             obj.addProperty("App::PropertyStringList", "ChosenFaces", "Result", help, HIDDEN | OUTPUT)
@@ -61,14 +64,17 @@ class FeatureStage(Stage):
         return tuple(link.name for link in self.links if link.type_name == "App::PropertyLinkSub")
 
     def onChanged(self, obj: Any, name: str) -> None:
-        """Other faces and edges are what they are when they are chosen. FreeCAD 1.0 and later tell of a change also where
-        the part was changed and the names stay."""
+        """Other faces and edges, and those of another part, are what they are when they are chosen. FreeCAD 1.0 and later
+        tell of a change also where the part was changed and the names stay."""
         document = obj.Document
         by_hand = not (document is None or document.Restoring or document.Transacting or document.Recomputing)
         if name in self.chosen and by_hand and "ChosenFaces" in obj.PropertiesList:
             named = _named(obj, name)
-            if named is not None and named != _stored(obj, name).keys() - {WHOLE}:
+            others = named is not None and named != _stored(obj, name).keys() - {WHOLE}
+            if others or (self._owners is not None and _owner(obj, name) != self._owners.get(name)):
                 self.confirm(obj, name)
+        if name in self.chosen and self._owners is not None:
+            self._owners[name] = _owner(obj, name)
         super().onChanged(obj, name)
 
     def confirm(self, obj: Any, link: str) -> None:
@@ -130,6 +136,11 @@ def _named(obj: Any, link: str) -> set[str] | None:
     return None if lost or not getattr(obj, link, None) else {name for name in names if _kind(name)}
 
 
+def _owner(obj: Any, link: str) -> str:
+    """The name of the object that a link has, '' for none."""
+    return str(getattr(obj, link)[0].Name) if getattr(obj, link, None) else ""
+
+
 def _link_of(text: str) -> str:
     """The link that a stored mark is of."""
     name = text.partition(" ")[0]
@@ -157,7 +168,8 @@ def _compared(obj: Any, link: str, marks: Sequence[Mark]) -> tuple[Issue, ...]:
     """What is wrong with what a link names, as it is, by what it was when it was chosen.
 
     Parts grow and move: a face or an edge that is of the same kind, and lies the same way, is the same one, unless the one
-    that was chosen is there unchanged under another number, and others came or went, or nothing but numbers changed.
+    that was chosen is there unchanged under another number, and others came or went, or nothing but numbers changed; or a
+    straight one is there, longer or shorter, where others came or went. Lines of sketches are turned by an end.
     """
     before, now = _stored(obj, link), {mark.name: mark for mark in marks}
     was = before.pop(WHOLE, None)
@@ -176,13 +188,24 @@ def _compared(obj: Any, link: str, marks: Sequence[Mark]) -> tuple[Issue, ...]:
         for mark in moved:
             near = np.flatnonzero(np.abs(middles - mark.middle).max(axis=1) <= TOLERANCE * size).tolist()
             same = [one.name for one in (every[k] for k in near) if mark.is_same(one, size, flat)]
+            if not same and whole.form != was.form and not mark.is_along(now[mark.name], size):
+                same = [one.name for one in every if mark.is_along(one, size)]
             if any(name in now for name in same):
                 continue  # in another order
             if same and (renumbered or not mark.is_alike(now[mark.name])):
                 return (_elsewhere(mark.name, source.Label, same[0]),)
-            if not mark.is_alike(now[mark.name]):
+            turned = whole.form == was.form and _is_turned(mark, now[mark.name], shape)
+            if not mark.is_alike(now[mark.name]) and not turned:
                 return (_changed(mark, now[mark.name], source.Label),)
     return ()
+
+
+def _is_turned(mark: Mark, now: Mark, shape: Any) -> bool:
+    """Whether what lies another way, in a shape of as many faces or edges as before, is surely the same: there is no other
+    one, or it is a line that was drawn by an end of it, as those of sketches are."""
+    alone = len(shape.Faces if _kind(mark.name) == FACE else shape.Edges) == 1
+    by_end = not shape.Faces and now.is_turned_about(mark, shape.BoundBox.DiagonalLength)
+    return mark.form == now.form and (alone or by_end)
 
 
 def _elsewhere(name: str, label: str, there: str) -> Issue:

@@ -44,6 +44,27 @@ class Mark(NamedTuple):
         lies = not any(self.way) or (along if self.form == PLANE else abs(along)) > np.cos(LEANS)
         return self.form == other.form and lies
 
+    def is_along(self, other: Mark, size: float) -> bool:
+        """Of straight edges, whether they lie on one line and share some of it, of a part of a size (mm)."""
+        if self.form != LINE or not self.is_alike(other):
+            return False
+        apart = np.subtract(other.middle, self.middle)
+        off = np.linalg.norm(np.cross(apart, self.way))
+        return bool(off <= TOLERANCE * size and abs(apart @ self.way) < 0.5 * (self.extent + other.extent))
+
+    def is_turned_about(self, other: Mark, size: float) -> bool:
+        """Of straight edges, whether they share an end or the middle, as one does that is drawn by an end of it."""
+        if self.form != LINE or other.form != LINE:
+            return False
+        mine, others = self._places(), other._places()
+        found = [np.abs(mine[1] - others[1]), *(np.abs(one - another) for one in mine[::2] for another in others[::2])]
+        return bool(min(map(np.max, found)) <= TOLERANCE * size)
+
+    def _places(self) -> tuple[Any, Any, Any]:
+        """Start, middle and end of a straight edge."""
+        middle, half = np.array(self.middle), 0.5 * self.extent * np.array(self.way)
+        return middle - half, middle, middle + half
+
 
 def read(text: str) -> Mark | None:
     """What was stored; None of what is damaged."""
