@@ -9757,7 +9757,7 @@
         <translation>dégagement du bras</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
         <source>keeping the nozzle clear</source>
         <translation>maintien de la buse à distance</translation>
     </message>
@@ -10385,6 +10385,11 @@
         <location filename="../../freecad_am/core/planning/remedies.py"/>
         <source>none of these makes the job feasible, each was tried: {0}</source>
         <translation>rien de ceci ne rend le travail faisable, tout a été essayé : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <source>none of {0} machines has a name like it; use one that `freecad-am machines` lists, such as {1}, or the path of a machine file or URDF</source>
+        <translation>aucune des {0} machines n’a un nom semblable ; utilisez l’une de celles que `freecad-am machines` énumère, comme {1}, ou le chemin d’un fichier de machine ou d’un URDF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/constant.py"/>
@@ -13220,11 +13225,6 @@
         <location filename="../../freecad_am/core/strategies/revolution/platform.py"/>
         <source>use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
         <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>use one of {0}</source>
-        <translation>utilisez l&apos;un de {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>

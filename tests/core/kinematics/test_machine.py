@@ -4,6 +4,7 @@
 import copy
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -88,7 +89,11 @@ def test_unknown_machine_names_its_neighbours(tmp_path):
     assert "fanuc-arcmate120ic" in info.value.message
     with pytest.raises(InputError) as info:
         machine.load("zzz")
-    assert "kuka-kr16-2" in info.value.message
+    said = info.value.message
+    (such_as,) = re.findall("such as (.*), or the path", said)
+    makers = {machine.load(one).id.partition("-")[0] for one in such_as.split(", ")}
+    assert {"abb", "fanuc", "kuka", "staubli", "ur"} <= makers and len(makers) == such_as.count(",") + 1
+    assert len(said) < 500  # a note under a field
     for path in (tmp_path / "none.json", tmp_path / "arm.urdf"):
         with pytest.raises(InputError) as info:
             machine.load(path)

@@ -219,7 +219,13 @@ def _near(name: str, names: list[str]) -> str:
     import difflib  # only when a name was wrong: starting is most of a small job's time
 
     near = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
-    return Text("did you mean {}?", ", ".join(near)) if near else Text("use one of {}", ", ".join(names))
+    if near:
+        return Text("did you mean {}?", ", ".join(near))
+    of_makers = {one.partition("-")[0]: one for one in reversed(names)}  # the first of each: all of them fill a page
+    return Text(
+        "none of {} machines has a name like it; use one that `freecad-am machines` lists, such as {}, or the path of a "
+        "machine file or URDF", len(names), ", ".join(sorted(of_makers.values())),
+    )
 
 
 def _parse(top: Node) -> Machine:
