@@ -79,3 +79,18 @@ def test_the_colours_of_tubes_stay_when_their_path_is_selected(person, toolpath)
     person.select(toolpath)
     assert person.path_pixels() == pytest.approx((lowest, highest), rel=0.1)
     person.screenshot("selected_tubes")
+
+
+def test_another_cell_that_leaves_a_toolpath_as_it_is_is_drawn_where_that_is(person, hemisphere):
+    document = hemisphere.Document
+    first = api.make_cell(document)
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=15), first)
+    key, other = toolpath.Key, api.make_cell(document, deposition_point=[900, 50, 600, 0, 5, 0])
+    person.idle()
+    assert (other.ViewObject.Proxy.stands_on, first.ViewObject.Proxy.stands_on) == ("", key)
+    toolpath.Cell = other
+    document.recompute()
+    person.idle()
+    assert (toolpath.Status, toolpath.Key) == ("up to date", key)
+    assert other.ViewObject.Proxy.stands_on == key
+    assert np.abs(other.ViewObject.Proxy.end[0] - first.ViewObject.Proxy.end[0]).max() == 0.0

@@ -42,14 +42,25 @@ class ToolpathView(PathView):
                     source.ViewObject.Visibility = False
                 if hasattr(feature, "Substrate"):
                     feature.ViewObject.Visibility = False
-        if obj.Cell is not None and getattr(obj.Cell.ViewObject, "Proxy", None):
-            obj.Cell.ViewObject.Proxy.refresh()
+        _show_cell(obj)
+
+    def updateData(self, obj: Any, name: str) -> None:
+        """A property of the object has changed; another cell may leave a toolpath as it is, and is drawn where that is."""
+        super().updateData(obj, name)
+        if name == "Cell" and not obj.Document.Restoring:
+            _show_cell(obj)
 
     def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
         return coloured(obj.Proxy.value(obj), kind, band_of(obj))
 
     def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
         return (band_of(obj),)
+
+
+def _show_cell(obj: Any) -> None:
+    """Draw the cell of a toolpath where that is."""
+    if obj.Cell is not None and getattr(obj.Cell.ViewObject, "Proxy", None):
+        obj.Cell.ViewObject.Proxy.refresh()
 
 
 def band_of(obj: Any) -> float:
