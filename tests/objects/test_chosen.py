@@ -156,6 +156,25 @@ def test_faces_that_only_change_places_or_stand_farther_apart_are_those_that_wer
     assert boxes.Status == "up to date" and warnings(boxes) == []
 
 
+def test_a_face_that_a_fillet_beside_it_makes_smaller_and_gives_another_number_is_told(doc):
+    steps = Part.makeBox(40, 30, 20).fuse(Part.makeBox(40, 15, 32)).fuse(Part.makeBox(15, 15, 45)).removeSplitter()
+    obj = doc.addObject("Part::Feature", "Steps")
+    told = 0
+    for k, n in ((9, 12), (9, 2), (10, 18), (9, 14)):
+        obj.Shape = steps
+        doc.recompute()
+        feature = api.make_cladding_feature(doc, obj, [f"Face{k}"], **COARSE)
+        obj.Shape = rounded = steps.makeFillet(2, [steps.Edges[n - 1]])
+        with contextlib.suppress(AmError):
+            api.recompute(doc)
+        name, chosen = feature.Source[1][0], steps.Faces[k - 1]
+        right = name.startswith("?") or rounded.getElement(name).common(chosen).Area > 0.5 * chosen.Area
+        assert len(warnings(feature)) == (not right), (k, n)
+        told += not right
+        doc.removeObject(feature.Name)
+    assert told > 2 or App.Version()[0] != "0"
+
+
 def put_quietly(obj, shape):
     with contextlib.suppress(AmError):
         put(obj, shape)

@@ -169,7 +169,7 @@ def _compared(obj: Any, link: str, marks: Sequence[Mark]) -> tuple[Issue, ...]:
 
     Parts grow and move: a face or an edge that is of the same kind, and lies the same way, is the same one, unless the one
     that was chosen is there unchanged under another number, and others came or went, or nothing but numbers changed; or a
-    straight one is there, longer or shorter, where others came or went. Lines of sketches are turned by an end.
+    straight or plane one is there, larger or smaller, where others came or went. Lines of sketches are turned by an end.
     """
     before, now = _stored(obj, link), {mark.name: mark for mark in marks}
     was = before.pop(WHOLE, None)

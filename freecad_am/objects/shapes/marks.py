@@ -45,12 +45,15 @@ class Mark(NamedTuple):
         return self.form == other.form and lies
 
     def is_along(self, other: Mark, size: float) -> bool:
-        """Of straight edges, whether they lie on one line and share some of it, of a part of a size (mm)."""
-        if self.form != LINE or not self.is_alike(other):
+        """Of straight edges, whether they lie on one line and share some of it; of plane faces, whether they lie in one
+        plane, with middles so near that they do; of a part of a size (mm)."""
+        if self.form not in (LINE, PLANE) or not self.is_alike(other):
             return False
-        apart = np.subtract(other.middle, self.middle)
-        off = np.linalg.norm(np.cross(apart, self.way))
-        return bool(off <= TOLERANCE * size and abs(apart @ self.way) < 0.5 * (self.extent + other.extent))
+        apart, extents = np.subtract(other.middle, self.middle), (self.extent, other.extent)
+        along, across = float(abs(apart @ self.way)), float(np.linalg.norm(np.cross(apart, self.way)))
+        if self.form == LINE:
+            return across <= TOLERANCE * size and along < 0.5 * sum(extents)
+        return along <= TOLERANCE * size and across < 0.5 * max(extents) ** 0.5
 
     def is_turned_about(self, other: Mark, size: float) -> bool:
         """Of straight edges, whether they share an end or the middle, as one does that is drawn by an end of it."""
