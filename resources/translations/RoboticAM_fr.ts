@@ -8202,7 +8202,7 @@
         <translation>écart, mm (maximum : {} points)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
         <source>did you mean {0}?</source>
         <translation>vouliez-vous dire {0} ?</translation>
     </message>
@@ -10387,7 +10387,7 @@
         <translation>rien de ceci ne rend le travail faisable, tout a été essayé : {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
         <source>none of {0} machines has a name like it; use one that `freecad-am machines` lists, such as {1}, or the path of a machine file or URDF</source>
         <translation>aucune des {0} machines n’a un nom semblable ; utilisez l’une de celles que `freecad-am machines` énumère, comme {1}, ou le chemin d’un fichier de machine ou d’un URDF</translation>
     </message>

@@ -197,7 +197,9 @@ def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
         path = Path(folder).expanduser() / f"{name}.json"
         if path.stem == name and is_there(path):  # a name may be too long for a file
             return path
-    raise InputError("UNKNOWN_MACHINE", "cell.machine", "{!r} is not known; {}", name, _near(name, sorted(_files(folders))))
+    from .near_names import near  # only when a name was wrong: starting is most of a small job's time
+
+    raise InputError("UNKNOWN_MACHINE", "cell.machine", "{!r} is not known; {}", name, near(name, sorted(_files(folders))))
 
 
 def parse(text: str, path: Path) -> Machine:
@@ -213,19 +215,6 @@ def _files(folders: Sequence[Path | str]) -> dict[str, Path]:
     for folder in reversed(folders):
         found.update((path.stem, path) for path in Path(folder).expanduser().glob("*.json"))
     return found
-
-
-def _near(name: str, names: list[str]) -> str:
-    import difflib  # only when a name was wrong: starting is most of a small job's time
-
-    near = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
-    if near:
-        return Text("did you mean {}?", ", ".join(near))
-    of_makers = {one.partition("-")[0]: one for one in reversed(names)}  # the first of each: all of them fill a page
-    return Text(
-        "none of {} machines has a name like it; use one that `freecad-am machines` lists, such as {}, or the path of a "
-        "machine file or URDF", len(names), ", ".join(sorted(of_makers.values())),
-    )
 
 
 def _parse(top: Node) -> Machine:

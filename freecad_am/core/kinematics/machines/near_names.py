@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What to write in place of the name of a machine that is not known."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+
+from ...issues import Text
+
+
+def near(name: str, names: Sequence[str]) -> str:
+    """The names most like it; where none is, one of each maker: all of them fill a page."""
+    alike = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
+    if alike:
+        return Text("did you mean {}?", ", ".join(alike))
+    of_makers = {one.partition("-")[0]: one for one in reversed(names)}
+    return Text(
+        "none of {} machines has a name like it; use one that `freecad-am machines` lists, such as {}, or the path of a "
+        "machine file or URDF", len(names), ", ".join(sorted(of_makers.values())),
+    )
