@@ -14,7 +14,6 @@ from ..core.strategies.support import ABOVE_PLATFORM, surely_above
 from ..objects.fields import properties
 from ..objects.planned import suited_cell
 from ..objects.results.findings import issues_of
-from ..objects.solid_feature import SolidFeature
 from ..objects.staleness import INFEASIBLE
 from .changes import change
 from .steps import one_step, renew
@@ -52,7 +51,8 @@ def on_platform(cell: Any, features: Sequence[Any], make: Callable[[], Any]) -> 
 def _is_above(cell: Any, features: Sequence[Any]) -> bool:
     """Whether a feature will surely be told to begin above the platform."""
     settings, proxy = cell.Proxy.value(cell), features[0].Proxy
-    if len(features) > 1 or not isinstance(proxy, SolidFeature) or settings.platform_diameter <= 0.0:
+    solid = any(section.cls is SolidParameters for section in proxy.sections)
+    if len(features) > 1 or not solid or settings.platform_diameter <= 0.0:
         return False
     height = proxy.parameters(features[0], SolidParameters).layer_height
     return settings.mount != "feature" and surely_above(proxy.value(features[0]), height)

@@ -14477,7 +14477,7 @@
         <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}, ou none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/near_names.py"/>
         <source>{0} is not known; {1}</source>
         <translation>{0} n&apos;est pas connu ; {1}</translation>
     </message>

@@ -268,6 +268,23 @@ def test_a_panel_whose_object_is_gone_says_so(person, hemisphere):
     person.panel_closed()
 
 
+def test_a_field_in_the_place_of_a_deleted_one_is_made_anew(person, window, monkeypatch):
+    """PySide finds what FreeCAD made by its place in memory, and a deleted field there, if something still has that."""
+    loader = person.gui.UiLoader()
+    made, deleted = [], [loader.createWidget("Gui::QuantitySpinBox") for _ in range(3)]
+    for one in deleted:
+        person.qt.delete(one)
+
+    class Loader:
+        def createWidget(self, name):
+            made.append(name)
+            return deleted.pop() if deleted else loader.createWidget(name)
+
+    monkeypatch.setattr(person.gui, "UiLoader", Loader)
+    field = QuantityField(2.5, "mm", "Width")
+    assert len(made) == 4 and person.qt.isValid(field.box) and field.read() == 2.5
+
+
 def test_long_names_are_seen_from_their_start(person, hemisphere):
     hemisphere.Label = "A part with a name that is far too long for its field"
     person.select(hemisphere)

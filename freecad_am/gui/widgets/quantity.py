@@ -30,7 +30,20 @@ from ..texts.translation import tr
 _DIGITS = 10
 _OURS = re.compile(r"\d\s*ms\s*$")  # that FreeCAD's field does not know
 _LEAST_WIDTH = 70
+_TRIES = 20
 _SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.svg"  # of FreeCAD
+
+
+def _made() -> tuple[Any, Any]:
+    """FreeCAD's field, and the line that is typed into; another one where PySide takes either for one that was deleted,
+    which was at its place in memory (docs/versions.md)."""
+    for _ in range(_TRIES):
+        box = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
+        with contextlib.suppress(RuntimeError):
+            line = box.findChild(QtGui.QLineEdit)
+            line.objectName()
+            return box, line
+    raise RuntimeError("no field can be made")
 
 
 class QuantityField:
@@ -40,10 +53,9 @@ class QuantityField:
         """shown: the number in the unit; expression: what it follows, '' where it follows nothing."""
         self.unit, self.name = unit, name
         self.dimension = App.Units.Quantity(f"1 {unit}").Unit
-        self.box = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
+        self.box, self.line = _made()
         self.box.setProperty("unit", unit)
         self.box.setMinimumWidth(_LEAST_WIDTH)
-        self.line = self.box.findChild(QtGui.QLineEdit)
         self.line.setValidator(None)  # it refuses keys, unseen; `read` tells what is wrong
         self.show(shown)
         if expression:

@@ -197,9 +197,9 @@ def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
         path = Path(folder).expanduser() / f"{name}.json"
         if path.stem == name and is_there(path):  # a name may be too long for a file
             return path
-    from .near_names import near  # only when a name was wrong: starting is most of a small job's time
+    from .near_names import unknown  # only when a name was wrong: starting is most of a small job's time
 
-    raise InputError("UNKNOWN_MACHINE", "cell.machine", "{!r} is not known; {}", name, near(name, sorted(_files(folders))))
+    raise unknown(name, sorted(_files(folders)))
 
 
 def parse(text: str, path: Path) -> Machine:

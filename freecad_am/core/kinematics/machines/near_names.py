@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What to write in place of the name of a machine that is not known."""
+"""The error of a machine whose name is not known, with names to write instead."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
 
-from ...issues import Text
+from ...issues import InputError, Text
 
 
-def near(name: str, names: Sequence[str]) -> str:
+def unknown(name: str, names: Sequence[str]) -> InputError:
+    """UNKNOWN_MACHINE, of the names that there are."""
+    return InputError("UNKNOWN_MACHINE", "cell.machine", "{!r} is not known; {}", name, _near(name, names))
+
+
+def _near(name: str, names: Sequence[str]) -> str:
     """The names most like it; where none is, one of each maker: all of them fill a page."""
     alike = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
     if alike:
