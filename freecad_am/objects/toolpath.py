@@ -71,8 +71,9 @@ class Toolpath(Stage):
     def key(self, obj: Any) -> str:
         """As of any stage, but of its cell what `seen_of` leaves is all: where a part stands, and which machine deposits it,
         is for joint paths. In a document from before, which fits yet, as of any stage."""
-        whole = super().key(obj)
-        return whole if obj.Key == whole else keys.of_inputs(self, obj, _input_key)
+        key = keys.of_inputs(self, obj, _input_key)
+        before = obj.Key not in ("", key) and obj.Key == super().key(obj)
+        return str(obj.Key) if before else key
 
     def prepare(self, obj: Any) -> Work:
         for following in obj.InList:

@@ -7,7 +7,6 @@ import contextlib
 from collections.abc import Collection, Sequence
 from typing import Any
 
-import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ...core.issues import AmError, InputError, values_in
@@ -21,6 +20,7 @@ from ..widgets import fields
 from ..widgets.fold import Fold
 from ..widgets.messages import Messages
 from ..widgets.present import present
+from ..widgets.upright import around
 
 
 class Noted:
@@ -155,6 +155,6 @@ def lines_of(widget: Any) -> list[Any]:
 def _bring_into_sight(form: Any, widget: Any) -> None:
     """Scroll the task panel to something in it."""
     with contextlib.suppress(RuntimeError):  # the panel is gone by now
-        for area in present(Gui.getMainWindow(), QtGui.QScrollArea):
-            if widget is not None and area.isVisible() and area.isAncestorOf(form):
+        for area in around(form):
+            if widget is not None and area.isVisible():
                 area.ensureWidgetVisible(widget)

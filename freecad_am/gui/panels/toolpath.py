@@ -19,7 +19,7 @@ from ..signals import connect
 from ..texts.translation import tr, translated_error
 from ..widgets.feature_order import FeatureOrder
 from ..widgets.fit_plot import FitPlot, fits_text, speeds_text
-from ..widgets.present import present
+from ..widgets.upright import around
 from .stage import StagePanel
 
 MODEL, WIDTH = "process_bead_model", "process_bead_width"
@@ -105,8 +105,8 @@ class ToolpathPanel(StagePanel):
 
     def _scroll(self) -> None:
         """Bring the fit into sight, once it has its place."""
-        for area in present(Gui.getMainWindow(), QtGui.QScrollArea):
-            if area.isVisible() and area.isAncestorOf(self.form):
+        for area in around(self.form):
+            if area.isVisible():
                 area.ensureWidgetVisible(self.fit)
 
     def _width(self) -> float | None:
