@@ -14,7 +14,8 @@ from ..objects.program import Program
 from ..objects.shapes.chosen import FeatureStage
 from ..objects.staleness import UP_TO_DATE
 from .arguments import checked_document
-from .steps import checked_stage, in_order, one_step, renew, with_faces
+from .links import checked_links
+from .steps import checked_stage, in_order, one_step, owned, renew, with_faces
 
 
 def change(obj: Any, **values: Any) -> Any:
@@ -36,11 +37,11 @@ def change(obj: Any, **values: Any) -> Any:
             values["source"] = with_faces(values["source"], values.pop("faces", ()))
         if "start_edges" in values:
             wall = values.get("source") or obj.Source
-            values["start_edges"] = (wall[0], list(values["start_edges"])) if wall and values["start_edges"] else None
+            values["start_edges"] = owned(wall and wall[0], values["start_edges"], "start_edges")
         if "base_faces" in values:
             hub = values.get("substrate") or obj.Substrate
-            values["base_faces"] = (hub, list(values["base_faces"])) if hub and values["base_faces"] else None
-        chosen = {links[key]: values.pop(key) for key in links if key in values}
+            values["base_faces"] = owned(hub, values["base_faces"], "base_faces")
+        chosen = checked_links(obj.Document, proxy.links, {links[key]: values.pop(key) for key in links if key in values})
         given(obj, proxy, [], values)
         for property_name, value in chosen.items():
             setattr(obj, property_name, value)

@@ -11,7 +11,7 @@ from ..core.parameters.filled import CladdingParameters, DevelopableParameters, 
 from ..core.parameters.strategy import CurvesParameters, RevolutionParameters, SurfaceParameters
 from ..objects.planned.feature_kinds import proxy_of
 from .arguments import checked_document
-from .steps import make_stage, with_faces
+from .steps import make_stage, owned, with_faces
 
 
 def make_feature(
@@ -37,15 +37,18 @@ def make_feature_of(
     and `BaseFaces` are names alone. parameters: dataclasses of its sections; values: single ones by key."""
     checked_document(doc)
     proxy = proxy_of(kind)
-    known = {link.name for link in proxy.links}
+    known = {link.name: link.key for link in proxy.links}
     given_links = {"Source": with_faces(source, faces), **(links or {})}
-    for name, owner in (("StartEdges", source), ("BaseFaces", given_links.get("Substrate"))):
-        names = list(given_links.get(name) or ())
-        given_links[name] = (owner, names) if names else None
-    start = given_links.get("StartFaces") or ()
-    given_links["StartFaces"] = (source, list(start)) if start and not isinstance(start, tuple) else start or None
     chosen = {name: value for name, value in given_links.items() if name in known}
+    for name, owner in (("StartEdges", source), ("BaseFaces", given_links.get("Substrate")), ("StartFaces", source)):
+        if name in chosen and not _is_owned(chosen[name]):
+            chosen[name] = owned(owner, chosen[name], known[name])
     return make_stage(doc, proxy, "Feature", label, chosen, parameters, dict(values or {}))
+
+
+def _is_owned(names: Any) -> bool:
+    """Whether names of faces or edges come with their object."""
+    return isinstance(names, tuple) and len(names) == 2 and not isinstance(names[0], str)
 
 
 def make_surface_feature(

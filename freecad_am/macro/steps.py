@@ -12,14 +12,18 @@ import FreeCAD as App
 from ..core.issues import InputError
 from ..objects import stage as stages
 from ..objects.fields.settings import given
-from .arguments import checked_document
+from .arguments import checked_document, checked_names, checked_text
+from .links import checked_links
 
 
 def make_stage(
-    doc: Any, proxy: type, name: str, label: str, links: dict[str, Any], parameters: Sequence[Any],
+    doc: Any, proxy: type[stages.Stage], name: str, label: str, links: dict[str, Any], parameters: Sequence[Any],
     values: dict[str, Any],
 ) -> Any:
     """A stage with its links and parameters, computed; nothing is left of one that fails."""
+    checked_document(doc)
+    checked_text(label, "label")
+    links = checked_links(doc, proxy.links, links)
     with one_step(doc, f"Make {label}"):
         obj = doc.addObject("App::FeaturePython", name)
         try:
@@ -38,9 +42,17 @@ def make_stage(
     return obj
 
 
-def with_faces(source: Any, faces: Sequence[str]) -> Any:
+def with_faces(source: Any, faces: Any) -> Any:
     """A link to an object, or to faces of it; None for no object."""
-    return None if source is None else (source, list(faces))
+    return None if source is None else (source, checked_names(faces, "faces"))
+
+
+def owned(owner: Any, names: Any, key: str) -> Any:
+    """A link to faces or edges of an object; None for none. InputError BAD_INPUT for those of nothing."""
+    names = checked_names(names, key)
+    if names and owner is None:
+        raise InputError("BAD_INPUT", key, "{} are names without an object that they are of; give it too", ", ".join(names))
+    return (owner, names) if names else None
 
 
 def renew(obj: Any, force: bool = False) -> None:

@@ -16,7 +16,8 @@ from ..core.parameters.strategy import RevolutionParameters
 from ..core.strategies import size
 from .results.fingerprints import digits, fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape
-from .shapes.chosen import FeatureStage, source_of
+from .shapes.chosen import FeatureStage, names_of, source_of
+from .shapes.marks import EDGE
 from .stage_parts import Link, Outcome, Section, Work
 
 
@@ -79,14 +80,14 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
         link = (obj.Source[0], ["V_Axis"])
     if not link:
         return None
-    target, names = link
+    target, names = link[0], names_of(link)
     name = names[0] if names else ""
     placement = target.getGlobalPlacement() if hasattr(target, "getGlobalPlacement") else App.Placement()
     sketch_axes = {"V_Axis": App.Vector(0, 1, 0), "H_Axis": App.Vector(1, 0, 0), "N_Axis": App.Vector(0, 0, 1)}
     if name in sketch_axes:
         return placement.Base, placement.Rotation.multVec(sketch_axes[name])
     shape = getattr(target, "Shape", None)
-    edges = [] if shape is None or shape.isNull() else ([shape.getElement(name)] if name else shape.Edges)
+    edges = [] if shape is None or shape.isNull() else _named(shape, name)
     if len(edges) == 1 and edges[0].ShapeType == "Edge" and edges[0].Curve.TypeId in _LINES:
         edge = edges[0]
         outer = placement.multiply(target.Placement.inverse())
@@ -99,3 +100,8 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
         "BAD_AXIS", f"{obj.Label}.Axis", "{} {} is not a straight line; choose a straight edge or an axis", target.Label,
         name
     )
+
+
+def _named(shape: Any, name: str) -> list[Any]:
+    """The edge of a shape that has a name, all without one; none where it has no such."""
+    return [edge for k, edge in enumerate(shape.Edges, start=1) if name in ("", f"{EDGE}{k}")]

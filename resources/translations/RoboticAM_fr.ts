@@ -13337,6 +13337,11 @@
         <translation>ce qui porte la base du robot lui-même, qu&apos;aucun MACHINE_DEF ne dit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>what was deleted</source>
+        <translation>ce qui a été supprimé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/work_offset.py"/>
         <source>what was touched is {0} times as large as what is planned; one of them is in {1}, give both in mm</source>
         <translation>ce qui a été palpé est {0} fois plus grand que ce qui est prévu ; l&apos;un des deux est en {1}, donnez les deux en mm</translation>
@@ -13570,6 +13575,16 @@
         <location filename="../../freecad_am/brep/walls/checks.py"/>
         <source>{0} and {1} meet at an angle of {2} deg at {3}; a wall&apos;s faces must run on smoothly, within {4} deg: round the edge, or deposit the faces one after the other</source>
         <translation>{0} et {1} se rencontrent sous un angle de {2} deg en {3} ; les faces d&apos;une paroi doivent se prolonger sans cassure, à {4} deg près : arrondissez l&apos;arête, ou déposez les faces l&apos;une après l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/steps.py"/>
+        <source>{0} are names without an object that they are of; give it too</source>
+        <translation>{0} sont des noms sans l’objet auquel ils appartiennent ; donnez-le aussi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} are not names of faces or edges; give a list of texts, such as [&quot;Face1&quot;]</source>
+        <translation>{0} ne sont pas des noms de faces ou d’arêtes ; donnez une liste de textes, telle que [&quot;Face1&quot;]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/obstacles.py"/>
@@ -13952,6 +13967,11 @@
         <translation>{0} est aussi le nom de données ou d&apos;un signal dont le programme se sert ; donnez un autre nom</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} is an object of another document, {1}; give one of {2}, such as a copy of it</source>
+        <translation>{0} est un objet d’un autre document, {1} ; donnez-en un de {2}, par exemple une copie</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>{0} is an open mesh that cuts itself at {1} pairs of its triangles, as at {2}, so it is not a wall of one bead: it is filled, with its {3} holes of up to {4} mm closed</source>
         <translation>{0} est un maillage ouvert qui se coupe lui-même en {1} paires de ses triangles, par exemple en {2}, ce n&apos;est donc pas une paroi d&apos;un cordon : il est rempli, ses {3} trous jusqu&apos;à {4} mm étant fermés</translation>
@@ -14152,6 +14172,11 @@
         <translation>{0} n&apos;est pas une bibliothèque du projet</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} is not a list of objects; give one, such as [doc.Clamp]</source>
+        <translation>{0} n’est pas une liste d’objets ; donnez-en une, telle que [doc.Clamp]</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a list of {1}; write one in square brackets</source>
         <translation>{0} n&apos;est pas une liste de {1} ; écrivez-en une entre crochets</translation>
@@ -14334,7 +14359,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a text; give one in quotes</source>
-        <translation>{0} n&apos;est pas un texte ; donnez-en un entre guillemets</translation>
+        <translation>{0} n’est pas un texte ; donnez-en un entre guillemets</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
@@ -14415,6 +14440,11 @@
         <location filename="../../freecad_am/posts/fanuc/parsed.py"/>
         <source>{0} is not an instruction</source>
         <translation>{0} n&apos;est pas une instruction</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} is not an object of a document; give one, such as doc.Body</source>
+        <translation>{0} n’est pas un objet d’un document ; donnez-en un, tel que doc.Body</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
@@ -14520,6 +14550,11 @@
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>{0} is not there any more since the part changed; choose the faces again</source>
         <translation>{0} n’existe plus depuis que la pièce a changé ; choisissez les faces à nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/nested.py"/>
+        <source>{0} is not there in {1}; choose it in the 3D view, or by the object that it belongs to</source>
+        <translation>{0} n’existe pas dans {1} ; choisissez-le dans la vue 3D, ou par l’objet auquel il appartient</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -14857,6 +14892,11 @@
         <translation>{0} doit être compris entre -180 et 180 ; donnez les mêmes angles dans cette plage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/shapes/nested.py"/>
+        <source>{0} names faces or edges of several objects ({1}, {2}); choose those of one</source>
+        <translation>{0} désigne des faces ou des arêtes de plusieurs objets ({1}, {2}) ; choisissez celles d’un seul</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/external.py"/>
         <source>{0} names no external axes; {1}</source>
         <translation>{0} ne désigne pas d&apos;axes externes ; {1}</translation>
@@ -14925,6 +14965,11 @@
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>{0} of {1} is not the face that was chosen: that face is {2} now, as FreeCAD numbers faces anew when a part changes; choose the faces again, or confirm them: OK in the panel with nothing else entered</source>
         <translation>{0} de {1} n’est pas la face choisie : celle-ci est maintenant {2}, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/nested.py"/>
+        <source>{0} of {1} is {2} of {3}; choose it of that object</source>
+        <translation>{0} de {1} est {2} de {3} ; choisissez-la sur cet objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>

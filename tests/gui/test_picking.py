@@ -6,6 +6,7 @@ import pytest
 
 from freecad_am.gui.picking import picking
 from freecad_am.gui.picking.picking import Pick
+from freecad_am.objects.shapes import nested
 from freecad_am.objects.shapes.bodies import global_shape
 
 
@@ -53,7 +54,7 @@ def test_a_face_is_the_same_face_of_the_object_it_belongs_to(person, assembly, t
     own_count = len(global_shape(assembly.getObject(name)).Faces)
     for number in range(1, own_count + 1):
         full = path.format(number)
-        picked, own = picking.resolved(obj, full)
+        picked, own = nested.owner_of(obj, full)
         assert picked.Name == name
         assert same_place(global_shape(picked).getElement(own), obj.getSubObject(full)), full
 

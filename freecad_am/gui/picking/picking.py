@@ -10,17 +10,13 @@ from typing import Any
 import FreeCADGui as Gui
 
 from ...brep.walls.standing import stand
-from ...core.issues import InputError
 from ...objects.job_group import is_group
+from ...objects.shapes import marks, nested
 from ...objects.shapes.bodies import global_shape
 from ...objects.stage import stage_of
 from ..texts.translation import tr
 
-FACE, EDGE = "Face", "Edge"
-_GROUPS = ("App::Part", "App::DocumentObjectGroup")
-_LINES = ("App::Line", "PartDesign::Line")
-_SKETCH_AXES = ("V_Axis", "H_Axis", "N_Axis")
-_TOLERANCE_MM = 1e-6  # mm; of two faces that are the same
+FACE, EDGE = marks.FACE, marks.EDGE
 
 
 @dataclass(frozen=True)
@@ -36,7 +32,7 @@ def selected(document: Any) -> list[Pick]:
     found: dict[str, Pick] = {}
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
-            obj, name = resolved(entry.Object, path)
+            obj, name = nested.owner_of(entry.Object, path)
             obj = _alone(obj)
             if usable(obj):
                 before = found.get(obj.Name, Pick(obj)).names
@@ -50,27 +46,17 @@ def selected_line(document: Any) -> Pick | None:
     whole: Pick | None = None
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
-            pick = _line(entry.Object, path)
-            if pick.names or pick.obj.TypeId in _LINES:
+            obj, name = nested.line_of(entry.Object, path)
+            pick = Pick(obj, (name,) if name else ())
+            if name or obj.TypeId in nested.LINES:
                 return pick
             whole = whole or pick
     return whole
 
 
-def _line(top: Any, path: str) -> Pick:
-    obj, name = resolved(top, path)
-    element = path.rsplit(".", maxsplit=1)[-1]
-    if name.startswith(EDGE):
-        return Pick(obj, (name,))
-    if element in _SKETCH_AXES and obj.isDerivedFrom("Sketcher::SketchObject"):
-        return Pick(obj, (element,))
-    leaf = (top.getSubObjectList(path) or [obj])[-1]  # a line of an origin, deep within its part
-    return Pick(leaf if leaf.TypeId in _LINES else obj)
-
-
 def _alone(obj: Any) -> Any:
     """What a group holds, where that is one thing with a shape; else the object itself."""
-    if not any(obj.isDerivedFrom(kind) for kind in _GROUPS):
+    if not any(obj.isDerivedFrom(kind) for kind in nested.GROUPS):
         return obj
     held = [one for one in obj.Group if usable(one)]
     return held[0] if len(held) == 1 else obj
@@ -87,41 +73,6 @@ def usable(obj: Any) -> bool:
 def is_mesh(obj: Any) -> bool:
     """Whether an object is a mesh, which has no faces to deposit."""
     return hasattr(obj, "Mesh")
-
-
-def resolved(top: Any, path: str) -> tuple[Any, str]:
-    """The object that a selected element belongs to for its user, and the element's name on it, '' for all of it.
-
-    A click within an assembly selects 'Body.Pad.Face3' of its outermost group: that is Face3 of the body, or of the
-    feature where it is not the body's tip. What a link shows belongs to the link.
-    """
-    *steps, element = path.split(".")
-    steps = [step for step in steps if step[:1] not in (";", "?")]  # names of FreeCAD 1.0 that outlive changes
-    obj = top
-    while steps and any(obj.isDerivedFrom(kind) for kind in _GROUPS):
-        obj = obj.Document.getObject(steps.pop(0)) or obj
-    if steps and obj.isDerivedFrom("PartDesign::Body"):
-        feature = obj.Document.getObject(steps[-1])
-        if feature is not None and feature != obj.Tip and usable(feature):
-            obj = feature
-    if not element.startswith((FACE, EDGE)) or is_mesh(obj):
-        return obj, ""
-    return obj, element if obj == top and not steps else _own_name(obj, top.getSubObject(path), element)
-
-
-def _own_name(obj: Any, picked: Any, element: str) -> str:
-    """The name that an object itself has for a face or edge in document coordinates; '' when it has no such."""
-    try:
-        shape = global_shape(obj)
-    except InputError:
-        return ""
-    kind = FACE if element.startswith(FACE) else EDGE
-    elements = shape.Faces if kind == FACE else shape.Edges
-    for number, one in enumerate(elements, start=1):
-        apart = (one.CenterOfMass - picked.CenterOfMass).Length
-        if apart < _TOLERANCE_MM and abs(one.Length - picked.Length) < _TOLERANCE_MM * max(1.0, one.Length):
-            return f"{kind}{number}"
-    return ""
 
 
 def with_faces(pick: Pick) -> Pick:
@@ -179,7 +130,7 @@ def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
 def refused(document: Any) -> str:
     """Why nothing that is selected in a document can be deposited; '' where nothing is selected."""
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
-        obj, _ = resolved(entry.Object, (entry.SubElementNames or ("",))[0])
+        obj, _ = nested.owner_of(entry.Object, (entry.SubElementNames or ("",))[0])
         if usable(obj):
             continue
         if stage_of(obj) is not None or is_group(obj):

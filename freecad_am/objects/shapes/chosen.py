@@ -15,6 +15,7 @@ from ..fields.properties import HIDDEN, OUTPUT
 from ..stage import Stage
 from ..stage_parts import Outcome
 from ..staleness import UP_TO_DATE
+from . import nested
 from .bodies import shape_of
 from .marks import EDGE, FACE, LINE, PLANE, TOLERANCE, WHOLE, Mark, marks_of, read, whole_of
 
@@ -57,6 +58,14 @@ class FeatureStage(Stage):
                     "BAD_FACES", place, "{} is not there any more since the part changed; choose the faces again", names
                 )
         return super().linked(obj)
+
+    def key(self, obj: Any) -> str:
+        """As of any stage. InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path to a face or edge of another object than
+        the one that is linked, which has others of these names."""
+        for link in self.chosen:
+            if linked := getattr(obj, link):
+                nested.refuse_paths(*linked, f"{obj.Label}.{link}")
+        return super().key(obj)
 
     @property
     def chosen(self) -> tuple[str, ...]:

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a path names that leads through what holds it, as FreeCAD's selection has it: 'Body.Pad.Face3' of a part."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ...core.issues import InputError
+from .bodies import global_shape, outer_placement
+from .marks import EDGE, FACE, PLANE
+
+GROUPS = ("App::Part", "App::DocumentObjectGroup")
+LINES = ("App::Line", "PartDesign::Line")
+SKETCH_AXES = ("V_Axis", "H_Axis", "N_Axis")
+CODES = {FACE: "BAD_FACES", EDGE: "BAD_EDGES"}
+TOLERANCE_MM = 1e-6  # of two faces or edges that are the same
+
+
+def owner_of(top: Any, path: str) -> tuple[Any, str]:
+    """The object that an element at the end of a path belongs to for its user, and the name of the face or edge on it: ''
+    for all of it, and for one that it does not have.
+
+    A click within an assembly selects 'Body.Pad.Face3' of its outermost group: that is Face3 of the body, or of the
+    feature where it is not the body's tip. What a link shows belongs to the link.
+    """
+    *steps, element = path.split(".")
+    steps = [step for step in steps if step[:1] not in (";", "?")]  # names of FreeCAD 1.0 that outlive changes
+    obj, own = top, not steps
+    while steps and any(obj.isDerivedFrom(kind) for kind in GROUPS):
+        held = obj.getSubObject(f"{steps.pop(0)}.", retType=1)
+        if held is None:
+            return top, ""
+        obj = held
+    if steps and obj.isDerivedFrom("PartDesign::Body"):
+        feature = obj.Document.getObject(steps[-1])
+        if feature is not None and feature != obj.Tip and _has_shape(feature):
+            obj = feature
+    if not element.startswith((FACE, EDGE)) or hasattr(obj, "Mesh"):
+        return obj, ""
+    return obj, element if own else _own_name(obj, _seen(top, path), element)
+
+
+def line_of(top: Any, path: str) -> tuple[Any, str]:
+    """What of a path something may turn about: an object and its edge or axis of a sketch, or a line of an origin, deep
+    within its part; else the whole object."""
+    obj, name = owner_of(top, path)
+    element = path.rsplit(".", maxsplit=1)[-1]
+    if name.startswith(EDGE):
+        return obj, name
+    if element in SKETCH_AXES and obj.isDerivedFrom("Sketcher::SketchObject"):
+        return obj, element
+    leaf = (top.getSubObjectList(path) or [obj])[-1]
+    return (leaf if leaf.TypeId in LINES else obj), ""
+
+
+def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]]:
+    """A link to some faces or edges, without the paths that lead to them: the object that they belong to, and their names
+    on it. InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path that leads to no such, and for those of several objects."""
+    if not any("." in name for name in names):
+        return obj, list(names)
+    found = [_found(obj, name, where) for name in names]
+    others = [one.Label for one, _ in found if one != found[0][0]]
+    if others:
+        raise InputError(_code(names[0]), where, "{} names faces or edges of several objects ({}, {}); choose those of one",
+                         ", ".join(names), found[0][0].Label, others[0])
+    return found[0][0], [name for _, name in found]
+
+
+def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
+    """Refuse paths to faces and edges of other objects than the one that is linked: the same names are others on it.
+    InputError as `resolved`."""
+    for name in names:
+        element = name.rsplit(".", maxsplit=1)[-1]
+        if "." not in name or element.startswith("?"):  # what FreeCAD knows to be lost
+            continue
+        owner, own = _found(obj, name, where)
+        if owner != obj or own != element:
+            raise InputError(_code(name), where, "{} of {} is {} of {}; choose it of that object", name, obj.Label,
+                             own or element, owner.Label)
+
+
+def _found(obj: Any, name: str, where: str) -> tuple[Any, str]:
+    """As `line_of`. InputError for what is not there."""
+    if "." not in name:
+        return obj, name
+    if obj.getSubObject(f"{name}.", retType=1) is not None:
+        name = f"{name}."  # an object, which FreeCAD would have the path end with a dot for
+    element = name.rsplit(".", maxsplit=1)[-1]
+    owner, own = (owner_of if element.startswith(FACE) else line_of)(obj, name)
+    if obj.getSubObject(name, retType=1) is None or (element and not own):
+        raise InputError(_code(name), where, "{} is not there in {}; choose it in the 3D view, or by the object that it "
+                         "belongs to", name, obj.Label)
+    return owner, own
+
+
+def _code(name: str) -> str:
+    element = name.rsplit(".", maxsplit=1)[-1]
+    return next((code for kind, code in CODES.items() if element.startswith(kind)), "BAD_AXIS")
+
+
+def _has_shape(obj: Any) -> bool:
+    shape = getattr(obj, "Shape", None)
+    return shape is not None and not shape.isNull()
+
+
+def _seen(top: Any, path: str) -> Any:
+    """The face or edge at the end of a path, in the coordinates of the document; None where there is none."""
+    seen = top.getSubObject(path)
+    if seen is not None and not seen.isNull():
+        outer = outer_placement(top)
+        if not outer.isIdentity():
+            seen = seen.copy()
+            seen.Placement = outer.multiply(seen.Placement)
+    return seen
+
+
+def _own_name(obj: Any, seen: Any, element: str) -> str:
+    """The name that an object itself has for a face or edge in document coordinates, the one that it is called already
+    before others; '' when it has no such."""
+    kind = FACE if element.startswith(FACE) else EDGE
+    try:
+        shape = global_shape(obj)
+    except InputError:
+        return ""
+    if seen is None or seen.isNull():
+        return ""
+    elements = {f"{kind}{k}": one for k, one in enumerate(shape.Faces if kind == FACE else shape.Edges, start=1)}
+    same = [name for name, one in elements.items() if _is_same(one, seen)]
+    return element if element in same else next(iter(same), "")
+
+
+def _is_same(one: Any, other: Any) -> bool:
+    near = (one.CenterOfMass - other.CenterOfMass).Length < TOLERANCE_MM
+    if not near or abs(one.Length - other.Length) >= TOLERANCE_MM * max(1.0, one.Length):
+        return False
+    if one.ShapeType != FACE or one.Surface.TypeId != PLANE or other.Surface.TypeId != PLANE:
+        return True
+    return bool(one.normalAt(0.0, 0.0).dot(other.normalAt(0.0, 0.0)) > 0.0)  # of two that touch, the one that was meant

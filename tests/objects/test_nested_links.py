@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faces and edges by paths through what holds their object: the edge that was clicked is laid, or it is refused."""
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.issues import InputError
+from freecad_am.objects.shapes.bodies import global_shape
+
+
+@pytest.fixture
+def nested(doc):
+    """Two boxes in a part that is moved and turned, one of them in a group of it; a link to that part; a sketch of it."""
+    part, group = doc.addObject("App::Part", "Part"), doc.addObject("App::DocumentObjectGroup", "Group")
+    part.addObject(group)
+    a, b = doc.addObject("Part::Box", "A"), doc.addObject("Part::Box", "B")
+    a.Length, b.Length, b.Label = 20, 30, "Bee"
+    b.Placement = App.Placement(App.Vector(100, 0, 0), App.Rotation(App.Vector(1, 0, 0), 20))
+    part.addObject(a)
+    part.addObject(b)
+    part.Placement = App.Placement(App.Vector(0, 7, 50), App.Rotation(App.Vector(0, 0, 1), 30))
+    sketch = doc.addObject("Sketcher::SketchObject", "Sketch")
+    part.addObject(sketch)
+    link = doc.addObject("App::Link", "Link")
+    link.LinkedObject, link.Placement.Base = part, App.Vector(0, 500, 0)
+    outer = doc.addObject("App::Part", "Outer")
+    outer.Placement.Base = App.Vector(0, 0, 1000)
+    doc.recompute()
+    return doc
+
+
+def ends(edge):
+    return sorted(tuple(np.round(vertex.Point, 6)) for vertex in edge.Vertexes)
+
+
+def laid(feature):
+    """The ends of the only curve of a feature."""
+    curve, = api.result(feature).curves
+    return sorted(tuple(point) for point in np.round(curve.points[[0, -1]], 6).tolist())
+
+
+@pytest.mark.parametrize("edge", [f"Edge{k}" for k in range(1, 13)])
+@pytest.mark.parametrize(
+    ("top", "path"), [("Part", "A."), ("Part", "B."), ("Part", "$Bee."), ("Link", "A."), ("Link", "B.")]
+)
+def test_the_edge_that_a_path_names_is_laid(nested, top, path, edge):
+    holder = nested.getObject(top)
+    feature = api.make_curves_feature(nested, holder, [path + edge])
+    assert laid(feature) == ends(holder.getSubObject(path + edge))
+    assert feature.Source[0].Name == ("Link" if top == "Link" else path.strip("$.")[0])
+    assert "." not in feature.Source[1][0]
+
+
+def test_a_part_within_a_part_is_where_it_is_seen(nested):
+    nested.Outer.addObject(nested.Part)
+    nested.recompute()
+    for top, path in (("Outer", "Part.B.Edge5"), ("Part", "B.Edge5")):
+        feature = api.make_curves_feature(nested, nested.getObject(top), [path])
+        assert laid(feature) == ends(nested.Outer.getSubObject("Part.B.Edge5"))
+    api.change(feature, source=nested.Outer, faces=["Part.A.Edge7"])
+    assert laid(feature) == ends(nested.Outer.getSubObject("Part.A.Edge7")) and feature.Source[0] == nested.A
+
+
+def test_faces_and_axes_by_paths(nested):
+    clad = api.make_cladding_feature(nested, nested.Part, ["B.Face6"], bead_spacing=3)
+    assert clad.Source[0] == nested.B and api.result(clad).area == pytest.approx(nested.B.Shape.Face6.Area)
+    for axis in ("B.Edge5", "Sketch.V_Axis", "Origin.Z_Axis.", "Origin.Z_Axis"):
+        with pytest.raises(InputError) as caught:  # a box does not turn about anything
+            api.make_feature(nested, nested.A, axis=(nested.Part, axis))
+        assert caught.value.code != "BAD_AXIS" and "Axis" not in caught.value.where, caught.value.line()
+
+
+@pytest.mark.parametrize("path", ["B.Edge99", "C.Edge5", "A.Group.Edge1", "Edge5.", ".", "B.Foo", ".Edge5", "B..Edge5"])
+def test_what_a_path_does_not_lead_to_is_refused(nested, path):
+    before = [obj.Name for obj in nested.Objects]
+    with pytest.raises(InputError) as caught:
+        api.make_curves_feature(nested, nested.Part, [path])
+    assert caught.value.code in ("BAD_EDGES", "BAD_FACES", "BAD_AXIS") and caught.value.where == "source"
+    assert path in caught.value.message and [obj.Name for obj in nested.Objects] == before
+
+
+def test_edges_of_two_objects_are_refused(nested):
+    with pytest.raises(InputError, match="several objects") as caught:
+        api.make_curves_feature(nested, nested.Part, ["A.Edge5", "B.Edge5"])
+    assert caught.value.code == "BAD_EDGES"
+
+
+def test_a_path_that_was_not_given_by_a_macro_is_refused(nested):
+    """As the property editor writes it; before, the edge of this number of the whole part was taken."""
+    feature = api.make_curves_feature(nested, nested.B, ["Edge5"])
+    feature.Source = (nested.Part, ["B.Edge5"])
+    with pytest.raises(InputError, match=r"B\.Edge5 of Part is Edge5 of Bee") as caught:
+        api.recompute(feature)
+    assert caught.value.code == "BAD_EDGES" and feature.Status == "failed"
+    feature.Source = (nested.B, ["Edge5"])
+    api.recompute(feature)
+    assert feature.Status == "up to date"
+
+
+def test_a_path_to_a_body_by_its_tip_is_the_body(doc):
+    body = doc.addObject("PartDesign::Body", "Body")
+    for kind, name in (("AdditiveBox", "Pad"), ("SubtractiveCylinder", "Bore")):
+        body.addObject(doc.addObject(f"PartDesign::{kind}", name))
+    doc.Bore.Radius = 3
+    doc.recompute()
+    for path, owner in (("Bore.Edge3", body), ("Pad.Edge3", doc.Pad)):
+        feature = api.make_curves_feature(doc, body, [path])
+        assert feature.Source[0] == owner
+        assert laid(feature) == ends(global_shape(owner).getElement(feature.Source[1][0])) == ends(body.getSubObject(path))
+    feature.Source = (body, ["Bore.Edge3"])
+    api.recompute(feature)
+    assert feature.Status == "up to date"
