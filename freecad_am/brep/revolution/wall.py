@@ -48,7 +48,8 @@ def find_wall(
         return _from_faces(_chosen(named, faces, label), wall, axis, label, selected=True)
     if len(shape.Solids) > 1:
         return _only_solid(shape, named, wall, axis, label)
-    return _from_faces(named, wall, axis, label, selected=False)
+    whole = bool(shape.Shells) and all(shell.isClosed() for shell in shape.Shells)
+    return _from_faces(named, wall, axis, label, selected=False, whole=whole)
 
 
 def _chosen(named: list[Named], faces: Sequence[str], label: str) -> list[Named]:
@@ -66,7 +67,7 @@ def _only_solid(shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any]
     for index, solid in enumerate(shape.Solids, start=1):
         own = [(name, face) for name, face in named if any(face.isSame(other) for other in solid.Faces)]
         try:
-            made = _from_faces(own, wall, axis, label, False)
+            made = _from_faces(own, wall, axis, label, False, whole=True)
             found.append((Text("Solid{} ({} to {})", index, own[0][0], own[-1][0]), made, solid.Area / area))
         except InputError:
             continue
@@ -88,8 +89,9 @@ def _only_solid(shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any]
 
 
 def _from_faces(
-    named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str, selected: bool
+    named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str, selected: bool, whole: bool = False
 ) -> RevolvedWall:
+    """whole: the faces are all of a closed surface."""
     wide = [
         (name, face) for name, face in named if 2.0 * face.Area > SLIVER * face.Length or has_lost_pole(face)
     ]
@@ -110,7 +112,7 @@ def _from_faces(
     pieces = merged([piece for patch in patches for piece in patch.pieces], label)
     if not pieces:
         raise InputError("NO_WALL", label, "it has no face that turns about the axis; name the faces of the wall")
-    return _assembled(pieces, frame, wall, label, selected)
+    return _assembled(pieces, frame, wall, label, selected, whole)
 
 
 def _about_best(wide: Sequence[Named], lines: Sequence[tuple[Any, Any]]) -> tuple[AxisFrame, list[Patch]]:
@@ -147,7 +149,9 @@ def _from_edges(shape: Any, wall: str, axis: tuple[Any, Any] | None, label: str)
     return _assembled(pieces_of_edges(shape, frame, label), frame, wall, label, selected=False)
 
 
-def _assembled(pieces: list[Piece], frame: AxisFrame, wall: str, label: str, selected: bool) -> RevolvedWall:
+def _assembled(
+    pieces: list[Piece], frame: AxisFrame, wall: str, label: str, selected: bool, whole: bool = False
+) -> RevolvedWall:
     """The wall made of pieces about the axis of the frame."""
     chains, gap = contour.chains(pieces)
     if len(chains) > 1:
@@ -156,9 +160,11 @@ def _assembled(pieces: list[Piece], frame: AxisFrame, wall: str, label: str, sel
             "NO_WALL", label, "{} do not join to one wall; name the faces of the wall, or deposit them one by one", names
         )
     chain, issues = chains[0], []
+    closed = contour.is_closed(chain, whole) and (not selected or _loops(chain))
+    gap = contour.opening(chain) if closed and not contour.is_closed(chain) else gap
     if gap > contour.JOIN:
         issues.append(Issue(NOTE, "GAP", Text("a gap of {:.3g} mm between faces of {} is bridged", gap, label)))
-    if contour.is_closed(chain) and (not selected or _loops(chain)):
+    if closed:
         chain, meridian = _wall_of_contour(chain, wall, label)
     else:
         if wall != "outer":
@@ -178,8 +184,7 @@ def _assembled(pieces: list[Piece], frame: AxisFrame, wall: str, label: str, sel
 
 
 def _loops(chain: Chain) -> bool:
-    first, last = contour.ends(chain)
-    return bool(np.hypot(*(first - last)) < contour.JOIN)
+    return contour.opening(chain) < contour.JOIN
 
 
 def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridian]:

@@ -87,11 +87,22 @@ def _turned(chain: Chain) -> Chain:
     return [piece.reversed() for piece in reversed(chain)]
 
 
-def is_closed(chain: Chain) -> bool:
-    """True when the chain bounds a section: it meets itself, or starts and ends on the axis."""
+def opening(chain: Chain) -> float:
+    """The way from the last end of a chain to its first, mm."""
     first, last = ends(chain)
+    return float(np.hypot(*(last - first)))
+
+
+def is_closed(chain: Chain, whole: bool = False) -> bool:
+    """True when the chain bounds a section: it meets itself, or starts and ends on the axis. whole: it is all of a closed
+    surface, so it meets itself across a gap too, the widest one of its pieces, whose nearest ends are joined first."""
     meets = len(chain) > 1 or len(chain[0].points) > 2
-    return (meets and float(np.hypot(*(last - first))) < JOIN) or (first[0] < JOIN and last[0] < JOIN)
+    return (meets and opening(chain) < JOIN) or _on_axis(chain) or (whole and meets and opening(chain) <= BRIDGE)
+
+
+def _on_axis(chain: Chain) -> bool:
+    first, last = ends(chain)
+    return bool(first[0] < JOIN and last[0] < JOIN)
 
 
 def upright(chain: Chain) -> Chain:
@@ -111,7 +122,7 @@ def walls(chain: Chain) -> list[Chain]:
     """
     level = np.vstack([piece.points for piece in chain])[:, 1]
     low, high = float(level.min()), float(level.max())
-    meets = float(np.hypot(*(ends(chain)[1] - ends(chain)[0]))) < JOIN
+    meets = opening(chain) < JOIN or (opening(chain) <= BRIDGE and not _on_axis(chain))
     rims = _rims(chain, meets, low, high)
     runs: list[Chain] = [[]]
     for index, piece in enumerate(chain):
